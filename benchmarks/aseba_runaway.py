@@ -87,7 +87,9 @@ class Class:
         self.gets = {name: self.node.create_client(GetParameters, f"/{name}/aseba/get_variables") for name in names}
         self.set = self.node.create_client(SetParametersAtomically, "/aseba_runtime/set_parameters_atomically")
         for name in names:
-            self.node.create_subscription(DiagnosticStatus, f"/{name}/_aseba/status", self._keeper(name), qos.LATCHED)
+            self.node.create_subscription(
+                DiagnosticStatus, f"/{name}/_aseba/status", self._keeper(name), qos.TRANSIENT_LOCAL
+            )
 
     def until(self, condition: Callable[[], bool], seconds: float) -> float:
         """Spin until a condition holds; how long it took, `seconds` if it did not hold by then."""

@@ -45,7 +45,7 @@ from sensor_msgs.msg import Range
 from thymio_sim_ros.ros import generate_ros_docs
 from thymio_sim_ros.ros.compat import dds_profile, tf2_messages
 from thymio_sim_ros.ros.interface import qos, sensor_topics
-from thymio_sim_ros.ros.rclpy_ext.node_runner import drive, make_executor
+from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor, run_node
 from thymio_sim_ros.ros.simulator.node import Simulator
 
 DOMAIN = int(os.environ.get("ROS_DOMAIN_ID", "80"))
@@ -112,7 +112,7 @@ def topics(robots: int, heard: str, *, only_regular: bool = False) -> Iterator[t
     spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
     for space in spaces:
         for sensor in generate_ros_docs.own_sensors():
-            for row in sensor_topics.select_rows(sensor):
+            for row in sensor_topics.rows_of(sensor):
                 if only_regular and not sensor_topics.is_regular(sensor, row):
                     continue
                 if heard == ALL or row.type is Range or row.topic in ("odom", "joint_states", "imu"):
@@ -166,7 +166,7 @@ def profiled(path: str, arguments: list[str]) -> None:
     with dds_profile.alone():
         simulator = Simulator(context)
     profile = cProfile.Profile(time.thread_time)
-    profile.runcall(drive, simulator, context, lambda: bool(ended))
+    profile.runcall(run_node, simulator, context, lambda: bool(ended))
     profile.dump_stats(path)
     simulator.close()
 

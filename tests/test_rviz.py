@@ -80,7 +80,8 @@ def test_every_display_shows_a_topic_of_its_type_with_the_durability_it_has(conf
         assert topic["Reliability Policy"] == "Reliable"
         shown[topic["Value"]] = (DISPLAYS[display["Class"]], "latched" if latched else "volatile")
     kinds = {
-        name: (kind, "latched" if profile == "latched" else "volatile") for name, (kind, profile) in published.items()
+        name: (kind, "latched" if profile == "transient local" else "volatile")
+        for name, (kind, profile) in published.items()
     }
     assert shown == {name: kinds.get(name) for name in shown}
 

@@ -20,7 +20,7 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     device = DeviceOptions("playground", "playground", tmp_path / "card", tmp_path / "flash")
     models = {"motor_model": "firmware", "proximity_model": "cone"}
     suite = SuiteConfig(playground="base", program="none", device=device, **models, web=False, foxglove=False)
-    simulator, runtime = (ros.live(life) for life in combined.lives(ros.context, suite))
+    simulator, runtime = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
     assert simulator.params.motor_model == "firmware"
     assert simulator.params.proximity_model == "cone"
     assert runtime.params.options == device
@@ -34,7 +34,7 @@ def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_m
     for address, hosts in (("localhost", [here]), ("0.0.0.0", [here, elsewhere])):
         ports = {"port": 0, "foxglove_port": free_port()}
         suite = SuiteConfig(playground="base", program="none", address=address, tokens=Tokens(), **ports)
-        _, _, bridge, page = (ros.live(life) for life in combined.lives(ros.context, suite))
+        _, _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
         for host in (here, elsewhere):
             opening = {"subprotocols": SUBPROTOCOLS, "origin": f"http://{host}:{page.port}"}
             if host in hosts:
@@ -51,10 +51,10 @@ def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_m
 def test_in_the_network_the_bridge_makes_tokens_and_the_page_knows_them(ros, monkeypatch):
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     suite = SuiteConfig(playground="base", program="none", address="0.0.0.0", port=0, foxglove_port=free_port())
-    _, _, bridge, page = (ros.live(life) for life in combined.lives(ros.context, suite))
+    _, _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
     assert bridge.tokens.is_required
     assert page.tokens == bridge.tokens
-    assert f"/#token={bridge.tokens.full}" in page.invitation
+    assert f"/#token={bridge.tokens.full}" in page.access_urls
     for host in ("127.0.0.1", "127.0.0.2"):
         with pytest.raises(InvalidStatus), connect(f"ws://{host}:{bridge.port}", subprotocols=SUBPROTOCOLS):
             pass

@@ -91,8 +91,11 @@ def test_simulated_time_is_not_for_the_simulator(given):
 @pytest.mark.parametrize(
     ("rule", "warning"),
     [
-        ("playgroud:=maze", "parameter playgroud is none of the suite and does nothing (did you mean playground?)"),
-        ("qqqqq:=1", "parameter qqqqq is none of the suite and does nothing"),
+        (
+            "playgroud:=maze",
+            "parameter playgroud is not a parameter of the suite and has no effect (did you mean playground?)",
+        ),
+        ("qqqqq:=1", "parameter qqqqq is not a parameter of the suite and has no effect"),
         ("simulato:seed:=1", "parameter seed: the suite has no node simulato (did you mean simulator?)"),
     ],
 )

@@ -56,7 +56,7 @@ PAIR = json.dumps(
     }
 )  # fmt: skip
 
-PUBLISHED = [(sensor, row) for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.select_rows(sensor)]
+PUBLISHED = [(sensor, row) for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.rows_of(sensor)]
 INPUTS = {one.topic: one for one in robot_inputs()}
 
 
@@ -107,11 +107,11 @@ def test_what_a_robot_publishes(ros, simulation, sensor, row):
         usual = {"map": "map"}.get(row.frame, f"anna/{row.frame}")
         assert headed.header.frame_id == usual
         assert (headed.header.stamp.nanosec + headed.header.stamp.sec * 10**9) % 10_000_000 == 0
-    often = sensor_topics.often(sensor, row)
-    if often not in ("event", "change"):
+    rate = sensor_topics.rate(sensor, row)
+    if rate not in ("event", "change"):
         messages.clear()
         sim.step(2.0)
-        ros.until(lambda: abs(len(messages) - 2 * float(often)) <= 1)
+        ros.until(lambda: abs(len(messages) - 2 * float(rate)) <= 1)
 
 
 SENT = {
@@ -211,7 +211,7 @@ def test_what_is_published_of_the_world(ros, simulation, topic):
     assert is_as_declared(info, one.profile)
     messages = ros.collect(one.type, name)
     if topic == "/diagnostics":
-        sim.simulator._beat(0)
+        sim.simulator._publish_heartbeat(0)
     sim.until(lambda: messages, seconds=1.0)
     if one.frame:
         headed = messages[-1].markers[0] if hasattr(messages[-1], "markers") else messages[-1]
@@ -220,7 +220,7 @@ def test_what_is_published_of_the_world(ros, simulation, topic):
 
 def test_transforms_and_places_have_their_types(ros, simulation):
     simulation(playground=PAIR)
-    for topic, profile in (("/tf", qos.TRANSFORMS), ("/tf_static", qos.LATCHED)):
+    for topic, profile in (("/tf", qos.TRANSFORMS), ("/tf_static", qos.TRANSIENT_LOCAL)):
         (info,) = ros.node.get_publishers_info_by_topic(topic)
         assert info.topic_type == "tf2_msgs/msg/TFMessage"
         assert is_as_declared(info, profile)
@@ -251,4 +251,4 @@ def test_two_robots_share_no_topic_but_those_of_the_world(ros, simulation):
 
 def test_everything_is_reliable():
     assert {profile.reliability for profile, _ in qos.KINDS.values()} == {ReliabilityPolicy.RELIABLE}
-    assert qos.LATCHED.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    assert qos.TRANSIENT_LOCAL.durability == DurabilityPolicy.TRANSIENT_LOCAL

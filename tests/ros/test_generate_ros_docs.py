@@ -22,12 +22,12 @@ def test_the_page_is_what_the_nodes_declare():
 
 
 def test_every_topic_says_what_it_is_about():
-    rows = [row for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.select_rows(sensor)]
+    rows = [row for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.rows_of(sensor)]
     assert [one.topic for one in (*rows, *robot_inputs()) if not one.about] == []
 
 
 def test_no_topic_is_declared_twice():
-    topics = [row.topic for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.select_rows(sensor)]
+    topics = [row.topic for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.rows_of(sensor)]
     topics += [one.topic for one in robot_inputs()]
     assert sorted(topics) == sorted(set(topics))
 
@@ -46,7 +46,7 @@ def test_the_migration_names_all_that_a_program_knows(kind):
         "| `prox.horizontal[7]` | out | `proximity/…`, `_raw/proximity` |",
         "| `motor.left.target` | in | `_motor/target` |",
         "| `leds.top(red, green, blue)` | in | `led/body/top` |",
-        "| `timer0` | | timers of a node of one’s own |",
+        "| `timer0` | | timers of your own node |",
     ],
 )
 def test_what_a_program_knows_is_found_on_topics(line):

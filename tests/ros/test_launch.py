@@ -177,7 +177,7 @@ def test_the_pages_tell_how_long_a_velocity_holds(description: Call) -> None:
     assert float(defaults["cmd_vel_timeout"]) == simulator_params.SimulatorParams().cmd_vel_timeout == 0.0
     for page in ("README.md", "docs/ros.md"):
         text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
-        assert f"{SuiteConfig().cmd_vel_timeout_s:g} s, s" in text, page
+        assert f"{SuiteConfig().cmd_vel_timeout_s:g} s" in text, page
         assert "until the next one" in text, page
 
 

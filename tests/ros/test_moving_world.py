@@ -89,7 +89,7 @@ def test_a_robot_that_comes_has_topics_until_it_goes(ros, simulation):
 def test_the_frames_of_a_robot_that_comes_are_latched(simulation, monkeypatch):
     sim = simulation(playground=PUSHING)
     told = []
-    monkeypatch.setattr(sim.simulator._transforms, "begin", told.append)
+    monkeypatch.setattr(sim.simulator._transforms, "set_robots", told.append)
     sim.world.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.02)
     assert [[names.frame("base_link") for names in robots] for robots in told] == [["base_link", "late/base_link"]]
@@ -104,7 +104,7 @@ def test_reset_brings_back_the_robots_of_the_playground(ros, simulation):
     sim.simulator.reset()
     odometry.clear()
     sim.until(lambda: odometry)
-    assert [names.name for names in sim.simulator._roster.names] == [""]
+    assert [names.name for names in sim.simulator._robot_endpoints.names] == [""]
 
 
 def test_a_place_that_is_not_free_is_refused_and_the_node_goes_on(ros, simulation):

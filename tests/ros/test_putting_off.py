@@ -18,8 +18,8 @@ from std_srvs.srv import SetBool
 
 from thymio_sim_ros.ros.simulator import node as simulator_node
 from thymio_sim_ros.ros.simulator import world_endpoints
-from thymio_sim_ros.ros.simulator.node import MOST_PUT_OFF
-from thymio_sim_ros.ros.simulator.robot_endpoints import RobotPorts
+from thymio_sim_ros.ros.simulator.node import MAX_DEFERRED_TICKS
+from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
 from thymio_sim_ros.sim.commands import BodyTwist
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import RobotStart
@@ -69,13 +69,13 @@ def driven(simulation, sleeper):
     def turn(milliseconds: int) -> World:
         end = sleeper.now_ns + milliseconds * MS
         while sleeper.now_ns < end:
-            turn.sim.simulator.turn(sleeper)
+            turn.sim.simulator.run_once(sleeper)
         return turn.sim.world
 
     def start(**parameters):
         turn.sim = simulation(playground="base", **parameters)
         turn.sim.simulator.pause(False)
-        turn.sim.simulator._beat(sleeper.now_ns)
+        turn.sim.simulator._publish_heartbeat(sleeper.now_ns)
         sleeper.slept_ms.clear()
         return turn
 
@@ -84,8 +84,8 @@ def driven(simulation, sleeper):
 
 def test_nobody_listens_so_ticks_are_done_in_heaps(driven, sleeper):
     world = driven()(1000)
-    assert world.now_ns == pytest.approx(1000 * MS, abs=MOST_PUT_OFF * TICK_NS)
-    assert max(sleeper.slept_ms) == MOST_PUT_OFF * TICK_NS // MS
+    assert world.now_ns == pytest.approx(1000 * MS, abs=MAX_DEFERRED_TICKS * TICK_NS)
+    assert max(sleeper.slept_ms) == MAX_DEFERRED_TICKS * TICK_NS // MS
     assert len(sleeper.slept_ms) < 15
 
 
@@ -103,7 +103,7 @@ def test_a_topic_that_is_heard_is_sent_in_time(ros, driven, sleeper, kind, topic
 def test_a_command_takes_effect_in_the_tick_after_it_came(driven, sleeper):
     turn = driven()
     command, done = BodyTwist(0.1, 0.5), []
-    post = turn.sim.simulator._poster("thymio")
+    post = turn.sim.simulator._command_sender("thymio")
     sleeper.at(34, lambda: (post(command), done.append(turn.sim.world.now_ns)))
     world = turn(500)
     assert done == [30 * MS]
@@ -132,7 +132,7 @@ def test_what_a_command_brings_about_is_told_one_tick_later(ros, driven, sleeper
     turn = driven()
     velocity = ros.publisher(Twist, "/cmd_vel")
     velocity.publish(Twist(linear=Vector3(x=0.1)))
-    sleeper.at(31, lambda: ros.until(lambda: turn.sim.simulator._soon_ns))
+    sleeper.at(31, lambda: ros.until(lambda: turn.sim.simulator._prompt_until_ns))
     turn(31)
     assert turn.sim.world.now_ns == 30 * MS
     sleeper.slept_ms.clear()
@@ -168,13 +168,13 @@ def test_a_robot_that_takes_time_to_come_comes_once(simulator_with, sleeper, mon
     def slow_ports(node, names, *arguments, **options):
         made.append(names.name)
         sleeper.now_ns += 30 * MS if len(made) < 4 else 0
-        return RobotPorts(node, names, *arguments, **options)
+        return RobotEndpoints(node, names, *arguments, **options)
 
     override = "qos_overrides./later/odom.publisher.reliability:=best_effort"
     simulator = simulator_with("-p", override, playground="base")
-    monkeypatch.setattr(simulator_node, "RobotPorts", slow_ports)
-    sleeper.at(30, lambda: (simulator.spawn(RobotStart("later", 0.3, 0.0)), simulator.follow()))
-    simulator.turn(sleeper)
+    monkeypatch.setattr(simulator_node, "RobotEndpoints", slow_ports)
+    sleeper.at(30, lambda: (simulator.spawn(RobotStart("later", 0.3, 0.0)), simulator.update_robots()))
+    simulator.run_once(sleeper)
     assert made == ["later"]
 
 
@@ -191,7 +191,7 @@ def test_the_ticks_of_a_busy_machine_are_caught_up_or_counted(driven, sleeper):
     turn(300)
     sleeper.now_ns += 150 * MS
     world = turn(50)
-    assert world.now_ns == pytest.approx(500 * MS, abs=MOST_PUT_OFF * TICK_NS)
+    assert world.now_ns == pytest.approx(500 * MS, abs=MAX_DEFERRED_TICKS * TICK_NS)
     assert turn.sim.simulator._late_ticks > 0
     sleeper.now_ns += 1000 * MS
     turn(50)

@@ -66,8 +66,8 @@ def test_a_robot_that_is_driven_by_a_recording_drives_the_same_way(ros, simulati
         first.step(0.5)
     ros.end(first.simulator)
     again = simulation()
-    for moment, data in zip(sent, recorded[:], strict=True):
-        again.until(lambda moment=moment: again.now >= moment)
+    for input_context, data in zip(sent, recorded[:], strict=True):
+        again.until(lambda input_context=input_context: again.now >= input_context)
         wheels.publish(bytes(data))
     again.until(lambda: again.now >= first.now)
     assert again.thymio.pose == first.thymio.pose

@@ -14,7 +14,7 @@ from std_srvs.srv import Trigger
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
 from thymio_sim_ros.ros.aseba.bus import SLICE_S
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
-from thymio_sim_ros.ros.rclpy_ext.node_runner import drive
+from thymio_sim_ros.ros.rclpy_ext.node_runner import run_node
 
 PROGRAMS = sorted((Path(__file__).parent.parent / "data" / "runaway").glob("*.aesl"))
 ANSWER_S = 10.0
@@ -29,7 +29,7 @@ def threaded(ros):
 
     def make(**parameters):
         life = AsebaRuntime(ros.context, RuntimeParams(follow_simulator=False, **parameters))
-        thread = threading.Thread(target=drive, args=(life, ros.context, stop.is_set))
+        thread = threading.Thread(target=run_node, args=(life, ros.context, stop.is_set))
         threads.append((life, thread))
         thread.start()
         return life
@@ -82,7 +82,7 @@ def test_robots_share_the_node_in_turn(ros, threaded):
     life = threaded(robots=["anna", "bert", "carl", "dora"], source="var i\nvar k = 0\nwhile k == 0 do\ni++\nend")
 
     def counts():
-        return [get_variables(ros, "i", robot=f"/{ports.names.name}")[0][0] for ports in life.robots]
+        return [get_variables(ros, "i", robot=f"/{endpoints.names.name}")[0][0] for endpoints in life.robots]
 
     first = counts()
     ros.until(lambda: all(now != before for now, before in zip(counts(), first, strict=True)))
@@ -92,17 +92,17 @@ def test_a_slice_ends_whatever_waits_and_the_rest_goes_on_in_order(ros):
     life = ros.live(AsebaRuntime(ros.context, RuntimeParams(robots=[f"r{n}" for n in range(8)])))
     taken = []
 
-    def turn(ports):
-        taken.append(ports)
+    def run_slice(endpoints):
+        taken.append(endpoints)
         time.sleep(SLICE_S)
 
-    for ports in life.robots:
-        ports.turn = partial(turn, ports)
+    for endpoints in life.robots:
+        endpoints.run_slice = partial(run_slice, endpoints)
     with life._bus.slice():
-        life._bus.settle(*life.robots)
+        life._bus.run_until_idle(*life.robots)
     assert taken == life.robots[: len(taken)]
     assert len(taken) < len(life.robots)
-    assert life._bus.has_waiting
-    life._bus.settle()  # in lock-step there are no slices
+    assert life._bus.has_ready_robots
+    life._bus.run_until_idle()  # in lock-step there are no slices
     assert taken == life.robots
-    assert not life._bus.has_waiting
+    assert not life._bus.has_ready_robots

@@ -44,8 +44,8 @@ FOR_TOOLS = {
 @pytest.fixture
 def topics(ros):
     """Names of all topics of the suite as `thymio-sim` starts it, page and bridge included."""
-    lives = combined.lives(ros.context, SuiteConfig(port=0, foxglove_port=free_port()))
-    for life in lives:
+    suite_nodes = combined.suite_nodes(ros.context, SuiteConfig(port=0, foxglove_port=free_port()))
+    for life in suite_nodes:
         ros.live(life)
     ros.until(lambda: set(_names(ros)) >= FOR_TOOLS | NEEDED, what="the topics of all nodes")
     return _names(ros)

@@ -170,7 +170,7 @@ def test_the_robot_and_its_sensors_are_on_the_map(ros, simulation):
     buffer = Buffer()
     listener = TransformListener(buffer, ros.make_node("hearer"))
     ros.until(lambda: ros.node.count_subscribers("/tf"))
-    sim.simulator._look()
+    sim.simulator._poll_subscribers()
     sim.step(0.5)
     ros.until(lambda: buffer.can_transform("map", "proximity_center_link", Time()))
     truth = sim.world.robots["thymio"].pose

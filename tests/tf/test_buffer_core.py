@@ -7,7 +7,7 @@ import random
 
 import pytest
 
-from thymio_sim_ros.tf.buffer_core import IDENTITY, BufferCore, Motion, OldDataError, Placed, slerp
+from thymio_sim_ros.tf.buffer_core import IDENTITY, BufferCore, OldDataError, RigidTransform, StampedTransform, slerp
 from thymio_sim_ros.tf.errors import (
     ConnectivityException,
     ExtrapolationException,
@@ -20,7 +20,7 @@ S = 1_000_000_000
 
 
 def turn(yaw, x=0.0, y=0.0, z=0.0):
-    return Motion((x, y, z), (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
+    return RigidTransform((x, y, z), (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
 
 
 def yaw_of(motion):
@@ -31,9 +31,9 @@ def yaw_of(motion):
 def filled(*placed, static=()):
     core = BufferCore()
     for frame, child, seconds, motion in placed:
-        core.set_transform(Placed(round(seconds * S), frame, child, motion))
+        core.set_transform(StampedTransform(round(seconds * S), frame, child, motion))
     for frame, child, motion in static:
-        core.set_transform(Placed(0, frame, child, motion), is_static=True)
+        core.set_transform(StampedTransform(0, frame, child, motion), is_static=True)
     return core
 
 
@@ -50,7 +50,7 @@ def test_a_transform_and_its_inverse():
 
 def test_a_frame_in_itself_is_identity_at_the_time_asked_for():
     core = filled(("map", "base", 2.0, turn(1.0, 5.0)))
-    assert core.lookup("base", "base", 7 * S) == Placed(7 * S, "base", "base", IDENTITY)
+    assert core.lookup("base", "base", 7 * S) == StampedTransform(7 * S, "base", "base", IDENTITY)
     assert core.lookup("base", "base").stamp_ns == 2 * S
 
 
@@ -176,12 +176,18 @@ def test_a_slash_before_the_names_of_what_is_sent_is_left_out():
 @pytest.mark.parametrize(
     ("placed", "text"),
     [
-        (Placed(S, "a", "a", IDENTITY), "a transform of 'a' in itself"),
-        (Placed(S, "", "a", IDENTITY), "has no frame_id"),
-        (Placed(S, "a", "", IDENTITY), "has no child_frame_id"),
-        (Placed(S, "a", "b", Motion((math.nan, 0.0, 0.0))), "not finite"),
-        (Placed(S, "a", "b", Motion(rotation=(0.0, 0.0, 0.0, 0.0))), "a quaternion of length 0, expected 1"),
-        (Placed(S, "a", "b", Motion(rotation=(0.0, 0.0, 1.0, 1.0))), "a quaternion of length 1.41, expected 1"),
+        (StampedTransform(S, "a", "a", IDENTITY), "a transform of 'a' in itself"),
+        (StampedTransform(S, "", "a", IDENTITY), "has no frame_id"),
+        (StampedTransform(S, "a", "", IDENTITY), "has no child_frame_id"),
+        (StampedTransform(S, "a", "b", RigidTransform((math.nan, 0.0, 0.0))), "not finite"),
+        (
+            StampedTransform(S, "a", "b", RigidTransform(rotation=(0.0, 0.0, 0.0, 0.0))),
+            "a quaternion of length 0, expected 1",
+        ),
+        (
+            StampedTransform(S, "a", "b", RigidTransform(rotation=(0.0, 0.0, 1.0, 1.0))),
+            "a quaternion of length 1.41, expected 1",
+        ),
     ],
 )
 def test_what_is_no_transform_is_refused(placed, text):
@@ -197,7 +203,7 @@ def test_ten_seconds_are_kept():
     with pytest.raises(ExtrapolationException, match=r"earliest data is at time 5.000000"):
         core.lookup("map", "base", 4 * S)
     with pytest.raises(OldDataError, match="only 10 s are kept"):
-        core.set_transform(Placed(4 * S, "map", "base", IDENTITY))
+        core.set_transform(StampedTransform(4 * S, "map", "base", IDENTITY))
 
 
 def test_the_order_in_which_transforms_come_does_not_matter():
@@ -211,7 +217,7 @@ def test_the_order_in_which_transforms_come_does_not_matter():
 def test_a_second_transform_for_one_time_is_left_out():
     core = filled(("map", "base", 1.0, turn(0.0, 1.0)))
     with pytest.raises(OldDataError, match=r"a second transform of base at time 1.000000"):
-        core.set_transform(Placed(S, "map", "base", turn(0.0, 2.0)))
+        core.set_transform(StampedTransform(S, "map", "base", turn(0.0, 2.0)))
     assert place(core, "map", "base") == (1.0, 0.0, 0.0)
 
 
@@ -251,7 +257,7 @@ def test_what_is_forgotten_when_time_goes_back():
     assert place(core, "odom", "base") == (1.0, 0.0, 0.0)
     with pytest.raises(TransformException):
         core.lookup("map", "base")
-    core.set_transform(Placed(S, "map", "odom", turn(0.0, 3.0)))
+    core.set_transform(StampedTransform(S, "map", "odom", turn(0.0, 3.0)))
     assert place(core, "map", "base") == (4.0, 0.0, 0.0)
 
 
@@ -274,11 +280,11 @@ def test_any_tree_by_chance_agrees_with_the_product_of_its_links():
         parent = f"f{chance.randrange(number)}"
         raw = [chance.gauss(0, 1) for _ in range(4)]
         length = math.hypot(*raw)
-        motion = Motion(
+        motion = RigidTransform(
             (chance.uniform(-1, 1), chance.uniform(-1, 1), chance.uniform(-1, 1)), tuple(part / length for part in raw)
         )
         absolute[f"f{number}"] = absolute[parent] * motion
-        core.set_transform(Placed(S, parent, f"f{number}", motion), is_static=number % 3 == 0)
+        core.set_transform(StampedTransform(S, parent, f"f{number}", motion), is_static=number % 3 == 0)
     for _ in range(200):
         target, source = chance.choice(list(absolute)), chance.choice(list(absolute))
         wanted = absolute[target].inverse() * absolute[source]

@@ -63,7 +63,7 @@ CHOICES = {
 }
 
 
-OF_WORLD = ("_markers", "_markers/objects", "map")
+WORLD_TOPICS = ("_markers", "_markers/objects", "map")
 """What our RViz configuration calls `/_markers` and so on, since it may be started in a robot's namespace."""
 
 
@@ -83,7 +83,7 @@ def generate_launch_description() -> LaunchDescription:
                 namespace=value["namespace"],
                 arguments=["-d", PathJoinSubstitution([FindPackageShare("thymio_sim_ros"), "rviz", "thymio.rviz"])],
                 parameters=[{"use_sim_time": True}],
-                remappings=[(f"/{name}", name) for name in OF_WORLD],
+                remappings=[(f"/{name}", name) for name in WORLD_TOPICS],
                 condition=IfCondition(value["rviz"]),
             ),
             OpaqueFunction(function=_give_tokens),
@@ -165,12 +165,12 @@ def _node(name: str, parameters: list[object], value: dict[str, LaunchConfigurat
         output="screen",
         respawn=value["respawn"],
         respawn_delay=RESPAWN_DELAY_S,
-        on_exit=_end_all_if_refused,
+        on_exit=_shut_down_if_rejected,
         **options,
     )
 
 
-def _end_all_if_refused(event: ProcessExited, _context: LaunchContext) -> list[Shutdown] | None:
+def _shut_down_if_rejected(event: ProcessExited, _context: LaunchContext) -> list[Shutdown] | None:
     """A wrong playground, program or port ends the suite, which would be useless without that node."""
     if event.returncode != REFUSED:
         return None

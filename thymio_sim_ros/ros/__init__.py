@@ -1,1 +1,1 @@
-"""The only folder that imports rclpy: thin nodes around the pure packages (docs/architecture.md)."""
+"""ROS nodes: the only package that imports rclpy, with thin nodes around the pure packages (docs/architecture.md)."""

@@ -13,14 +13,14 @@ from rclpy.context import Context
 
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
-from thymio_sim_ros.ros.rclpy_ext.node_runner import Host, Life, StartError, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, RunnableNode, StartError, announce, run_main
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.suite_config import SuiteConfig
 
 REFUSED = 2
 
 
-def lives(context: Context, suite: SuiteConfig, warnings: Sequence[str] = ()) -> Iterator[Host]:
+def suite_nodes(context: Context, suite: SuiteConfig, warnings: Sequence[str] = ()) -> Iterator[AnnouncedNode]:
     """Simulator, Aseba runtime and, as wanted, bridge and page, in the order of their start.
 
     `warnings` about the arguments are logged by the first.
@@ -52,19 +52,19 @@ def run(suite: SuiteConfig, args: Sequence[str] | None = None, *, on_ready: Call
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `thymio`: the suite with its defaults, ROS arguments for everything else."""
-    return _run(SuiteConfig(), args, greeted)
+    return _run(SuiteConfig(), args, announce)
 
 
 def _run(
     suite: SuiteConfig,
     args: Sequence[str] | None,
-    dressed: Callable[[Iterator[Host]], Iterator[Life]],
+    wrap: Callable[[Iterator[AnnouncedNode]], Iterator[RunnableNode]],
     on_ready: Callable[[], None] = lambda: None,
 ) -> int:
     try:
         with assigned(sys.argv[1:] if args is None else args) as (words, warnings):
             return run_main(
-                lambda context: dressed(lives(context, suite, warnings)), words, executable=SUITE, on_ready=on_ready
+                lambda context: wrap(suite_nodes(context, suite, warnings)), words, executable=SUITE, on_ready=on_ready
             )
     except StartError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)

@@ -19,17 +19,17 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.suite_config import SuiteConfig
 
-__all__ = ["BRIDGE", "PAGE", "RUNTIME", "SIMULATOR", "SUITE", "Place", "assigned", "defaults", "places"]
+__all__ = ["BRIDGE", "PAGE", "RUNTIME", "SIMULATOR", "SUITE", "Target", "assigned", "defaults", "targets"]
 
 SUITE = "thymio"
 """What the process is called; `-p thymio:name:=value` is the same as `-p name:=value`."""
 
 SIMULATOR, RUNTIME, BRIDGE, PAGE = "simulator", "aseba_runtime", "foxglove_bridge", "web_ui"
 
-Place = tuple[str, str]
+Target = tuple[str, str]
 """A node, and what it calls the parameter."""
 
-_SPECIAL: Mapping[str, tuple[Place, ...]] = {
+_SPECIAL: Mapping[str, tuple[Target, ...]] = {
     "port": ((PAGE, "port"),),
     "foxglove_port": ((BRIDGE, "port"), (PAGE, "foxglove_port")),
     "robot_names": ((SIMULATOR, "robot_names"),),
@@ -79,7 +79,7 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
     return values
 
 
-def places(name: str) -> tuple[Place, ...]:
+def targets(name: str) -> tuple[Target, ...]:
     """Where a parameter of the suite goes; nothing for one that no node has."""
     if name in _SPECIAL:
         return _SPECIAL[name]
@@ -134,16 +134,18 @@ def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str
     warnings: list[str] = []
     rules = [(*left.rpartition(":")[::2], value) for left, _, value in (rule.partition(":=") for rule in given)]
     for node, name, value in sorted(rules, key=lambda rule: rule[0] not in ("", SUITE)):
-        found = places(name) if node in ("", SUITE) else ((node, name),)
+        found = targets(name) if node in ("", SUITE) else ((node, name),)
         if not found:
             known = [one for values in defaults(SuiteConfig()).values() for one in parameters.by_name(values)]
-            warnings.append(f"parameter {name} is none of the suite and does nothing{parameters.meant(name, known)}")
-        for place, own_name in found:
-            if place in sections:
-                sections[place][own_name] = value
+            warnings.append(
+                f"parameter {name} is not a parameter of the suite and has no effect{parameters.meant(name, known)}"
+            )
+        for target, own_name in found:
+            if target in sections:
+                sections[target][own_name] = value
             else:
-                near = parameters.meant(place, list(sections))
-                warnings.append(f"parameter {name}: the suite has no node {place}{near}")
+                near = parameters.meant(target, list(sections))
+                warnings.append(f"parameter {name}: the suite has no node {target}{near}")
     return sections, warnings
 
 

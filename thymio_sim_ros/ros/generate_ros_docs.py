@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.ros import combined_parameters
-from thymio_sim_ros.ros.aseba.aseba_ros_mapping import migration
+from thymio_sim_ros.ros.aseba.aseba_ros_mapping import mapping_tables
 from thymio_sim_ros.ros.aseba.node import RuntimeParams
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.interface import driver_topics, qos, sensor_topics
@@ -42,7 +42,7 @@ class _Line:
 
     topic: str
     type: str
-    often: str
+    rate: str
     frame: str
     profile: str
     about: str
@@ -57,30 +57,30 @@ class _Line:
         """What neighbours share."""
         word = self.topic.rpartition("/")[2]
         frame = self.frame.replace(f"_{word}_", "_…_")
-        return (self.place, self.type, self.often, frame, self.profile, self.about)
+        return (self.place, self.type, self.rate, frame, self.profile, self.about)
 
 
 def text() -> str:
     """The whole page."""
     parts = [
         BEFORE,
-        "## What a robot publishes\n",
+        "## Published topics of a robot\n",
         _topics(line for line in _published() if not is_hidden(line.topic)),
-        "## What a robot listens to\n",
+        "## Subscribed topics of a robot\n",
         _topics(line for line in _listened() if not is_hidden(line.topic)),
         HIDDEN,
-        "### What a robot publishes besides\n",
+        "### Published hidden topics of a robot\n",
         _topics(line for line in _published() if is_hidden(line.topic)),
-        "### What a robot listens to besides\n",
+        "### Subscribed hidden topics of a robot\n",
         _topics(line for line in _listened() if is_hidden(line.topic)),
         DRIVER,
         table(("topic", "", "type", ""), _of_driver()),
         "## Topics of the world\n",
         _topics(_of_world()),
         "## Services\n",
-        table(("service", "type", "does"), _services()),
+        table(("service", "type", "description"), _services()),
         INTERFACES,
-        table(("service", "type", "does"), _interfaces()),
+        table(("service", "type", "description"), _interfaces()),
         "## Quality of service\n",
         QUALITY,
         table(("kind", "depth", "for"), ((kind, str(one.depth), about) for kind, (one, about) in qos.KINDS.items())),
@@ -90,12 +90,12 @@ def text() -> str:
         "## Parameters of the simulator\n",
         table(("parameter", "default", "values", "at run time", ""), _parameters(SimulatorParams())),
         "## Parameters of the Aseba runtime\n",
-        "What they and its topics do: [aseba_ros.md](aseba_ros.md).\n",
+        "For details see [aseba_ros.md](aseba_ros.md).\n",
         table(("parameter", "default", "values", "at run time", ""), _parameters(RuntimeParams())),
         ALL_IN_ONE,
         table(("parameter", "node", "default"), _of_all_nodes()),
         AFTER,
-        migration(own_sensors()),
+        mapping_tables(own_sensors()),
     ]
     return "\n".join(parts)
 
@@ -119,12 +119,12 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def _published() -> Iterator[_Line]:
     for sensor in own_sensors():
-        for row in sensor_topics.select_rows(sensor):
-            often = sensor_topics.often(sensor, row)
+        for row in sensor_topics.rows_of(sensor):
+            rate = sensor_topics.rate(sensor, row)
             profile = qos.kind_of(row.profile)
-            yield _Line(row.topic, type_name(row.type), often, row.frame, profile, row.about)
-    kind, about = robot_endpoints.DESCRIBED
-    yield _Line(robot_endpoints.DESCRIPTION, type_name(kind), "once", "", "latched", about)
+            yield _Line(row.topic, type_name(row.type), rate, row.frame, profile, row.about)
+    kind, about = robot_endpoints.DESCRIPTION_TOPIC
+    yield _Line(robot_endpoints.DESCRIPTION, type_name(kind), "once", "", "transient local", about)
 
 
 def _listened() -> Iterator[_Line]:
@@ -140,18 +140,18 @@ def _of_driver() -> Iterator[tuple[str, str, str, str]]:
 def _of_world() -> Iterator[_Line]:
     for topic, one in world_endpoints.TOPICS.items():
         yield _Line(
-            _in_no_namespace(topic), type_name(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about
+            _in_no_namespace(topic), type_name(one.type), one.rate, one.frame, qos.kind_of(one.profile), one.about
         )
-    moving = "`map -> odom -> base_link` and the wheels; `map -> odom` makes up for the odometry's drift"
+    moving = "`map -> odom -> base_link` and the wheels; `map -> odom` compensates the drift of the odometry"
     yield _Line("/tf", tf2_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
-    yield _Line("/tf_static", tf2_messages.TF_TYPE_NAME, "once", "", "latched", "the frames below that are fixed")
+    yield _Line("/tf_static", tf2_messages.TF_TYPE_NAME, "once", "", "transient local", "the fixed frames below")
     yield _Line(
-        _in_no_namespace(world_services.PLACE),
+        _in_no_namespace(world_services.PLACE_TOPIC),
         "geometry_msgs/msg/TransformStamped",
         "in",
         "map",
         "command",
-        world_services.PLACED,
+        world_services.PLACE_MEANING,
     )
 
 
@@ -165,7 +165,7 @@ def _topics(lines: Iterable[_Line]) -> str:
     listed = list(lines)
     places = {line.place: None for line in listed}
     ordered = [line for place in places for line in listed if line.place == place]
-    has_rates, has_frames = any(line.often for line in listed), any(line.frame for line in listed)
+    has_rates, has_frames = any(line.rate for line in listed), any(line.frame for line in listed)
     rows = []
     for group in _runs(ordered, lambda line: line.sort):
         first = group[0]
@@ -173,7 +173,7 @@ def _topics(lines: Iterable[_Line]) -> str:
         word = words[0] if len(words) == 1 else f"{{{','.join(words)}}}"
         frame = first.frame if len(words) == 1 else first.frame.replace(f"_{words[0]}_", "_…_")
         name = f"{first.place}/{word}" if first.place or first.topic.startswith("/") else word
-        cells = [f"`{name}`", f"`{first.type}`", first.often, f"`{frame}`" if frame else "", first.profile, first.about]
+        cells = [f"`{name}`", f"`{first.type}`", first.rate, f"`{frame}`" if frame else "", first.profile, first.about]
         wanted = (True, True, has_rates, has_frames, True, True)
         rows.append([cell for cell, is_wanted in zip(cells, wanted, strict=True) if is_wanted])
     heads = [
@@ -202,12 +202,14 @@ def _interfaces() -> Iterator[tuple[str, str, str]]:
 
 def _frames() -> str:
     rows = [("`odom`", "`map`", "origin of the odometry in the world", ""), ("`base_link`", "`odom`", "odometry", "")]
-    rows += [(f"`{side}_wheel_link`", "`base_link`", _vector(wheel_position(side)), "turns about y") for side in SIDES]
+    rows += [
+        (f"`{side}_wheel_link`", "`base_link`", _vector(wheel_position(side)), "rotates about y") for side in SIDES
+    ]
     for frame in fixed_frames():
         degrees = ", ".join(f"{math.degrees(angle):.4g}" for angle in frame.rotation)
         turn = "" if not any(frame.rotation) else f"roll, pitch, yaw {degrees}°"
         rows.append((f"`{frame.name}`", "`base_link`", _vector(frame.position), turn))
-    return table(("frame", "in", "place, m", ""), rows)
+    return table(("frame", "parent", "position, m", ""), rows)
 
 
 def _vector(values: Iterable[float]) -> str:
@@ -242,7 +244,7 @@ def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
     values = combined_parameters.defaults(SuiteConfig())
     suite = ["port", "foxglove_port", "address"]
     for name in suite:
-        nodes = combined_parameters.places(name)
+        nodes = combined_parameters.targets(name)
         node, own_name = nodes[-1]
         called = [f"`{one}`" if own == name else f"`{one}` (its `{own}`)" for one, own in nodes]
         yield f"`{name}`", ", ".join(called), _value(parameters.by_name(values[node])[own_name])

@@ -1,4 +1,4 @@
-"""What docs/ros.md says besides its tables."""
+"""The prose of docs/ros.md between its generated tables."""
 
 from __future__ import annotations
 
@@ -7,25 +7,27 @@ __all__ = ["AFTER", "ALL_IN_ONE", "BEFORE", "DRIVER", "HIDDEN", "INTERFACES", "Q
 BEFORE = """\
 # The ROS 2 interface
 
-This page is written from the declarations that the nodes use: `python -m thymio_sim_ros.ros.generate_ros_docs >
+This page is generated from the declarations that the nodes use: `python -m thymio_sim_ros.ros.generate_ros_docs >
 docs/ros.md`.
 
-Only standard message types. Units are SI, frames follow REP 103 and 105, ranges REP 117. Names of a robot's topics and
-services are relative to its namespace: a robot alone has none (`/odom`, frame `base_link`), of several each has its
-name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all robots; all names move with it into a
-[namespace](#namespaces). Topics cost nothing until
-somebody subscribes, but for what is sent on a change. While nobody hears what is regular, a change may be told up to
-0.1 s late; its stamp is right, if it has one.
+All message types are standard types. Units are SI; frames follow REP 103 and REP 105, ranges REP 117. Names of a
+robot's topics and services are relative to its namespace. A single robot has none (`/odom`, frame `base_link`); with
+several robots, each uses its name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all robots.
+All names can be moved into a common [namespace](#namespaces).
 
-Numbers that are not finite and arrays of a wrong size are refused with a warning, at most one every five seconds for
-each topic, and counted in `/diagnostics`. Speeds, colors, intensities and loudness beyond the robot are limited, with a
-warning once for each topic, and counted there too.
+A topic without subscribers costs nothing, except for topics that are published on change. While no periodic topic has a
+subscriber, changes may be published up to 0.1 s late; their stamps, if any, are correct.
+
+Messages with non-finite numbers or arrays of the wrong size are rejected with a warning, at most one every five seconds
+per topic, and counted in `/diagnostics`. Speeds, colors, intensities and loudness beyond the limits of the robot are
+clamped, with one warning per topic, and counted as well.
 
 ## Existing code for the Thymio driver
 
 Names, types, frames and constants are those of `thymio_driver`: a node written for it runs unchanged.
-With `ros2 launch` a velocity holds until the next one, as with the driver; `thymio-sim` ends it after 0.5 s, since a
-teleop in a browser says nothing when its key is let go: `ros2 param set /simulator cmd_vel_timeout 0.0` there.
+With `ros2 launch` a velocity holds until the next one, as with the driver. `thymio-sim` ends it after 0.5 s, because a
+teleoperation panel in a browser sends nothing when a key is released; `ros2 param set /simulator cmd_vel_timeout 0.0`
+disables the time-out there.
 
 ```sh
 ros2 launch thymio_sim_ros thymio.launch.py driver_compat:=true program:=none
@@ -33,24 +35,24 @@ ros2 launch thymio_sim_ros thymio.launch.py driver_compat:=true program:=none
 
 `driver_compat` sets two parameters of the simulator:
 
-- `out_of_range` to `driver`: a range is -1 where nothing is seen, as the driver has it, instead of +inf. Code that
-  adds or averages ranges needs this, code that compares them (`r < 0.08`) needs the default;
-- `driver_topics` to true: the rarer topics of the driver, which have [hidden names](#hidden-topics) here, are there
-  under the driver's names as well, and so are the topics whose types only its package `thymio_msgs` has ([where it
-  is installed](#topics-with-types-of-thymio_msgs)). All other topics of the driver are there without it.
+- `out_of_range` to `driver`: a range without an obstacle is -1, as in the driver, instead of +inf. Code that adds or
+  averages ranges needs this setting; code that compares them (`r < 0.08`) needs the default;
+- `driver_topics` to true: less common driver topics, which have [hidden names](#hidden-topics) here, are also available
+  under the names of the driver. So are the topics with types of the driver's package `thymio_msgs`, [if it is
+  installed](#topics-with-types-of-thymio_msgs). All other driver topics are always available.
 
-Left out are:
+Not supported:
 
-- the parameters that calibrate a real robot's motors (`axis_length`, `motor.…`);
-- what `asebaros` does with types of `asebaros_msgs`. Its `aseba/events/<event>` carries both directions, told apart by
-  a field that no standard type has; here `aseba/events/<event>` is what robots say, `aseba/emit/<event>` what they
-  hear. In place of its services: `script.path` and `script.source`, `aseba/get_variables`, `aseba/set_variables`,
-  `aseba/list_variables`, and the latched `_aseba/target` and `_aseba/status`.
+- the parameters that calibrate the motors of a real robot (`axis_length`, `motor.…`);
+- the interfaces of `asebaros` with types of `asebaros_msgs`. Its `aseba/events/<event>` carries both directions,
+  distinguished by a field that no standard type has. Here, robots publish on `aseba/events/<event>` and receive on
+  `aseba/emit/<event>`. The counterparts of its services are `script.path`, `script.source`, `aseba/get_variables`,
+  `aseba/set_variables`, `aseba/list_variables`, and the retained topics `_aseba/target` and `_aseba/status`.
 
 ## Namespaces
 
 All names of the suite are relative. In the namespace `/lab1` (`-r __ns:=/lab1`, `PushRosNamespace`, or `namespace`
-of the launch file) there are `/lab1/cmd_vel`, `/lab1/anna/odom` of several robots, `/lab1/simulator/pause` and
+of the launch file) there are `/lab1/cmd_vel`, `/lab1/anna/odom` with several robots, `/lab1/simulator/pause` and
 `/lab1/aseba_runtime`. Simulator, runtime, bridge and page find each other within one namespace; the page also finds a
 simulator below the namespace of its bridge.
 
@@ -62,17 +64,17 @@ ros2 topic pub /lab1/cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.1}}"
 thymio-sim foxglove-layout --namespace lab1 -o lab1.json
 ```
 
-Two suites in two namespaces of one domain share what is global in ROS, and nothing else:
+Two suites in two namespaces of one domain share only the global names of ROS:
 
-- `/clock`: two simulators must not both publish it. Start all nodes of the second suite, those of students too, with
+- `/clock`: only one simulator may publish it. Start all nodes of the second suite, including those of students, with
   `-r /clock:=/lab2/clock`.
-- `/tf` and `/tf_static`: frames of the same name would be mixed up, and frames do not follow the namespace. With
-  `namespaced_tf:=true` they are on `tf` and `tf_static` in the robot's namespace; or give them other names by
-  `tf_prefix:=lab2` and `map_frame:=lab2/map`.
+- `/tf` and `/tf_static`: frames do not follow the namespace, so frames of the same name would conflict. With
+  `namespaced_tf:=true` they are published on `tf` and `tf_static` in the namespace of the robot. Alternatively, rename
+  them with `tf_prefix:=lab2` and `map_frame:=lab2/map`.
 - `/diagnostics`, `/rosout` and `/parameter_events` are meant to be shared: entries name their node
   (`lab1/simulator: pace`).
 
-Aseba programs of two namespaces do not hear each other, unless both runtimes have the remapping
+Aseba programs in different namespaces do not exchange events unless both runtimes have the remapping
 `-r _aseba/network:=/_aseba/network`.
 
 ## Control of time and world
@@ -87,11 +89,11 @@ ros2 param set /simulator seed 7
 ros2 param set /simulator playground maze
 ```
 
-A playground is a shipped name, a file or the JSON text itself; one that is wrong is refused with file, key, what was
-found and what was expected, and the old world goes on. A new seed or playground begins at time 0, as `reset` does:
-`/clock` goes back, and nodes drop what they remember.
+A playground is a shipped name, a file or the JSON text itself. An invalid one is rejected with file, key, found and
+expected value, and the current world continues. A new seed or playground restarts at time 0, like `reset`: `/clock`
+jumps back, and nodes discard their history.
 
-Robots come, go and are put somewhere by services that answer each name with a reason:
+Robots are added, removed and moved by services that return a result with a reason for each name:
 
 ```sh
 ros2 service call /simulator/spawn rcl_interfaces/srv/SetParameters \\
@@ -102,17 +104,17 @@ ros2 service call /simulator/get_poses rcl_interfaces/srv/GetParameters "{names:
 ros2 service call /simulator/remove rcl_interfaces/srv/SetParameters "{parameters: [{name: anna}]}"
 ```
 
-Names are those of the playground (`robot` in `/simulator/_state`), also of movable things. A viewer that drags
-publishes `/simulator/_place`, with the name, or a robot's frame, in `child_frame_id`; or a robot's `initialpose`,
-as the tools of RViz and Foxglove do. All of it works through the Foxglove bridge too. What is moved while time
-stands still is there after the next step.
+Names are those of the playground (`robot` in `/simulator/_state`), including names of objects. A viewer that
+drags publishes on `/simulator/_place`, with the name, or a robot's frame, in `child_frame_id`; or on a robot's
+`initialpose`, like the tools of RViz and Foxglove. All of this works through the Foxglove bridge too. While the
+simulation is paused, a new pose takes effect with the next step.
 """
 
 DRIVER = """\
 ## Topics with types of `thymio_msgs`
 
-Of a robot, with the parameter `driver_topics` where the driver's package is installed; their twins of standard types,
-which are there everywhere, are `_comm/received` with `_raw/comm`, `led/circle` and `_led/…`, `_led/gesture/…`,
+These topics of a robot require the parameter `driver_topics` and the driver's package. Their counterparts with standard
+types are always available: `_comm/received` with `_raw/comm`, `led/circle` and `_led/…`, `_led/gesture/…`,
 `sound/tone` and `_sound/system`.
 """
 
@@ -120,72 +122,72 @@ HIDDEN = """\
 ## Hidden topics
 
 `ros2 topic list` shows what a first node needs: wheels and odometry, distance, ground, acceleration, buttons, the
-lights of the body and the circle, a tone, the pen, the events of the program; and the names that the tools of ROS
+lights of the body and the circle, a tone, the pen, the events of the program, and the names that ROS tools
 expect (`/tf`, `/clock`, `/diagnostics`, `joint_states`, `robot_description`, `initialpose`). With one robot these
 are at most 40 topics.
 
 All other topics have hidden names: a word of the name begins with `_`. Hidden are
 
-- what only a simulation has: `_ground_truth/odom`, `_collision`, the operator's hand (`_press/…`), what lights,
-  loudspeaker and pen show (`_led/state`, `_sound/state`, `_pen/trail`), the playground (`_markers`);
-- other forms of what is shown: Aseba's integers (`_raw/…`, `_motor/target`), `_wheels/command`,
+- topics that only a simulation has: `_ground_truth/odom`, `_collision`, the operator's stimuli (`_press/…`), the output
+  of lights, loudspeaker and pen (`_led/state`, `_sound/state`, `_pen/trail`), the playground (`_markers`);
+- other representations of visible topics: Aseba's integers (`_raw/…`, `_motor/target`), `_wheels/command`,
   `_proximity/laser`, `_proximity/rays`, `_buttons`;
-- what few programs need: the other lights, gestures, sounds, microphone, remote control, taps, infrared
+- topics that few programs need: the other lights, gestures, sounds, microphone, remote control, taps, infrared
   communication, temperature, battery;
-- what our nodes, the page and editors tell each other: `_aseba/…`, `/simulator/_state` and the like.
+- internal topics between our nodes, the page and editors: `_aseba/…`, `/simulator/_state` and the like.
 
-They work as any other topic: name them in full (`ros2 topic echo /_raw/ground`), and list them with
-`ros2 topic list --include-hidden-topics`. Foxglove, Lichtblick and the page see them; `ros2 bag record --all` needs
-`--include-hidden-topics`. The topics are always there, whether somebody listens or not.
+They work like all other topics. Use their full names (`ros2 topic echo /_raw/ground`), and list them with
+`ros2 topic list --include-hidden-topics`. Foxglove, Lichtblick and the page show them; `ros2 bag record --all` needs
+`--include-hidden-topics`. The topics exist whether or not they have subscribers.
 """
 
 INTERFACES = """\
 ## Services of `simulation_interfaces`
 
-Where that package is installed (`apt install ros-jazzy-simulation-interfaces`; no wheel has it), the simulator has
-its services, too, so that tools for other simulators of ROS work here. They answer with a code and a reason; tags,
-bounds and named poses, which the package knows besides, are refused as unsupported.
+If that package is installed (`apt install ros-jazzy-simulation-interfaces`; there is no wheel), the simulator also
+offers its services, so that tools for other ROS simulators work here. Responses contain a result code and a reason.
+Tags, bounds and named poses, which the package also defines, are rejected as unsupported.
 """
 
 RVIZ = """\
 ## RViz
 
 `ros2 launch thymio_sim_ros thymio.launch.py rviz:=true` also starts RViz with our configuration: robot, playground,
-movable things, proximity, odometry; frames, rays, the true path, pen and map wait to be ticked. The tool «2D Pose
-Estimate» puts the robot somewhere. For the robot `anna` of several:
+objects, proximity and odometry; displays for frames, rays, the true path, pen and map are there but disabled. The tool
+«2D Pose Estimate» moves the robot. For the robot `anna` of several:
 
 ```sh
 ros2 run rviz2 rviz2 -d $(ros2 pkg prefix --share thymio_sim_ros)/rviz/thymio.rviz \\
     --ros-args -p use_sim_time:=true -r __ns:=/anna
 ```
 
-RViz comes with a ROS installation, not with the wheels. What the commands of `ros2` answer on these nodes, and which
-lines they need where: [ros2-tools.md](ros2-tools.md).
+RViz comes with a ROS installation, not with the wheels. For the `ros2` commands on these nodes and the environment
+setup that they need, see [ros2-tools.md](ros2-tools.md).
 """
 
 QUALITY = """\
-All are reliable and keep the last messages. With `qos_overrides.<topic>.publisher.reliability:=best_effort` a
-sensor's topic is best effort, as wireless class rooms want it; `history`, `depth` and `durability` likewise.
+All profiles are reliable with history "keep last". `qos_overrides.<topic>.publisher.reliability:=best_effort` makes a
+sensor topic best effort, which suits wireless classrooms; `history`, `depth` and `durability` work the same way.
 """
 
 ALL_IN_ONE = """\
 ## Parameters of the combined process
 
 `ros2 run thymio_sim_ros thymio` runs all nodes in one process. A parameter goes to the nodes that it belongs to; to
-choose one node, put its name in front (`-p foxglove_bridge:port:=8766`). A parameter that no node has is named in a
-warning, with the nearest that there is.
+select one node, prefix its name (`-p foxglove_bridge:port:=8766`). A parameter that no node has causes a warning, which
+suggests the most similar name.
 
 ```sh
 ros2 run thymio_sim_ros thymio --ros-args -p playground:=maze -p port:=8081 -p foxglove_port:=8766 -p script.path:=none
 ```
 
-Besides, `use_sim_time` is that of all but the simulator, `qos_overrides.…` of the simulator, and
-`script.constants.<NAME>` and `robots.<name>.…` of the runtime. `thymio-sim --ros-args …` takes the same.
+In addition, `use_sim_time` goes to all nodes but the simulator, `qos_overrides.…` to the simulator, and
+`script.constants.<NAME>` and `robots.<name>.…` to the runtime. `thymio-sim --ros-args …` accepts the same parameters.
 """
 
 AFTER = """\
 ## From Aseba to ROS
 
-Where a program's variables, events and functions are on topics; `_raw/…` carries the integers that the program sees.
-The topics of events between programs and nodes: [aseba_ros.md](aseba_ros.md).
+The topics of a program's variables, events and native functions; `_raw/…` carries the integers that the program sees.
+For the topics of events between programs and nodes see [aseba_ros.md](aseba_ros.md).
 """

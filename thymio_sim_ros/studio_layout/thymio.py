@@ -16,7 +16,7 @@ __all__ = ["Names", "describe"]
 _PROXIMITY = ("left", "center_left", "center", "center_right", "right", "rear_left", "rear_right")
 _COLORS = ("#4e98e2", "#f5774d", "#f7df71", "#5cd6a9", "#a395e2", "#df9bd9", "#808080")
 _BUTTONS = ("forward", "left", "center", "right", "backward")
-_GREEN, _GREY = "#68e24a", "#a0a0a0"
+_GREEN, _GRAY = "#68e24a", "#a0a0a0"
 _HIDDEN = {"visible": False}
 
 # Speeds of teleop: half of what a Thymio can do, and a turn in six seconds.
@@ -260,7 +260,7 @@ def _button(names: Names, name: str) -> Panel:
     config = {
         "path": f"{names.topic(f'buttons/{name}')}.data",
         "style": "bulb",
-        "fallbackColor": _GREY,
+        "fallbackColor": _GRAY,
         "fallbackLabel": name,
         "rules": rules,
     }

@@ -18,17 +18,17 @@ from rclpy.task import Future
 from rclpy.time import Time
 
 from thymio_sim_ros.ros.compat import tf2_messages
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
-from thymio_sim_ros.tf.buffer_core import CACHE_NS, BufferCore, Motion, Placed
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
+from thymio_sim_ros.tf.buffer_core import CACHE_NS, BufferCore, RigidTransform, StampedTransform
 from thymio_sim_ros.tf.errors import TransformException, TypeException
-from thymio_sim_ros.tf.geometry import TRANSFORMERS, motion_of
+from thymio_sim_ros.tf.geometry import TRANSFORMERS, transform_of
 
 __all__ = ["Buffer", "StaticTransformBroadcaster", "TransformBroadcaster", "TransformListener"]
 
 NOW = Duration()
 DYNAMIC = QoSProfile(depth=100)
 STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Buffer:
@@ -42,20 +42,20 @@ class Buffer:
         """`node`: whose clock times of waiting are measured by; wall time without one."""
         self._core = BufferCore(CACHE_NS if cache_time is None else cache_time.nanoseconds)
         self._clock = Clock() if node is None else node.get_clock()
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
         self._waiting: dict[Future, Callable[[], bool]] = {}
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
         """Keep a transform. TransformException for one that cannot be, or is too old."""
-        self._keep([_placed(transform)], authority, is_static=False)
+        self._store([_placed(transform)], authority, is_static=False)
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
         """Keep a transform that holds always."""
-        self._keep([_placed(transform)], authority, is_static=True)
+        self._store([_placed(transform)], authority, is_static=True)
 
     def clear(self) -> None:
         """Forget all but static transforms."""
-        with self._news:
+        with self._changed:
             self._core.clear()
 
     def lookup_transform(
@@ -176,24 +176,24 @@ class Buffer:
 
     def all_frames_as_string(self) -> str:
         """A line for each frame with a parent."""
-        with self._news:
+        with self._changed:
             return self._core.as_text()
 
     def all_frames_as_yaml(self) -> str:
         """For each frame its parent, who sends it, how often, and how much is kept."""
-        with self._news:
+        with self._changed:
             return self._core.as_yaml()
 
-    def _keep(self, transforms: Iterable[Placed], authority: str, *, is_static: bool) -> None:
+    def _store(self, transforms: Iterable[StampedTransform], authority: str, *, is_static: bool) -> None:
         """Keep all that can be kept; the first fault is raised then."""
         fault = None
-        with self._news:
+        with self._changed:
             for placed in transforms:
                 try:
                     self._core.set_transform(placed, authority, is_static=is_static)
                 except TransformException as error:
                     fault = fault or error
-            self._news.notify_all()
+            self._changed.notify_all()
             done = [future for future, is_there in self._waiting.items() if future.cancelled() or is_there()]
             for future in done:
                 del self._waiting[future]
@@ -202,13 +202,15 @@ class Buffer:
         if fault is not None:
             raise fault
 
-    def _found(self, look: Callable[[], Placed], timeout: Duration) -> TransformStamped:
-        with self._news:
+    def _found(self, look: Callable[[], StampedTransform], timeout: Duration) -> TransformStamped:
+        with self._changed:
             self._wait(look, timeout)
             return _message(look())
 
-    def _answer(self, look: Callable[[], Placed], timeout: Duration, is_explained: bool) -> bool | tuple[bool, str]:
-        with self._news:
+    def _answer(
+        self, look: Callable[[], StampedTransform], timeout: Duration, is_explained: bool
+    ) -> bool | tuple[bool, str]:
+        with self._changed:
             self._wait(look, timeout)
             try:
                 look()
@@ -216,18 +218,18 @@ class Buffer:
                 return (False, str(error)) if is_explained else False
         return (True, "") if is_explained else True
 
-    def _wait(self, look: Callable[[], Placed], timeout: Duration) -> None:
+    def _wait(self, look: Callable[[], StampedTransform], timeout: Duration) -> None:
         """Until there is a transform, or so much time has passed on the clock."""
         end_ns = self._clock.now().nanoseconds + timeout.nanoseconds
         while timeout.nanoseconds > 0 and not _is_there(look):
             left_s = (end_ns - self._clock.now().nanoseconds) / 1e9
             if left_s <= 0.0 or left_s > timeout.nanoseconds / 1e9 + 3.0:  # time went back
                 return
-            self._news.wait(min(left_s, LOOK_S))
+            self._changed.wait(min(left_s, POLL_S))
 
-    def _future(self, look: Callable[[], Placed]) -> Future:
+    def _future(self, look: Callable[[], StampedTransform]) -> Future:
         future = Future()
-        with self._news:
+        with self._changed:
             if not _is_there(look):
                 self._waiting[future] = lambda: _is_there(look)
                 return future
@@ -235,7 +237,7 @@ class Buffer:
         return future
 
 
-LOOK_S = 0.05
+POLL_S = 0.05
 """Wall time between two looks at a clock that may be a simulator's."""
 
 
@@ -257,7 +259,7 @@ class TransformListener:
         tf_static_topic: str = "/tf_static",
     ) -> None:
         self.buffer, self.node = buffer, node
-        self._warn = Warner(node)
+        self._warn = ThrottledLog(node)
         self._own: Node | None = None
         if spin_thread:
             self._own = Node(
@@ -287,11 +289,11 @@ class TransformListener:
 
     def callback(self, data: bytes) -> None:
         """What came on `/tf`."""
-        self._take(data, is_static=False)
+        self._on_transforms(data, is_static=False)
 
     def static_callback(self, data: bytes) -> None:
         """What came on `/tf_static`."""
-        self._take(data, is_static=True)
+        self._on_transforms(data, is_static=True)
 
     def unregister(self) -> None:
         """Listen no more."""
@@ -310,13 +312,13 @@ class TransformListener:
         except ExternalShutdownException:
             return
 
-    def _take(self, data: bytes, *, is_static: bool) -> None:
+    def _on_transforms(self, data: bytes, *, is_static: bool) -> None:
         try:
             found = [
-                Placed(one.stamp_ns, one.frame, one.child, Motion(one.translation, one.rotation))
+                StampedTransform(one.stamp_ns, one.frame, one.child, RigidTransform(one.translation, one.rotation))
                 for one in tf2_messages.decode(data)
             ]
-            self.buffer._keep(found, "default_authority", is_static=is_static)
+            self.buffer._store(found, "default_authority", is_static=is_static)
         except (tf2_messages.TransformDataError, TransformException) as error:
             self._warn("tf:", f"{error}; does the node use the simulator's time (use_sim_time:=true)?")
 
@@ -343,7 +345,7 @@ class StaticTransformBroadcaster:
     """Sends transforms that hold always on `/tf_static`; who comes later hears all of them."""
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf_static", qos or LATCHED)
+        self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf_static", qos or TRANSIENT_LOCAL)
         self._sent: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
@@ -364,12 +366,12 @@ def _encoded(transforms: Iterable[TransformStamped]) -> bytes:
     ])  # fmt: skip
 
 
-def _placed(transform: TransformStamped) -> Placed:
+def _placed(transform: TransformStamped) -> StampedTransform:
     stamp_ns = _ns(transform.header.stamp)
-    return Placed(stamp_ns, transform.header.frame_id, transform.child_frame_id, motion_of(transform))
+    return StampedTransform(stamp_ns, transform.header.frame_id, transform.child_frame_id, transform_of(transform))
 
 
-def _message(placed: Placed) -> TransformStamped:
+def _message(placed: StampedTransform) -> TransformStamped:
     message = TransformStamped(child_frame_id=placed.child)
     message.header.frame_id = placed.frame
     message.header.stamp = Time(nanoseconds=placed.stamp_ns).to_msg()
@@ -383,7 +385,7 @@ def _ns(time: Time | TimeMessage) -> int:
     return int(time.nanoseconds if isinstance(time, Time) else Time.from_msg(time).nanoseconds)
 
 
-def _is_there(look: Callable[[], Placed]) -> bool:
+def _is_there(look: Callable[[], StampedTransform]) -> bool:
     try:
         look()
     except TransformException:

@@ -22,7 +22,7 @@ from thymio_sim_ros.tf.errors import (
     TransformException,
 )
 
-__all__ = ["CACHE_NS", "IDENTITY", "LATEST_NS", "BufferCore", "Motion", "OldDataError", "Placed"]
+__all__ = ["CACHE_NS", "IDENTITY", "LATEST_NS", "BufferCore", "OldDataError", "RigidTransform", "StampedTransform"]
 
 Vector: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
@@ -41,26 +41,26 @@ class OldDataError(TransformException):
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class RigidTransform:
     """A rotation, then a translation: a unit quaternion x, y, z, w, and m."""
 
     translation: Vector = (0.0, 0.0, 0.0)
     rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
-    def __mul__(self, other: Motion) -> Motion:
+    def __mul__(self, other: RigidTransform) -> RigidTransform:
         """What `other` does, and then this."""
-        x, y, z = self.turned(other.translation)
+        x, y, z = self.rotate(other.translation)
         dx, dy, dz = self.translation
-        return Motion((x + dx, y + dy, z + dz), multiplied(self.rotation, other.rotation))
+        return RigidTransform((x + dx, y + dy, z + dz), quaternion_product(self.rotation, other.rotation))
 
-    def inverse(self) -> Motion:
+    def inverse(self) -> RigidTransform:
         """The way back."""
         x, y, z, w = self.rotation
-        back = Motion(rotation=(-x, -y, -z, w))
-        dx, dy, dz = back.turned(self.translation)
-        return Motion((-dx, -dy, -dz), back.rotation)
+        back = RigidTransform(rotation=(-x, -y, -z, w))
+        dx, dy, dz = back.rotate(self.translation)
+        return RigidTransform((-dx, -dy, -dz), back.rotation)
 
-    def turned(self, vector: Vector) -> Vector:
+    def rotate(self, vector: Vector) -> Vector:
         """A vector after the rotation alone."""
         qx, qy, qz, qw = self.rotation
         x, y, z = vector
@@ -73,28 +73,28 @@ class Motion:
 
     def moved(self, point: Vector) -> Vector:
         """A point after both."""
-        x, y, z = self.turned(point)
+        x, y, z = self.rotate(point)
         dx, dy, dz = self.translation
         return (x + dx, y + dy, z + dz)
 
-    def towards(self, other: Motion, part: float) -> Motion:
+    def interpolate(self, other: RigidTransform, part: float) -> RigidTransform:
         """A part 0…1 of the way to another."""
         (x, y, z), (u, v, w) = self.translation, other.translation
         place = (x + part * (u - x), y + part * (v - y), z + part * (w - z))
-        return Motion(place, slerp(self.rotation, other.rotation, part))
+        return RigidTransform(place, slerp(self.rotation, other.rotation, part))
 
 
-IDENTITY = Motion()
+IDENTITY = RigidTransform()
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
+class StampedTransform:
     """A frame `child` in another, at a time; `motion` takes coordinates of the child to those of `frame`."""
 
     stamp_ns: int
     frame: str
     child: str
-    motion: Motion
+    motion: RigidTransform
 
 
 @dataclass(slots=True)
@@ -103,7 +103,7 @@ class _Cache:
 
     is_static: bool
     authority: str
-    kept: list[Placed] = field(default_factory=list)
+    kept: list[StampedTransform] = field(default_factory=list)
 
 
 class BufferCore:
@@ -114,7 +114,7 @@ class BufferCore:
         self._caches: dict[str, _Cache] = {}
         self._frames: dict[str, None] = {}
 
-    def set_transform(self, placed: Placed, authority: str = "unknown", *, is_static: bool = False) -> None:
+    def set_transform(self, placed: StampedTransform, authority: str = "unknown", *, is_static: bool = False) -> None:
         """Keep a transform. InvalidArgumentException for one that cannot be, OldDataError for one that is too old."""
         placed = _checked(placed)
         self._frames |= {placed.frame: None, placed.child: None}
@@ -143,7 +143,7 @@ class BufferCore:
             if not cache.is_static:
                 cache.kept.clear()
 
-    def lookup(self, target: str, source: str, time_ns: int = LATEST_NS) -> Placed:
+    def lookup(self, target: str, source: str, time_ns: int = LATEST_NS) -> StampedTransform:
         """Where `source` is in `target`: takes coordinates of source to target.
 
         InvalidArgumentException, LookupException, ConnectivityException, ExtrapolationException.
@@ -152,7 +152,7 @@ class BufferCore:
             self._check_known(name, role)
         if target == source:
             latest = self._latest_ns(source) if time_ns == LATEST_NS else time_ns
-            return Placed(latest, target, source, IDENTITY)
+            return StampedTransform(latest, target, source, IDENTITY)
         if time_ns == LATEST_NS:
             time_ns = self._latest_common_ns(target, source)
         up, its_error = self._chain(source, time_ns)
@@ -164,13 +164,13 @@ class BufferCore:
                 if found:
                     raise ExtrapolationException(f"{found}, {way}")
             raise self._unconnected(target, source)
-        return Placed(time_ns, target, source, down[meeting].inverse() * up[meeting])
+        return StampedTransform(time_ns, target, source, down[meeting].inverse() * up[meeting])
 
-    def lookup_full(self, target: str, target_ns: int, source: str, source_ns: int, fixed: str) -> Placed:
+    def lookup_full(self, target: str, target_ns: int, source: str, source_ns: int, fixed: str) -> StampedTransform:
         """Where `source` was at a time in `target` at another time; `fixed` does not move in between."""
         self._check_known(fixed, "fixed_frame")
         first, second = self.lookup(fixed, source, source_ns), self.lookup(target, fixed, target_ns)
-        return Placed(second.stamp_ns, target, source, second.motion * first.motion)
+        return StampedTransform(second.stamp_ns, target, source, second.motion * first.motion)
 
     def frames(self) -> tuple[str, ...]:
         """Every frame that was named, in order of appearance."""
@@ -241,7 +241,7 @@ class BufferCore:
         stamps = [cache.kept[-1].stamp_ns for way in on_the_way for _, cache in way if not cache.is_static]
         return min(stamps, default=LATEST_NS)
 
-    def _chain(self, frame: str, time_ns: int) -> tuple[dict[str, Motion], str]:
+    def _chain(self, frame: str, time_ns: int) -> tuple[dict[str, RigidTransform], str]:
         """Every frame above one at a time, and what takes its coordinates there; why it ends early, or nothing."""
         motion, found = IDENTITY, {frame: IDENTITY}
         for _ in range(_DEPTH):
@@ -259,9 +259,9 @@ class BufferCore:
 _STAMP = attrgetter("stamp_ns")
 
 
-def _at(cache: _Cache, time_ns: int) -> tuple[Placed | None, str]:
+def _at(cache: _Cache, time_ns: int) -> tuple[StampedTransform | None, str]:
     """What is known of a frame at a time, or why nothing is."""
-    kept: Sequence[Placed] = cache.kept
+    kept: Sequence[StampedTransform] = cache.kept
     if not kept:
         return None, "Lookup would require extrapolation: nothing is kept since time went back"
     if cache.is_static or time_ns == LATEST_NS:
@@ -286,10 +286,10 @@ def _at(cache: _Cache, time_ns: int) -> tuple[Placed | None, str]:
     if earlier.frame != later.frame:
         return earlier, ""
     part = (time_ns - earlier.stamp_ns) / (later.stamp_ns - earlier.stamp_ns)
-    return replace(earlier, stamp_ns=time_ns, motion=earlier.motion.towards(later.motion, part)), ""
+    return replace(earlier, stamp_ns=time_ns, motion=earlier.motion.interpolate(later.motion, part)), ""
 
 
-def _checked(placed: Placed) -> Placed:
+def _checked(placed: StampedTransform) -> StampedTransform:
     """The same without a slash before its names; InvalidArgumentException for one that is no transform."""
     frame, child = placed.frame.removeprefix("/"), placed.child.removeprefix("/")
     for role, name in (("frame_id", frame), ("child_frame_id", child)):
@@ -315,7 +315,7 @@ def _check_name(name: str, what: str) -> None:
         raise InvalidArgumentException(f"\"{name}\" {what}: frame ids in tf2 cannot start with a '/'")
 
 
-def multiplied(one: Quaternion, other: Quaternion) -> Quaternion:
+def quaternion_product(one: Quaternion, other: Quaternion) -> Quaternion:
     """The rotation `other`, then `one`; x, y, z, w."""
     x, y, z, w = one
     a, b, c, d = other

@@ -16,7 +16,7 @@ from geometry_msgs.msg import (
     Vector3Stamped,
 )
 
-from thymio_sim_ros.tf.buffer_core import Motion
+from thymio_sim_ros.tf.buffer_core import RigidTransform
 
 __all__ = [
     "TRANSFORMERS",
@@ -24,32 +24,32 @@ __all__ = [
     "do_transform_pose",
     "do_transform_pose_stamped",
     "do_transform_vector3",
-    "motion_of",
+    "transform_of",
 ]
 
 
-def motion_of(transform: TransformStamped) -> Motion:
+def transform_of(transform: TransformStamped) -> RigidTransform:
     """What a message says."""
     t, q = transform.transform.translation, transform.transform.rotation
-    return Motion((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
+    return RigidTransform((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
 
 
 def do_transform_point(point: PointStamped, transform: TransformStamped) -> PointStamped:
     """A point in the frame of the transform's header."""
-    x, y, z = motion_of(transform).moved((point.point.x, point.point.y, point.point.z))
+    x, y, z = transform_of(transform).moved((point.point.x, point.point.y, point.point.z))
     return PointStamped(header=transform.header, point=Point(x=x, y=y, z=z))
 
 
 def do_transform_vector3(vector3: Vector3Stamped, transform: TransformStamped) -> Vector3Stamped:
     """A direction in that frame: turned, not translated."""
-    x, y, z = motion_of(transform).turned((vector3.vector.x, vector3.vector.y, vector3.vector.z))
+    x, y, z = transform_of(transform).rotate((vector3.vector.x, vector3.vector.y, vector3.vector.z))
     return Vector3Stamped(header=transform.header, vector=Vector3(x=x, y=y, z=z))
 
 
 def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
     """A pose, without a header, in that frame."""
     p, q = pose.position, pose.orientation
-    moved = motion_of(transform) * Motion((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+    moved = transform_of(transform) * RigidTransform((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
     (x, y, z), (qx, qy, qz, qw) = moved.translation, moved.rotation
     return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
 

@@ -8,7 +8,7 @@ from std_msgs.msg import Int16MultiArray, MultiArrayDimension
 from std_srvs.srv import Trigger
 
 from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
-from thymio_sim_ros.ros.aseba.bus import MOST_ROUNDS
+from thymio_sim_ros.ros.aseba.bus import MAX_ROUNDS
 from thymio_sim_ros.ros.aseba.network import TOPIC
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 
@@ -62,9 +62,9 @@ def test_an_event_that_only_another_robot_declares_reaches_it(ros, runtime):
 @pytest.mark.parametrize(
     ("message", "found"),
     [
-        (event("ping", 1, 2, 3), "event ping refused: 3 values found, expected at most 2"),
-        (event("pong"), "event pong refused: the program declares ping"),
-        (event("menu.start", 1), "event menu.start refused: it stays inside the robot"),
+        (event("ping", 1, 2, 3), "event ping rejected: found 3 values, expected at most 2"),
+        (event("pong"), "event pong rejected: the program declares ping"),
+        (event("menu.start", 1), "event menu.start rejected: internal events stay in the robot"),
         (Int16MultiArray(data=[1]), "layout.dim[0].label must be the name of the event"),
     ],
 )
@@ -83,8 +83,8 @@ def test_one_warning_does_not_hide_another(ros, runtime):
     for number in range(20):
         emit.publish(event("pong", number))
     emit.publish(event("ping", 1, 2, 3))
-    logged(ros, logs, "event ping refused: 3 values found, expected at most 2")
-    assert sum("event pong refused" in log.msg for log in logs) == 1
+    logged(ros, logs, "event ping rejected: found 3 values, expected at most 2")
+    assert sum("event pong rejected" in log.msg for log in logs) == 1
 
 
 def test_an_event_whose_name_is_too_long_for_a_topic_has_none(ros, runtime):
@@ -112,14 +112,14 @@ def test_robots_that_answer_each_other_for_ever_let_others_have_their_turn(ros, 
         program("var n = 0\nonevent ball\nn = n + 1\nemit ball\nonevent button.left\nemit ball", ("ball", 0)),
         **TWO,
     )
-    anna, bert = (ports.device for ports in node.robots)
+    anna, bert = (endpoints.device for endpoints in node.robots)
     press_left(ros, "anna")
     ros.until(lambda: bert.get_variable("n")[0] > 0)
-    assert anna.get_variable("n")[0] + bert.get_variable("n")[0] <= MOST_ROUNDS
+    assert anna.get_variable("n")[0] + bert.get_variable("n")[0] <= MAX_ROUNDS
     before = bert.get_variable("n")[0]
-    assert any(ports.is_busy for ports in node.robots)
-    for ports in node.robots:
-        ports.run()
+    assert any(endpoints.is_busy for endpoints in node.robots)
+    for endpoints in node.robots:
+        endpoints.run()
     assert bert.get_variable("n")[0] > before
     assert ros.call(Trigger, "/anna/aseba/stop").success
 
@@ -138,7 +138,7 @@ def test_events_that_share_a_name_have_the_generic_pair_alone(ros, runtime):
     logs = ros.collect(Log, "/rosout")
     source = program("onevent button.left\nemit a.b 1", ("a.b", 1), ("a_b", 1))
     assert set_parameters(ros, {"script.source": source}).successful
-    logged(ros, logs, "event a.b shares the topic name a_b with another: use _aseba/events and _aseba/emit")
+    logged(ros, logs, "event a.b has the same topic name a_b as another: use _aseba/events and _aseba/emit")
     anything = ros.collect(Int16MultiArray, "/_aseba/events")
     assert ros.node.count_publishers("/aseba/events/a_b") == 0
     ros.publisher(Int16MultiArray, "/_raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
@@ -236,6 +236,6 @@ def test_nonsense_on_the_network_is_refused(ros, runtime):
     logs = ros.collect(Log, "/rosout")
     publisher = ros.publisher(Int16MultiArray, TOPIC)
     publisher.publish(event("ping", 1))
-    logged(ros, logs, f"{TOPIC} refused: 1 labels and 1 values found")
+    logged(ros, logs, f"{TOPIC} rejected: found 1 labels and 1 values")
     status = Status(ros)
     ros.until(lambda: status["state"] == "running")

@@ -9,7 +9,7 @@ import pytest
 from std_msgs.msg import Float32MultiArray, Int16MultiArray
 
 from thymio_sim_ros.ros.aseba import output_endpoints
-from thymio_sim_ros.ros.aseba.output_endpoints import FRESH_S, OutputPorts
+from thymio_sim_ros.ros.aseba.output_endpoints import FRESH_S, OutputEndpoints
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed
 
@@ -33,69 +33,69 @@ class Robot:
 
 
 @pytest.fixture
-def ports(ros):
+def outputs(ros):
     """The outputs of a robot without a name."""
-    ports = OutputPorts(ros.node, RobotNames(""), has_driver=False)
-    ports.begin()
-    yield ports
-    ports.close()
+    outputs = OutputEndpoints(ros.node, RobotNames(""), has_driver=False)
+    outputs.start_program()
+    yield outputs
+    outputs.close()
 
 
-def look(ros, ports):
+def resend(ros, outputs):
     """Twice: the first look sees who has come, the second one that no more come."""
     for _ in range(2):
-        ports.look()
+        outputs.resend()
     ros.settle()
     ros.deliver()
 
 
-def test_who_comes_later_is_told_once_what_nobody_heard(ros, ports):
+def test_who_comes_later_is_told_once_what_nobody_heard(ros, outputs):
     for command in (MotorTargets(1, 2), PlayTone(440.0, None), MotorTargets(3, 4)):
-        ports.send(command)
+        outputs.send(command)
     robot = Robot(ros)
-    look(ros, ports)
-    look(ros, ports)
+    resend(ros, outputs)
+    resend(ros, outputs)
     assert sorted(robot.heard) == [[3, 4], [440.0, 0.0]]
 
 
-def test_lights_that_were_set_one_by_one_are_all_told_in_order(ros, ports):
+def test_lights_that_were_set_one_by_one_are_all_told_in_order(ros, outputs):
     for command in (SetLed(1, 10), SetLed(2, 20), SetLed(1, 30)):
-        ports.send(command)
+        outputs.send(command)
     robot = Robot(ros, ["_led/single"])
-    look(ros, ports)
+    resend(ros, outputs)
     assert robot.heard == [[2, 20], [1, 30]]
 
 
-def test_who_hears_everything_hears_nothing_twice(ros, ports):
+def test_who_hears_everything_hears_nothing_twice(ros, outputs):
     robot = Robot(ros)
-    look(ros, ports)
+    resend(ros, outputs)
     for command in (MotorTargets(1, 2), PlayTone(440.0, None)):
-        ports.send(command)
-    look(ros, ports)
+        outputs.send(command)
+    resend(ros, outputs)
     assert sorted(robot.heard) == [[1, 2], [440.0, 0.0]]
 
 
-def test_a_robot_that_was_started_again_is_told_what_holds(ros, ports):
+def test_a_robot_that_was_started_again_is_told_what_holds(ros, outputs):
     first = Robot(ros)
-    look(ros, ports)
+    resend(ros, outputs)
     for command in (MotorTargets(1, 2), PlayTone(440.0, None)):
-        ports.send(command)
+        outputs.send(command)
     first.leave()
     ros.settle()
-    look(ros, ports)
+    resend(ros, outputs)
     again = Robot(ros)
-    look(ros, ports)
+    resend(ros, outputs)
     assert again.heard == [[1, 2]]
 
 
 @pytest.mark.parametrize(("later_s", "heard"), [(0.0, [[1, 2]]), (FRESH_S, [])])
-def test_beside_one_who_listens_only_the_beginning_is_told_again(ros, ports, monkeypatch, later_s, heard):
+def test_beside_one_who_listens_only_the_beginning_is_told_again(ros, outputs, monkeypatch, later_s, heard):
     """A robot that was killed seems to listen for a while; who looks on later must not move anything."""
     Robot(ros)
-    look(ros, ports)
-    ports.send(MotorTargets(1, 2))
+    resend(ros, outputs)
+    outputs.send(MotorTargets(1, 2))
     now_s = time.monotonic() + later_s
     monkeypatch.setattr(output_endpoints, "time", types.SimpleNamespace(monotonic=lambda: now_s))
     other = Robot(ros)
-    look(ros, ports)
+    resend(ros, outputs)
     assert other.heard == heard

@@ -121,7 +121,7 @@ def test_constants_are_parameters_for_all_and_for_one(ros, runtime):
         ("robots.anna.script.source", 3, "Wrong parameter type, expected 'Type.STRING'"),
         ("robots.absent.script.source", 3, "3 found, expected text"),
         ("robots.absent.script.source", "var 3", "line 1, column 5"),
-        ("scrip.source", "var a", "there is no parameter scrip.source"),
+        ("scrip.source", "var a", "found unknown parameter scrip.source"),
         ("emit_reaches", "all", "expected network or robot"),
         ("script.path", "no_such_program", "no_such_program"),
     ],
@@ -222,25 +222,25 @@ def state(*robots):
 
 def test_robots_that_stay_go_on_when_others_come_and_go(ros, runtime):
     node = runtime("var me = 1", robots=["anna"])
-    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.LATCHED)
+    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
     node.robots[0].device.set_variable("me", (42,))
     simulator.publish(state("anna", "bert"))
     ros.until(lambda: len(node.robots) == 2)
     assert (me(ros, "anna"), me(ros, "bert")) == ([42], [1])
-    assert [ports.number for ports in node.robots] == [1, 2]
+    assert [endpoints.number for endpoints in node.robots] == [1, 2]
     simulator.publish(state("bert"))
     ros.until(lambda: len(node.robots) == 1)
     assert me(ros, "bert") == [1]
     ros.until(lambda: ros.node.count_publishers("/anna/_aseba/status") == 0)
     simulator.publish(state("carl", "bert"))
     ros.until(lambda: len(node.robots) == 2)
-    assert sorted(ports.number for ports in node.robots) == [1, 2]
+    assert sorted(endpoints.number for endpoints in node.robots) == [1, 2]
 
 
 def test_a_robot_that_comes_later_gets_the_program_that_waits_for_it(ros, runtime):
     node = runtime("var me = 1", robots=["anna"])
     assert set_parameters(ros, {"robots.bert.script.source": "var me = 2"}).successful
-    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.LATCHED)
+    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
     simulator.publish(state("anna", "bert"))
     ros.until(lambda: len(node.robots) == 2)
     assert me(ros, "bert") == [2]
@@ -253,7 +253,7 @@ def test_a_robot_that_comes_later_gets_the_program_that_waits_for_it(ros, runtim
 
 def test_a_state_of_the_simulator_that_cannot_be_read_changes_nothing(ros, runtime):
     node = runtime("var me = 1", robots=["anna"])
-    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.LATCHED)
+    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
     simulator.publish(String(data="[]"))
     simulator.publish(state("anna", "bert"))
     ros.until(lambda: len(node.robots) == 2)

@@ -42,8 +42,8 @@ def test_variables_are_written_each_with_its_result(ros, runtime):
     assert reasons[0] == "no variable is called 'nothing'"
     assert reasons[1] == "acc: 2 words found, expected 3"
     assert "40000 found, expected -32768 to 32767" in reasons[2]
-    assert reasons[3] == "list: element 9 found, expected 0 to 3"
-    assert reasons[4] == "list[3]: 2 words found, expected 1"
+    assert reasons[3] == "list: found element 9, expected 0 to 3"
+    assert reasons[4] == "list[3]: found 2 integers, expected 1"
     assert "expected an integer (2) or an integer array (7)" in reasons[5]
     assert get_variables(ros, "count", "list") == [[-5], [5, 60, 7, 8]]
 

@@ -54,9 +54,9 @@ def age(path, seconds):
 def test_a_port_that_is_half_made_and_old_goes(tmp_path, begin):
     broken = tmp_path / "fastrtps_port7413"
     broken.write_bytes(begin)
-    assert shm_cleanup.remove_half_made_ports(tmp_path) == []  # it may be in the making
+    assert shm_cleanup.remove_incomplete_ports(tmp_path) == []  # it may be in the making
     age(broken, 11)
-    assert shm_cleanup.remove_half_made_ports(tmp_path) == [broken]
+    assert shm_cleanup.remove_incomplete_ports(tmp_path) == [broken]
     assert list(tmp_path.iterdir()) == []
 
 
@@ -67,7 +67,7 @@ def test_ports_in_use_and_files_of_others_stay(tmp_path):
     other.write_bytes(bytes(8))
     for path in (port, lock, other):
         age(path, 1000)
-    assert shm_cleanup.remove_half_made_ports(tmp_path) == []
+    assert shm_cleanup.remove_incomplete_ports(tmp_path) == []
 
 
 @pytest.mark.process

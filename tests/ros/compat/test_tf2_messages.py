@@ -33,7 +33,9 @@ from thymio_sim_ros.ros.compat.tf2_messages import TFMessage, Transform, Transfo
 from thymio_sim_ros.testing.ros.domain import reserved
 
 HASH = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"
-LATCHED = QoSProfile(depth=5, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(
+    depth=5, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+)
 BASE = Transform(1_500_000_000, "odom", "base_link", (1.0, -2.0, 0.25), (0.0, 0.0, 0.6, 0.8))
 WHEEL = Transform(1_500_000_001, "base_link", "left_wheel_link", (0.0, 0.04675, 0.022), (0.0, 1.0, 0.0, 0.0))
 
@@ -206,8 +208,8 @@ def test_transforms_arrive_in_another_context_under_the_true_name_and_hash() -> 
 
 def test_a_latched_message_reaches_who_comes_later() -> None:
     with _peers("simulator", "viewer") as (simulator, viewer):
-        simulator.publisher("/tf_static", LATCHED).publish(encode([WHEEL]))
-        viewer.listen("/tf_static", LATCHED)
+        simulator.publisher("/tf_static", TRANSIENT_LOCAL).publish(encode([WHEEL]))
+        viewer.listen("/tf_static", TRANSIENT_LOCAL)
         _until(lambda: bool(viewer.received), simulator, viewer)
     assert viewer.received == [(WHEEL,)]
 
@@ -221,8 +223,8 @@ def test_several_nodes_of_one_process_may_come_and_go() -> None:
         early = first.publisher("/tf")
         first.node.destroy_publisher(early)
         # Latched: the publisher that went may still be counted as one of two when the viewer comes.
-        publishers = [first.publisher("/tf", LATCHED), second.publisher("/tf", LATCHED)]
-        viewer.listen("/tf", LATCHED)
+        publishers = [first.publisher("/tf", TRANSIENT_LOCAL), second.publisher("/tf", TRANSIENT_LOCAL)]
+        viewer.listen("/tf", TRANSIENT_LOCAL)
         publishers[0].publish(encode([BASE]))
         publishers[1].publish(encode([WHEEL]))
         _until(lambda: len(viewer.received) == 2, first, second, viewer)

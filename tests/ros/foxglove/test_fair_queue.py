@@ -16,17 +16,17 @@ def filled(*values):
 
 def test_senders_take_turns_and_each_keeps_its_order():
     queue = filled(("a", 1), ("a", 2), ("a", 3), ("b", 1), ("c", 1), ("c", 2))
-    taken = [queue.take() for _ in range(len(queue))]
+    taken = [queue.pop() for _ in range(len(queue))]
     assert taken == [("a", 1), ("b", 1), ("c", 1), ("a", 2), ("c", 2), ("a", 3)]
     assert len(queue) == 0
 
 
 def test_a_sender_that_is_not_free_is_passed_over():
     queue = filled(("a", 1), ("b", 1))
-    assert queue.take(lambda sender: sender != "a") == ("b", 1)
+    assert queue.pop(lambda sender: sender != "a") == ("b", 1)
     with pytest.raises(IndexError):
-        queue.take(lambda sender: sender != "a")
-    assert queue.take() == ("a", 1)
+        queue.pop(lambda sender: sender != "a")
+    assert queue.pop() == ("a", 1)
 
 
 def test_a_value_can_be_removed_once():

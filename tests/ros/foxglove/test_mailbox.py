@@ -25,24 +25,24 @@ def executor(ros, request):
 
 
 def test_values_of_another_thread_are_handled_in_order_in_the_executors(ros, executor):
-    turned, node = executor
+    rotate, node = executor
     handled = []
     mailbox = Mailbox(node, lambda value: handled.append((value, threading.current_thread())))
     poster = threading.Thread(target=lambda: [mailbox.post(number) for number in range(1000)])
     poster.start()
-    ros.until(lambda: turned.spin_once(timeout_sec=0.05) or len(handled) == 1000)
+    ros.until(lambda: rotate.spin_once(timeout_sec=0.05) or len(handled) == 1000)
     poster.join()
     assert handled == [(number, threading.current_thread()) for number in range(1000)]
 
 
 def test_a_posted_value_wakes_the_executor(executor):
-    turned, node = executor
+    rotate, node = executor
     handled = []
     mailbox = Mailbox(node, handled.append)
-    turned.spin_once(timeout_sec=0)
+    rotate.spin_once(timeout_sec=0)
     threading.Timer(0, mailbox.post, ["bell"]).start()
     while not handled:
-        turned.spin_once(timeout_sec=20.0)
+        rotate.spin_once(timeout_sec=20.0)
     assert handled == ["bell"]
 
 
@@ -107,13 +107,13 @@ def test_heavy_values_fill_the_box_sooner(ros):
 
 def test_a_flood_leaves_the_executor_time_for_others(executor):
     """Each handled value posts the next, so that the box is never empty."""
-    turned, node = executor
+    rotate, node = executor
     others = []
     mailbox = Mailbox(node, lambda value: mailbox.post(value + 1), slice_s=0.001)
-    turned.spin_once(timeout_sec=0)
+    rotate.spin_once(timeout_sec=0)
     mailbox.post(0)
-    turned.create_task(others.append, "served")
+    rotate.create_task(others.append, "served")
     for _ in range(20):
-        turned.spin_once(timeout_sec=1.0)
+        rotate.spin_once(timeout_sec=1.0)
     assert others == ["served"]
     mailbox.close()

@@ -29,7 +29,7 @@ def test_closing_leaves_no_thread_no_port_and_no_node(ros):
     executor.add_node(life.node)
 
     def until(condition, what):
-        ros.until(lambda: life.turn(executor) or condition(), what=what)
+        ros.until(lambda: life.run_once(executor) or condition(), what=what)
 
     with Studio(life.port, until) as studio:
         studio.subscribe(1, "/chat")
@@ -45,8 +45,8 @@ def test_closing_leaves_no_thread_no_port_and_no_node(ros):
 
 def test_the_greeting_says_where_to_connect(bridge):
     life = bridge()
-    assert f"ws://localhost:{life.port}" in life.greeting
-    assert f"ds.url=ws%3A%2F%2Flocalhost%3A{life.port}" in life.greeting
+    assert f"ws://localhost:{life.port}" in life.startup_message
+    assert f"ds.url=ws%3A%2F%2Flocalhost%3A{life.port}" in life.startup_message
 
 
 @pytest.mark.parametrize(
@@ -57,5 +57,5 @@ def test_the_greeting_names_the_address(ros, address, host):
         life = FoxgloveBridge(context=ros.context, port=0, address=address)
     except StartError:
         pytest.skip(f"no {address} here")
-    assert f"ws://{host}:{life.port}" in life.greeting
+    assert f"ws://{host}:{life.port}" in life.startup_message
     life.close()

@@ -17,7 +17,7 @@ from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.ros.foxglove.graph import allow_list
 from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
-from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, announced
+from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, server_capabilities
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 
 
@@ -31,7 +31,7 @@ def certificate(tmp_path):
 def test_a_client_comes_by_tls(ros, bridge, certificate):
     cert, key = certificate
     life = bridge(tls=True, certfile=cert, keyfile=key)
-    assert f"wss://localhost:{life.port}" in life.greeting
+    assert f"wss://localhost:{life.port}" in life.startup_message
     ros.node.create_publisher(Bool, "/flag", 1)
     with Studio(life.port, ros.until, tls=trusting(cert)) as studio:
         assert studio.channel("/flag").schema_name == "std_msgs/msg/Bool"
@@ -62,10 +62,10 @@ def test_a_file_that_is_no_certificate_is_refused(ros, tmp_path):
 
 def test_time_is_announced_exactly_with_simulated_time():
     everything = tuple(Capability)
-    assert announced(FoxgloveParams(), uses_sim_time=True) == everything
-    assert set(everything) - set(announced(FoxgloveParams(), uses_sim_time=False)) == {Capability.TIME}
+    assert server_capabilities(FoxgloveParams(), uses_sim_time=True) == everything
+    assert set(everything) - set(server_capabilities(FoxgloveParams(), uses_sim_time=False)) == {Capability.TIME}
     only = FoxgloveParams(capabilities=("services", "time"))
-    assert announced(only, uses_sim_time=False) == (Capability.SERVICES,)
+    assert server_capabilities(only, uses_sim_time=False) == (Capability.SERVICES,)
 
 
 def test_what_is_not_announced_is_refused(ros, bridge):
@@ -109,25 +109,27 @@ def test_parameters_that_the_bridge_does_not_have_are_told(monkeypatch):
     context.init(args=["--ros-args", "-p", "num_threads:=2", "-p", "use_sim_time:=false", "-p", "port:=0"])
     FoxgloveBridge(context=context).close()
     context.shutdown()
-    assert told == ["parameter num_threads is none of foxglove_bridge and does nothing; see docs/foxglove.md"]
+    assert told == [
+        "parameter num_threads is not a parameter of foxglove_bridge and has no effect; see docs/foxglove.md"
+    ]
 
 
 def test_in_the_network_the_bridge_makes_tokens_of_its_own(ros, bridge, monkeypatch):
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     life = bridge(address="0.0.0.0")
     assert life.tokens.is_required
-    assert f"?token={life.tokens.full}" in life.invitation
-    assert f"?token={life.tokens.read_only}" in life.invitation
+    assert f"?token={life.tokens.full}" in life.access_urls
+    assert f"?token={life.tokens.read_only}" in life.access_urls
     for secret in (life.tokens.full, life.tokens.read_only):
-        assert secret not in life.greeting
+        assert secret not in life.startup_message
 
 
 def test_no_token_is_needed_where_the_user_says_so(bridge, monkeypatch):
     monkeypatch.setenv(TOKEN_VARIABLE, "fromenv")
     life = bridge(address="0.0.0.0", require_token=False)
     assert not life.tokens.is_required
-    assert life.invitation == ""
-    assert "without a token" in life.greeting
+    assert life.access_urls == ""
+    assert "without a token" in life.startup_message
 
 
 def test_tokens_come_from_the_environment(bridge, monkeypatch):

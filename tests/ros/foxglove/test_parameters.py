@@ -41,8 +41,8 @@ def test_a_refused_value_is_told_before_the_answer_with_the_value_in_force(studi
 
 def test_several_values_are_answered_together_each_with_its_own_fate(studio, peer):
     studio.parameter("/peer.program")
-    wishes = ms.Parameter("/peer.speed", 2), ms.Parameter("/peer.program", "bad"), ms.Parameter("/no/node.x", 1)
-    removed, *complaints, answer = set_and_answer(studio, *wishes)
+    debug_options = ms.Parameter("/peer.speed", 2), ms.Parameter("/peer.program", "bad"), ms.Parameter("/no/node.x", 1)
+    removed, *complaints, answer = set_and_answer(studio, *debug_options)
     assert removed == ms.RemoveStatus(("parameter:/peer.speed",))
     assert {status.id for status in complaints} == {"parameter:/peer.program", "parameter:/no/node.x"}
     expected = (ms.Parameter("/peer.speed", 2.0, "float64"), ms.Parameter("/peer.program", "good"))

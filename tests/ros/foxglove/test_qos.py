@@ -8,7 +8,7 @@ import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from thymio_sim_ros.ros.foxglove.graph import allow_list, is_parameter_service, visible, visible_topics
-from thymio_sim_ros.ros.foxglove.qos import Reception, publishing, reception
+from thymio_sim_ros.ros.foxglove.qos import SubscriptionQos, publisher_qos, subscription_qos
 
 
 def endpoint(*, reliable=True, latched=False, depth=0):
@@ -24,26 +24,26 @@ def endpoint(*, reliable=True, latched=False, depth=0):
 @pytest.mark.parametrize(
     ("publishers", "expected"),
     [
-        ([], Reception(is_reliable=False, kept=0, depth=10)),
-        ([endpoint()], Reception(is_reliable=True, kept=0, depth=10)),
-        ([endpoint(), endpoint(reliable=False)], Reception(is_reliable=False, kept=0, depth=10)),
-        ([endpoint(latched=True)], Reception(is_reliable=True, kept=1, depth=10)),
-        ([endpoint(latched=True, depth=3)] * 2, Reception(is_reliable=True, kept=25, depth=10)),
-        ([endpoint(latched=True), endpoint()], Reception(is_reliable=True, kept=0, depth=10)),
-        ([endpoint(depth=12)], Reception(is_reliable=True, kept=0, depth=12)),
-        ([endpoint(latched=True, depth=1000)], Reception(is_reliable=True, kept=25, depth=25)),
+        ([], SubscriptionQos(is_reliable=False, kept=0, depth=10)),
+        ([endpoint()], SubscriptionQos(is_reliable=True, kept=0, depth=10)),
+        ([endpoint(), endpoint(reliable=False)], SubscriptionQos(is_reliable=False, kept=0, depth=10)),
+        ([endpoint(latched=True)], SubscriptionQos(is_reliable=True, kept=1, depth=10)),
+        ([endpoint(latched=True, depth=3)] * 2, SubscriptionQos(is_reliable=True, kept=25, depth=10)),
+        ([endpoint(latched=True), endpoint()], SubscriptionQos(is_reliable=True, kept=0, depth=10)),
+        ([endpoint(depth=12)], SubscriptionQos(is_reliable=True, kept=0, depth=12)),
+        ([endpoint(latched=True, depth=1000)], SubscriptionQos(is_reliable=True, kept=25, depth=25)),
     ],
 )
 def test_subscriptions_suit_all_publishers(publishers, expected):
-    assert reception(publishers, min_depth=10, max_depth=25) == expected
+    assert subscription_qos(publishers, min_depth=10, max_depth=25) == expected
 
 
 def test_a_subscription_may_be_best_effort_whatever_is_published():
-    assert not reception([endpoint()], min_depth=10, max_depth=25, best_effort=True).is_reliable
+    assert not subscription_qos([endpoint()], min_depth=10, max_depth=25, best_effort=True).is_reliable
 
 
 def test_the_profile_says_the_same_to_rclpy():
-    profile = Reception(is_reliable=True, kept=1, depth=7).profile
+    profile = SubscriptionQos(is_reliable=True, kept=1, depth=7).profile
     assert (profile.reliability, profile.durability, profile.depth) == (
         ReliabilityPolicy.RELIABLE,
         DurabilityPolicy.TRANSIENT_LOCAL,
@@ -53,9 +53,9 @@ def test_the_profile_says_the_same_to_rclpy():
 
 def test_a_clients_publisher_is_reliable_and_latched_where_others_expect_it():
     plain, latched = endpoint(depth=1), endpoint(latched=True, depth=1)
-    assert publishing([], [plain]).durability == DurabilityPolicy.VOLATILE
-    assert publishing([], [plain, latched]).durability == DurabilityPolicy.TRANSIENT_LOCAL
-    assert publishing([latched], []).reliability == ReliabilityPolicy.RELIABLE
+    assert publisher_qos([], [plain]).durability == DurabilityPolicy.VOLATILE
+    assert publisher_qos([], [plain, latched]).durability == DurabilityPolicy.TRANSIENT_LOCAL
+    assert publisher_qos([latched], []).reliability == ReliabilityPolicy.RELIABLE
 
 
 def test_names_are_allowed_by_whole_matches():

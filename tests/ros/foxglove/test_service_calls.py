@@ -7,7 +7,7 @@ import sys
 import pytest
 from rclpy.task import Future
 
-from thymio_sim_ros.ros.foxglove.service_calls import Calls
+from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 
 
 class Service:
@@ -66,7 +66,7 @@ def node():
 
 @pytest.fixture
 def calls(node):
-    return Calls(node)
+    return ServiceCalls(node)
 
 
 def test_few_requests_are_on_their_way_at_a_time(node, calls):
@@ -112,7 +112,7 @@ def test_a_callback_may_call_on_and_on_without_recursion(node, calls):
 
 
 def test_calls_end_by_their_deadline_whether_they_were_sent_or_not(node):
-    calls = Calls(node, timeout_s=0.0)
+    calls = ServiceCalls(node, timeout_s=0.0)
     reasons = []
     for number in range(10):
         calls.call(str, "/s", number, lambda response, reason: reasons.append((response, reason)))

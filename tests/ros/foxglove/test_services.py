@@ -12,7 +12,7 @@ from tests.bridge.studio import Studio
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.constants import CDR, JSON
 from thymio_sim_ros.ros.foxglove import node
-from thymio_sim_ros.ros.foxglove.service_calls import Calls
+from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 
 
 def flip(request, response):
@@ -64,7 +64,7 @@ def test_an_undecodable_request_fails_with_a_status_beside_it(ros, studio, encod
 
 
 def test_a_service_that_does_not_answer_fails_in_the_end(ros, bridge, monkeypatch):
-    monkeypatch.setattr(node, "Calls", functools.partial(Calls, timeout_s=0.1))
+    monkeypatch.setattr(node, "ServiceCalls", functools.partial(ServiceCalls, timeout_s=0.1))
     ros.node.create_service(Trigger, "/mute", lambda request, response: pytest.fail("not to be called"))
     with Studio(bridge().port, ros.until) as studio:
         service = studio.service("/mute")

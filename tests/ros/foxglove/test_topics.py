@@ -14,7 +14,7 @@ from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove.topics import Topics
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
@@ -81,7 +81,7 @@ def test_the_user_decides_what_is_received_without_guarantee(ros, bridge):
 
 
 def test_a_latched_message_is_given_to_every_newcomer_once(ros, bridge):
-    publisher = ros.node.create_publisher(String, "/description", LATCHED)
+    publisher = ros.node.create_publisher(String, "/description", TRANSIENT_LOCAL)
     publisher.publish(String(data="old"))
     port = bridge().port
     with Studio(port, ros.until) as first, Studio(port, ros.until) as second:
@@ -98,7 +98,7 @@ def test_a_latched_message_is_given_to_every_newcomer_once(ros, bridge):
 def test_a_latched_publisher_that_comes_after_the_client_is_heard(ros, studio):
     ros.node.create_subscription(String, "/description", lambda _: None, 1)
     studio.subscribe(1, "/description")
-    publisher = ros.node.create_publisher(String, "/description", LATCHED)
+    publisher = ros.node.create_publisher(String, "/description", TRANSIENT_LOCAL)
     publisher.publish(String(data="late"))
     assert deserialize_message(studio.next(ms.MessageData).payload, String).data == "late"
 
@@ -110,7 +110,7 @@ def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_el
     topics = Topics(ros.node, commands.append, lambda *_data: None, lambda: 0)
     topics.update({name: ["std_msgs/msg/String"] for name in names})
     for channel in commands[0].channels:
-        topics.want(channel.id)
+        topics.subscribe(channel.id)
     while topics.poll():  # unspun: an executor keeps a subscription that is destroyed outside of its callbacks
         pass
     asked = []
@@ -150,10 +150,10 @@ def test_a_flood_of_changing_wishes_costs_a_share_of_time_and_the_last_wish_coun
     ids = [channel.id for channel in commands[0].channels]
     for _ in range(200):
         for channel_id in ids:
-            topics.want(channel_id)
+            topics.subscribe(channel_id)
         for channel_id in ids:
-            topics.unwant(channel_id)
-    topics.want(ids[3])
+            topics.unsubscribe(channel_id)
+    topics.subscribe(ids[3])
     assert woken
     subscribed = [command for command in commands if isinstance(command, ev.RetainLast)]
     assert len(subscribed) < 200 * 20 / 4
@@ -169,7 +169,7 @@ def test_a_refresh_of_many_topics_goes_on_where_it_stopped(ros, monkeypatch):
     topics = Topics(ros.node, commands.append, lambda *_data: None, lambda: 0)
     topics.update({name: ["std_msgs/msg/Bool"] for name in names})
     for channel in commands[0].channels:
-        topics.want(channel.id)
+        topics.subscribe(channel.id)
     while topics.poll():
         pass
     counted = []

@@ -28,7 +28,7 @@ def test_numbers_that_are_not_finite_are_refused(value):
 
 
 def test_arrays_of_the_wrong_length_are_refused():
-    with pytest.raises(CommandError, match="3 values found, expected 8 intensities"):
+    with pytest.raises(CommandError, match="found 3 values, expected 8 intensities"):
         command_checks.led_levels("circle", [1.0, 1.0, 1.0])
     with pytest.raises(CommandError, match="left, right"):
         command_checks.motor_targets([1])

@@ -21,7 +21,7 @@ from thymio_sim_ros.sim.sensors import all_sensors
 
 ALONE = RobotNames("")
 SECOND = RobotNames("thymio_2")
-ROWS = {row.topic: row for sensor in all_sensors() for row in sensor_topics.select_rows(sensor)}
+ROWS = {row.topic: row for sensor in all_sensors() for row in sensor_topics.rows_of(sensor)}
 
 PROXIMITY = readings.ProximityReading(
     1_500_000_000,

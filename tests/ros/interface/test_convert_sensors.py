@@ -15,7 +15,7 @@ from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.sim.model import readings
 from thymio_sim_ros.sim.sensors import all_sensors
 
-ROWS = {row.topic: row for sensor in all_sensors() for row in sensor_topics.select_rows(sensor)}
+ROWS = {row.topic: row for sensor in all_sensors() for row in sensor_topics.rows_of(sensor)}
 
 TWO = json.dumps(
     {

@@ -14,8 +14,8 @@ from std_msgs.msg import ColorRGBA, Empty
 
 from thymio_sim_ros.ros import generate_ros_docs
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.driver_topics import PLAIN, TOPICS, DriverTopics
-from thymio_sim_ros.ros.simulator.robot_inputs import Moment
+from thymio_sim_ros.ros.interface.driver_topics import STANDARD_TOPICS, TOPICS, DriverTopics
+from thymio_sim_ros.ros.simulator.robot_inputs import InputContext
 from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
     PlayGesture,
@@ -27,7 +27,7 @@ from thymio_sim_ros.sim.commands import (
 )
 from thymio_sim_ros.sim.model.readings import CommReading
 
-NOW = Moment(0, 0)
+NOW = InputContext(0, 0)
 
 
 def kind(name, constants=None, **fields):
@@ -103,7 +103,7 @@ def test_every_group_of_lights_has_a_number(number):
     ("topic", "message", "found"),
     [
         ("led", TYPES.Led(id=7, values=[1.0] * 8), "group 7 found, expected 0 to 6: circle"),
-        ("led", TYPES.Led(id=0, values=[1.0]), "1 values found, expected 8 intensities"),
+        ("led", TYPES.Led(id=0, values=[1.0]), "found 1 values, expected 8 intensities"),
         ("led", TYPES.Led(id=5, values=[math.nan]), "intensity is nan"),
         ("led/gesture", wave(leds=2), "a gesture of the buttons lights found"),
         ("led/gesture", wave(period=math.nan), "period is nan"),
@@ -117,8 +117,8 @@ def test_what_cannot_be_is_refused(topic, message, found):
 
 
 def test_lights_beyond_full_are_told():
-    assert INPUTS["led"].beyond(TYPES.Led(id=5, values=[32.0])) == "intensity 32 found, expected 0 to 1"
-    assert INPUTS["led"].beyond(TYPES.Led(id=5, values=[1.0, 32.0])) == ""
+    assert INPUTS["led"].limit_check(TYPES.Led(id=5, values=[32.0])) == "found intensity 32, expected 0 to 1"
+    assert INPUTS["led"].limit_check(TYPES.Led(id=5, values=[1.0, 32.0])) == ""
 
 
 def test_an_infrared_frame_is_told_with_all_that_was_heard():
@@ -139,16 +139,16 @@ def test_without_the_package_there_are_no_topics_of_its_types(ros, simulation):
 def test_without_the_parameter_the_driver_s_rare_names_are_not_there(ros, simulation):
     simulation()
     there = {topic for topic, _ in ros.node.get_topic_names_and_types()}
-    assert there & {f"/{topic}" for topic in (*PLAIN, *TOPICS)} == set()
-    assert {f"/_{topic}" for topic in PLAIN} <= there
+    assert there & {f"/{topic}" for topic in (*STANDARD_TOPICS, *TOPICS)} == set()
+    assert {f"/_{topic}" for topic in STANDARD_TOPICS} <= there
 
 
 def test_with_the_parameter_each_hidden_topic_has_the_driver_s_name_too(ros, simulation):
     simulation(playground="two_robots", driver_topics=True)
     there = dict(ros.node.get_topic_names_and_types())
     for robot in ("red", "blue"):
-        assert {topic: there.get(f"/{robot}/{topic}") for topic in PLAIN} == {
-            topic: there[f"/{robot}/_{topic}"] for topic in PLAIN
+        assert {topic: there.get(f"/{robot}/{topic}") for topic in STANDARD_TOPICS} == {
+            topic: there[f"/{robot}/_{topic}"] for topic in STANDARD_TOPICS
         }
 
 

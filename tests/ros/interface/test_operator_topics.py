@@ -66,8 +66,8 @@ def test_a_message_becomes_a_command(topic, message, command):
         ("_press/light", Float32(data=float("nan")), "light is nan"),
         ("_press/remote", Int8(data=-1), "RemoteKey: command -1 found, expected 0 to 127"),
         ("_press/rc5", Int16MultiArray(data=[32, 0]), "RemoteKey: address 32 found"),
-        ("_press/rc5", Int16MultiArray(data=[1]), r"1 values found, expected \[address"),
-        ("_press/tilt", Float32MultiArray(data=[1.0]), r"1 values found, expected \[roll, pitch\]"),
+        ("_press/rc5", Int16MultiArray(data=[1]), r"found 1 values, expected \[address"),
+        ("_press/tilt", Float32MultiArray(data=[1.0]), r"found 1 values, expected \[roll, pitch\]"),
         ("_press/tilt", Float32MultiArray(data=[float("nan"), 0.0]), "Tilt: roll_rad nan"),
         ("_press/proximity", Int16MultiArray(data=[1]), "SetProximity: 1 counts found, expected 7"),
         (

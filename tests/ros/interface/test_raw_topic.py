@@ -12,7 +12,7 @@ from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout,
 
 from tests.ros.aseba_tools import get_variables
 from thymio_sim_ros.ros.interface import qos
-from thymio_sim_ros.ros.interface.raw_topic import Decoder, encode
+from thymio_sim_ros.ros.interface.raw_topic import RawDecoder, encode
 
 COUNTER = "var motors = 0\nvar looks = 0\nonevent motor\n motors++\nonevent prox\n looks++\n"
 
@@ -44,14 +44,14 @@ def test_the_message_is_an_array_with_a_dimension_for_each_reading(told):
 
 @given(st.lists(readings, max_size=3))
 def test_what_was_told_is_read_also_the_second_time(messages):
-    decoder = Decoder()
+    decoder = RawDecoder()
     for _ in range(2):
         for told in messages:
             assert [(robot, sensor, tuple(words)) for robot, sensor, words in decoder.decode(encode(told))] == told
 
 
 def test_many_kinds_of_messages_are_read():
-    decoder = Decoder()
+    decoder = RawDecoder()
     for count in range(1500):
         told = [(f"r{count}", "motor", (count, 1))]
         assert list(decoder.decode(encode(told))) == told
@@ -60,7 +60,7 @@ def test_many_kinds_of_messages_are_read():
 def test_a_message_that_somebody_else_has_written_is_read():
     data = serialize_message(message(("a/motor", 2), ("tap", 1), data=[1, 2, 3]))
     padded = data + bytes(4)
-    decoder = Decoder()
+    decoder = RawDecoder()
     for _ in range(2):
         for written in (data, padded):
             assert list(decoder.decode(written)) == [("a", "motor", (1, 2)), ("", "tap", (3,))]
@@ -68,13 +68,13 @@ def test_a_message_that_somebody_else_has_written_is_read():
 
 def test_words_that_belong_to_nothing_are_refused():
     with pytest.raises(ValueError, match="3 words found, expected 2"):
-        list(Decoder().decode(serialize_message(message(("a/motor", 2), data=[1, 2, 3]))))
+        list(RawDecoder().decode(serialize_message(message(("a/motor", 2), data=[1, 2, 3]))))
 
 
 @pytest.mark.parametrize("broken", [b"", b"\0\1\0\0\1\0\0\0", encode([("a", "motor", (1, 2))])[:-3]])
 def test_what_is_no_message_is_refused(broken):
     with pytest.raises(RuntimeError):
-        list(Decoder().decode(broken))
+        list(RawDecoder().decode(broken))
 
 
 def test_a_runtime_hears_all_robots_of_a_simulator_at_once(ros, simulation, runtime):
@@ -119,7 +119,7 @@ def test_each_reading_is_one_event(ros, simulation, runtime):
 @pytest.fixture
 def simulator(ros):
     """Says which robots there are, as a simulator."""
-    state = ros.node.create_publisher(String, "/simulator/_state", qos.LATCHED)
+    state = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
     return lambda **fields: state.publish(String(data=json.dumps({"robots": [{"name": "anna"}], **fields})))
 
 

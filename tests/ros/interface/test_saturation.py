@@ -27,8 +27,8 @@ from std_msgs.msg import (
 
 from tests.ros.test_every_topic import SENT
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import MOST_SAMPLES
-from thymio_sim_ros.ros.simulator.robot_inputs import WORLD, Moment, robot_inputs
+from thymio_sim_ros.ros.interface.command_topics import MAX_SAMPLES
+from thymio_sim_ros.ros.simulator.robot_inputs import WORLD, InputContext, robot_inputs
 from thymio_sim_ros.sim.audio.synthesis import HIGHEST_HZ, LOWEST_HZ
 from thymio_sim_ros.sim.commands import LED_GROUPS
 from thymio_sim_ros.sim.model.robot_constants import MAX_SPEED_M_S, WHEEL_RADIUS_M
@@ -56,39 +56,39 @@ BEYOND = {
     "_motor/target": (
         Int16MultiArray(data=[0, -501]),
         Int16MultiArray(data=[500, -500]),
-        "target -501 found, expected -500 to 500",
+        "found target -501, expected -500 to 500",
     ),
     **{
-        f"led/body/{group}": (ColorRGBA(r=255.0), ColorRGBA(r=1.0, a=255.0), "color 255 found, expected 0 to 1")
+        f"led/body/{group}": (ColorRGBA(r=255.0), ColorRGBA(r=1.0, a=255.0), "found color 255, expected 0 to 1")
         for group in ("top", "bottom_left", "bottom_right")
     },
     **{
         topic: (
             Float32MultiArray(data=[0.0] * (size - 1) + [32.0]),
             Float32MultiArray(data=[1.0] * size),
-            "intensity 32 found, expected 0 to 1",
+            "found intensity 32, expected 0 to 1",
         )
         for group, size in LED_GROUPS.items()
         for topic in (f"led/{group}", f"_led/{group}")
         if topic in INPUTS and group not in ("top", "bottom_left", "bottom_right")
     },
-    "_led/single": (Int16MultiArray(data=[3, 33]), Int16MultiArray(data=[38, 32]), "brightness 33 found"),
+    "_led/single": (Int16MultiArray(data=[3, 33]), Int16MultiArray(data=[38, 32]), "found brightness 33"),
     "sound/tone": (
         Float32MultiArray(data=[9000.0, 1.0]),
         Float32MultiArray(data=[0.0, -1.0]),
-        "frequency 9000 found, expected 55.0",
+        "found frequency 9000, expected 55.0",
     ),
-    "_sound/system": (Int8(data=8), Int8(data=-1), "sound 8 found, expected -1 to 7; the robot beeps instead"),
+    "_sound/system": (Int8(data=8), Int8(data=-1), "found sound 8, expected -1 to 7; the robot beeps instead"),
     "_sound_threshold": (
         Float32(data=-0.5),
         Float32(data=1.0),
-        "threshold -0.5 found, expected 0 to 1 (0 is off); every sound is told with this one",
+        "found threshold -0.5, expected 0 to 1 (0 is off); every sound is published with this value",
     ),
-    "_comm/tx": (Int16(data=2048), Int16(data=0), "value 2048 found, expected 0 to 2047"),
-    "_pen/color": (ColorRGBA(g=-1.0, a=1.0), ColorRGBA(), "color -1 found"),
-    "_press/clap": (Float32(data=1.5), Float32(data=1.0), "loudness 1.5 found, expected 0 to 1"),
-    "_press/sound": (Float32(data=-0.5), Float32(data=0.0), "loudness -0.5 found"),
-    "_press/light": (Float32(data=2.0), Float32(data=1.0), "light 2 found"),
+    "_comm/tx": (Int16(data=2048), Int16(data=0), "found value 2048, expected 0 to 2047"),
+    "_pen/color": (ColorRGBA(g=-1.0, a=1.0), ColorRGBA(), "found color -1"),
+    "_press/clap": (Float32(data=1.5), Float32(data=1.0), "found loudness 1.5, expected 0 to 1"),
+    "_press/sound": (Float32(data=-0.5), Float32(data=0.0), "found loudness -0.5"),
+    "_press/light": (Float32(data=2.0), Float32(data=1.0), "found light 2"),
 }
 """A message beyond, one just within, and what is said of the first."""
 
@@ -96,11 +96,11 @@ BEYOND = {
 @pytest.mark.parametrize("topic", BEYOND)
 def test_what_is_beyond_the_robot_is_said(topic):
     one, (message, within, said) = INPUTS[topic], BEYOND[topic]
-    assert one.beyond(message).startswith(said)
-    assert one.beyond(within) == ""
+    assert one.limit_check(message).startswith(said)
+    assert one.limit_check(within) == ""
 
 
-NOW = Moment(0, 0, lambda: {"map": WORLD})
+NOW = InputContext(0, 0, lambda: {"map": WORLD})
 NOTHING_TO_REFUSE = {"_sound/samples": "any bytes are a sound", "_sound/wave": "any bytes are a wave"}
 """Topics of which each number that their type holds is meant as it is."""
 ENDLESS = [math.nan, math.inf, -math.inf]
@@ -151,7 +151,7 @@ def bad_messages(one):
             copy.data = [*good.data, *good.data[-1:]][:size]
             yield copy
     if one.topic == "_sound/samples":
-        yield UInt8MultiArray(data=bytes(MOST_SAMPLES + 1))
+        yield UInt8MultiArray(data=bytes(MAX_SAMPLES + 1))
 
 
 EMPTY_MEANS = {topic: {0} for topic in INPUTS if topic.endswith(("press/proximity", "press/ground"))} | {
@@ -169,7 +169,7 @@ def answer(one, message):
     except CommandError as error:
         return str(error)
     assert commands, one.topic
-    return one.beyond(message)
+    return one.limit_check(message)
 
 
 @pytest.mark.parametrize("one", OWN, ids=[one.topic for one in OWN])
@@ -199,17 +199,17 @@ def test_a_light_that_there_is_not_is_refused(number):
 @pytest.mark.parametrize("hertz", [LOWEST_HZ, -LOWEST_HZ, HIGHEST_HZ, -HIGHEST_HZ])
 @pytest.mark.parametrize("seconds", [0.0, 1.0])
 def test_tones_are_limited_to_what_the_wave_can_have_either_sign_and_however_long(hertz, seconds):
-    def beyond(factor):
-        return INPUTS["sound/tone"].beyond(Float32MultiArray(data=[factor * hertz, seconds]))
+    def limit_check(factor):
+        return INPUTS["sound/tone"].limit_check(Float32MultiArray(data=[factor * hertz, seconds]))
 
     outwards = 1.01 if abs(hertz) == HIGHEST_HZ else 0.99
-    assert beyond(1.0) == beyond(1 / outwards) == ""
-    assert beyond(outwards).startswith("frequency")
+    assert limit_check(1.0) == limit_check(1 / outwards) == ""
+    assert limit_check(outwards).startswith("found frequency")
 
 
 def test_a_command_beyond_the_robot_is_limited_told_once_and_counted(ros, simulation):
     sim = simulation()
-    logs = ros.collect(Log, "/rosout", where=lambda log: "limited" in log.msg)
+    logs = ros.collect(Log, "/rosout", where=lambda log: "clamped" in log.msg)
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")
     wheels = ros.publisher(Twist, "/cmd_vel")
     for _ in range(2):
@@ -217,8 +217,8 @@ def test_a_command_beyond_the_robot_is_limited_told_once_and_counted(ros, simula
         sim.step(0.2)
     ros.publisher(ColorRGBA, "/led/body/top").publish(ColorRGBA(r=255.0))
     ros.until(lambda: len(logs) == 2)
-    assert [log.msg.partition(":")[0] for log in logs] == ["/cmd_vel limited", "/led/body/top limited"]
+    assert [log.msg.partition(":")[0] for log in logs] == ["/cmd_vel clamped", "/led/body/top clamped"]
     assert sim.thymio.speed == pytest.approx(MAX_SPEED_M_S, rel=0.1)
-    sim.simulator._beat(0)
+    sim.simulator._publish_heartbeat(0)
     ros.until(lambda: diagnostics)
     assert {pair.key: pair.value for pair in diagnostics[-1].status[0].values}["messages limited"] == "3"

@@ -23,7 +23,7 @@ from visualization_msgs.msg import MarkerArray
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.interface import qos
-from thymio_sim_ros.ros.rclpy_ext.node_runner import MOST_FAULTS, drive, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.node_runner import MAX_CONSECUTIVE_ERRORS, announce, run_main, run_node
 from thymio_sim_ros.ros.rclpy_ext.node_runner import STUCK as STUCK_CODE
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.ros.simulator.world_services import SERVICES
@@ -79,7 +79,7 @@ def test_who_comes_late_sees_the_fixed_frames(ros, simulation):
     sim = simulation()
     sim.step(0.5)
     received = []
-    ros.node.create_subscription(tf2_messages.TFMessage, "/tf_static", received.append, qos.LATCHED, raw=True)
+    ros.node.create_subscription(tf2_messages.TFMessage, "/tf_static", received.append, qos.TRANSIENT_LOCAL, raw=True)
     ros.until(lambda: received)
     children = {frame.child for frame in tf2_messages.decode(bytes(received[-1]))}
     assert {"base_footprint", "laser_link", "proximity_center_link", "ground_left_link"} <= children
@@ -89,7 +89,7 @@ def test_who_comes_while_time_stands_still_gets_the_clock(ros, simulation):
     sim = simulation()
     sim.step(0.5)
     clocks = ros.collect(Clock, "/clock")
-    sim.simulator._beat(0)
+    sim.simulator._publish_heartbeat(0)
     ros.until(lambda: clocks)
     assert clocks[-1].clock.nanosec == 500_000_000
 
@@ -131,7 +131,7 @@ class Stumbling:
     def __init__(self, node, faults):
         self.node, self.faults, self.turns = node, faults, 0
 
-    def turn(self, executor):
+    def run_once(self, executor):
         self.turns += 1
         executor.spin_once(timeout_sec=0.0)
         if self.turns <= self.faults:
@@ -141,9 +141,9 @@ class Stumbling:
 def test_a_fault_of_ours_does_not_end_a_node(ros, monkeypatch):
     told = []
     monkeypatch.setattr(RcutilsLogger, "error", lambda self, text, **_: told.append(text))
-    life = Stumbling(Node("stumbling", context=ros.context), faults=MOST_FAULTS - 1)
-    drive(life, ros.context, lambda: life.turns == MOST_FAULTS + 1)
-    assert len(told) == MOST_FAULTS - 1
+    life = Stumbling(Node("stumbling", context=ros.context), faults=MAX_CONSECUTIVE_ERRORS - 1)
+    run_node(life, ros.context, lambda: life.turns == MAX_CONSECUTIVE_ERRORS + 1)
+    assert len(told) == MAX_CONSECUTIVE_ERRORS - 1
     assert all("nobody thought of it" in text for text in told)
     life.node.destroy_node()
 
@@ -151,8 +151,8 @@ def test_a_fault_of_ours_does_not_end_a_node(ros, monkeypatch):
 def test_but_a_node_that_does_nothing_else_ends(ros):
     life = Stumbling(Node("stumbling", context=ros.context), faults=1000)
     with pytest.raises(ZeroDivisionError):
-        drive(life, ros.context, lambda: life.turns == 1000)
-    assert life.turns == MOST_FAULTS
+        run_node(life, ros.context, lambda: life.turns == 1000)
+    assert life.turns == MAX_CONSECUTIVE_ERRORS
     life.node.destroy_node()
 
 
@@ -176,7 +176,7 @@ def logged(monkeypatch):
 def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, runtime):
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
     hosts = [page, simulation(playground="two_robots").simulator, runtime(COUNTS, robots=["anna"])]
-    assert list(greeted(hosts)) == hosts
+    assert list(announce(hosts)) == hosts
     where, world, programs = logged
     assert where == f"Page: http://localhost:{page.port}/"
     assert world.startswith(f"Playground two_robots, robots in /red, /blue; ROS_DOMAIN_ID {ros.domain}, ")
@@ -197,7 +197,7 @@ def test_a_misspelt_parameter_is_told_with_the_nearest(ros_domain, logged, node,
     node(context, *([WebParams(port=0)] if node is WebPage else [])).close()
     context.shutdown()
     assert [text for text in logged if text.startswith("parameter")] == [
-        f"parameter playgroud is none of {name} and does nothing{near}; see docs/{page}"
+        f"parameter playgroud is not a parameter of {name} and has no effect{near}; see docs/{page}"
     ]
 
 
@@ -212,8 +212,8 @@ def test_an_argument_that_is_not_of_ros_is_answered_and_nothing_starts(capfd, ar
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["-p", "seed=3"], "ROS does not begin: Couldn't parse parameter override rule: '-p seed=3'"),
-        (["--foo"], "no arguments of ROS: ['--foo']"),
+        (["-p", "seed=3"], "ROS cannot be initialized: Couldn't parse parameter override rule: '-p seed=3'"),
+        (["--foo"], "not ROS arguments: ['--foo']"),
     ],
 )
 def test_an_argument_that_ros_does_not_understand_is_told_in_one_line(capfd, words, told):
@@ -230,10 +230,10 @@ class Slow:
     def __init__(self, context):
         self.node = Node("slow", context=context)
 
-    def turn(self, executor):
+    def run_once(self, executor):
         raise RuntimeError("enough")
 
-    def end(self):
+    def stop(self):
         print("ended")
 
     def close(self):
@@ -265,23 +265,23 @@ class Turning:
     def __init__(self, context, name):
         self.node = Node(name, context=context)
 
-    def turn(self, executor):
+    def run_once(self, executor):
         executor.spin_once(timeout_sec=0.01)
 
-    def end(self):
+    def stop(self):
         print(self.node.get_name(), "ended", flush=True)
 
     def close(self):
         self.node.destroy_node()
 
 class InPython(Turning):
-    def turn(self, executor):
+    def run_once(self, executor):
         here = True
         while here:
             pass
 
 class InC(Turning):
-    def turn(self, executor):
+    def run_once(self, executor):
         threading.Lock().acquire() and time.sleep(1e6)
 
 KINDS = {"python": InPython, "c": InC, "": Turning}
@@ -331,7 +331,7 @@ def test_a_stuck_thread_is_reported_and_does_not_keep_the_process(ros_domain, ki
     assert code == STUCK_CODE
     assert out == ended
     assert f"{stuck} did not stop within 1.5 s; it is here:" in err
-    assert "in turn" in err
+    assert "in run_once" in err
 
 
 @pytest.mark.process

@@ -84,7 +84,7 @@ def test_what_was_dumped_starts_a_node_with_the_same_values(ros, node, tmp_path)
     context = Context()
     rclpy.init(args=["--ros-args", "--params-file", str(path)], context=context, domain_id=ros.domain)
     if hasattr(life, "port"):
-        life.end()
+        life.stop()
     second = {
         "simulator": Simulator,
         "aseba_runtime": AsebaRuntime,

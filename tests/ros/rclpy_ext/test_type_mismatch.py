@@ -12,7 +12,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 from thymio_sim_ros.ros.rclpy_ext import type_mismatch
-from thymio_sim_ros.ros.rclpy_ext.type_mismatch import InputTypes
+from thymio_sim_ros.ros.rclpy_ext.type_mismatch import TypeMismatches
 from thymio_sim_ros.ros.simulator.robot_inputs import robot_inputs
 
 TWIST, STAMPED, TEXT = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped", "std_msgs/msg/String"
@@ -39,9 +39,9 @@ def stranger(ros):
 
 def beaten(simulator):
     """Let the simulator do what it does once a second; what it says about its inputs."""
-    simulator._input_types._next_s = 0.0  # a slow machine would make it wait longer than a test does
-    simulator._beat(0)
-    return simulator._input_types.mismatches
+    simulator._type_mismatches._next_s = 0.0  # a slow machine would make it wait longer than a test does
+    simulator._publish_heartbeat(0)
+    return simulator._type_mismatches.mismatches
 
 
 def test_a_stamped_velocity_is_noticed_said_once_and_shown(ros, simulation, stranger):
@@ -65,16 +65,16 @@ def test_a_stamped_velocity_is_noticed_said_once_and_shown(ros, simulation, stra
     assert [log.msg for log in logs] == [said]
     node.destroy_node()
     ros.until(lambda: not beaten(sim.simulator))
-    assert sim.simulator._input_types.status().level == DiagnosticStatus.OK
+    assert sim.simulator._type_mismatches.status().level == DiagnosticStatus.OK
 
 
 def test_the_right_type_is_nothing_to_tell(ros, simulation, stranger):
     sim = simulation()
     stranger(Twist, "/cmd_vel")
     ros.until(lambda: ros.node.count_publishers("/cmd_vel"))
-    looks = InputTypes(sim.simulator.node)
-    looks.look()
-    assert looks.mismatches == ()
+    mismatches = TypeMismatches(sim.simulator.node)
+    mismatches.poll()
+    assert mismatches.mismatches == ()
 
 
 def test_every_input_of_every_robot_is_looked_at(ros, simulation, stranger):
@@ -84,29 +84,29 @@ def test_every_input_of_every_robot_is_looked_at(ros, simulation, stranger):
     node = stranger(String, topics[0])
     for topic in topics[1:]:
         node.create_publisher(String, topic, 1)
-    looks = InputTypes(sim.simulator.node)
+    mismatches = TypeMismatches(sim.simulator.node)
 
     def found():
-        looks._next_s = 0.0
-        looks.look()
-        return sorted(one.topic for one in looks.mismatches) == sorted(topics)
+        mismatches._next_s = 0.0
+        mismatches.poll()
+        return sorted(one.topic for one in mismatches.mismatches) == sorted(topics)
 
     ros.until(found)
-    assert {(one.node, one.found) for one in looks.mismatches} == {("/teleop", TEXT)}
+    assert {(one.node, one.found) for one in mismatches.mismatches} == {("/teleop", TEXT)}
 
 
 def test_robots_that_come_are_looked_at_too(ros, simulation, stranger):
     sim = simulation(playground="two_robots")
     (name, *_) = [names.name for names in sim.simulator.names.values()]
-    looks = InputTypes(sim.simulator.node)
-    looks.look()
+    mismatches = TypeMismatches(sim.simulator.node)
+    mismatches.poll()
     sim.world.remove(name)
-    sim.simulator.follow()
+    sim.simulator.update_robots()
     stranger(String, f"/{name}/_alarm", "late")
     ros.until(lambda: ros.node.count_publishers(f"/{name}/_alarm"))
-    looks._next_s = 0.0
-    looks.look()
-    assert looks.mismatches == ()
+    mismatches._next_s = 0.0
+    mismatches.poll()
+    assert mismatches.mismatches == ()
 
 
 def test_a_runtime_looks_at_its_inputs(ros, runtime, stranger):
@@ -114,12 +114,12 @@ def test_a_runtime_looks_at_its_inputs(ros, runtime, stranger):
     stranger(Twist, "/_aseba/emit")
 
     def found():
-        made._input_types._next_s = 0.0
+        made._type_mismatches._next_s = 0.0
         made._publish_diagnostics()
-        return made._input_types.mismatches
+        return made._type_mismatches.mismatches
 
     ros.until(found)
-    assert [one.topic for one in made._input_types.mismatches] == ["/_aseba/emit"]
+    assert [one.topic for one in made._type_mismatches.mismatches] == ["/_aseba/emit"]
 
 
 @pytest.mark.parametrize(
@@ -143,7 +143,7 @@ def test_with_stamped_velocities_the_cure_is_the_other_topic():
 
 def test_looking_takes_its_share_of_time_only(ros, simulation, monkeypatch):
     sim = simulation()
-    looks, now = InputTypes(sim.simulator.node), [100.0]
+    mismatches, now = TypeMismatches(sim.simulator.node), [100.0]
     monkeypatch.setattr(type_mismatch.time, "monotonic", lambda: now[0])
     calls = []
 
@@ -152,8 +152,8 @@ def test_looking_takes_its_share_of_time_only(ros, simulation, monkeypatch):
         now[0] += 0.05
         return ()
 
-    monkeypatch.setattr(looks, "_find", find)
+    monkeypatch.setattr(mismatches, "_find", find)
     while now[0] < 200.0:
-        looks.look()
+        mismatches.poll()
         now[0] += 1.0
     assert len(calls) == pytest.approx(100.0 * type_mismatch.SHARE / 0.05, abs=1)

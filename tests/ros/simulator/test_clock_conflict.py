@@ -29,11 +29,11 @@ def levels(messages) -> list[bytes]:
 def beat(*simulators) -> None:
     """Let each simulator do what it does once a second."""
     for one in simulators:
-        one._beat(0)
+        one._publish_heartbeat(0)
 
 
 def rivals(simulator):
-    return simulator._world_ports._rivals
+    return simulator._world_endpoints._clock_conflict
 
 
 def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):
@@ -49,7 +49,7 @@ def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):
     ros.until(lambda: len(logs) == 2)
     for log in logs:
         assert f"/clock: another simulator publishes it in ROS_DOMAIN_ID {ros.domain}" in log.msg
-        assert "ROS_DOMAIN_ID of its own" in log.msg
+        assert "its own ROS_DOMAIN_ID" in log.msg
         assert "-r /clock:=/lab1/clock" in log.msg
     for _ in range(5):
         beat(first, second)
@@ -86,11 +86,11 @@ def test_a_publisher_that_says_nothing_is_no_simulator(ros, simulator):
     ros.settle()
     heard.clear()
 
-    def is_heard() -> bool:
+    def has_subscribers() -> bool:
         beat(alone)
         return len(heard) >= 10
 
-    ros.until(is_heard)
+    ros.until(has_subscribers)
     assert not rivals(alone).is_found
     assert rivals(alone).status().level == DiagnosticStatus.OK
 
@@ -114,14 +114,14 @@ def test_without_a_clock_there_is_nothing_to_find(ros, simulation):
 
 def test_a_proof_is_forgotten_when_the_other_falls_silent(ros):
     now = [100.0]
-    found = clock_conflict.ClockRivals(ros.node, "/clock", 0, lambda: now[0])
+    found = clock_conflict.ClockConflict(ros.node, "/clock", 0, lambda: now[0])
     for _ in range(clock_conflict.PROOF):
-        found._take(Clock())
+        found._on_clock(Clock())
     ros.node.create_publisher(Clock, "/clock", qos.CLOCK)
     ros.node.create_publisher(Clock, "/clock", qos.CLOCK)
     ros.until(lambda: ros.node.count_publishers("/clock") == 2)
-    found.look()
+    found.poll()
     assert found.is_found
     now[0] += clock_conflict.REMEMBERED_S
-    found.look()
+    found.poll()
     assert not found.is_found

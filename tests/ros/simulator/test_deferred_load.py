@@ -10,7 +10,7 @@ from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomic
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from thymio_sim_ros.ros.simulator.deferred_load import MOST_WAITING, DeferredLoad
+from thymio_sim_ros.ros.simulator.deferred_load import MAX_WAITING, DeferredLoad
 
 DEADLINE_S = 30.0
 
@@ -98,13 +98,13 @@ def test_both_services_wait_and_a_refusal_has_its_reason(ros, loading, send):
 
 
 def test_more_than_a_few_requests_are_refused_at_once(ros, loading, send):
-    waiting = [send(("map", f"hall {number}")) for number in range(MOST_WAITING + 2)]
+    waiting = [send(("map", f"hall {number}")) for number in range(MAX_WAITING + 2)]
     ros.until(lambda: sum(one.done() for one in waiting) == 2)
     refused = [one.result().results[0] for one in waiting if one.done()]
-    assert [one.reason for one in refused] == [f"{MOST_WAITING} other values of map are loading"] * 2
+    assert [one.reason for one in refused] == [f"{MAX_WAITING} other values of map are loading"] * 2
     loading.gate.set()
     ros.until(lambda: all(one.done() for one in waiting))
-    assert sum(one.result().results[0].successful for one in waiting) == MOST_WAITING
+    assert sum(one.result().results[0].successful for one in waiting) == MAX_WAITING
 
 
 def test_one_request_sets_one_value(ros, loading, send):

@@ -262,10 +262,10 @@ def test_where_a_robot_stands_is_repeated_while_time_stands_still(ros, simulatio
     sim = simulation(playground="base")
     sim.simulator.pause(True)
     odometry = ros.collect(Odometry, "/_ground_truth/odom")
-    nobody = make_executor(ros.context)
+    idle = make_executor(ros.context)
 
     def arrived() -> bool:
-        sim.simulator.turn(nobody)
+        sim.simulator.run_once(idle)
         return bool(odometry)
 
     ros.until(arrived)
@@ -312,7 +312,7 @@ def test_a_change_of_playground_and_seed_builds_one_world_of_both(ros, simulatio
 
 def test_a_command_to_a_robot_that_has_gone_with_its_playground_is_dropped(ros, simulation):
     sim = simulation(playground="two_robots")
-    late = sim.simulator._poster("red")
+    late = sim.simulator._command_sender("red")
     assert set_parameter(ros, "playground", "base").successful
     late(BodyTwist(0.1, 0.0))
     sim.step(0.1)

@@ -94,7 +94,7 @@ def test_simulated_time_of_somebody_else_is_refused(ros, simulation):
     result = set_parameter(ros, "use_sim_time", True)
     assert (result.successful, result.reason) == (
         False,
-        "use_sim_time is refused: the simulator is the source of simulated time, it cannot follow /clock",
+        "use_sim_time is rejected: the simulator is the source of simulated time, it cannot follow /clock",
     )
     assert set_parameter(ros, "use_sim_time", False).successful
 
@@ -102,7 +102,7 @@ def test_simulated_time_of_somebody_else_is_refused(ros, simulation):
 def test_simulated_time_of_somebody_else_is_left_out_at_the_start(simulator_with, capfd):
     simulator = simulator_with("-p", "use_sim_time:=true")
     assert simulator.node.get_parameter("use_sim_time").value is False
-    assert "use_sim_time is left out: the simulator is the source of simulated time" in capfd.readouterr().err
+    assert "use_sim_time is ignored: the simulator is the source of simulated time" in capfd.readouterr().err
 
 
 def test_a_fault_of_ours_in_reading_a_playground_is_a_refusal(ros, simulation, monkeypatch):
@@ -130,7 +130,7 @@ def test_a_home_folder_that_is_not_there_is_no_playground(ros, simulation):
     [
         ({"proximity_model": "sonar"}, "proximity_model is 'sonar', expected default or enki or cone"),
         ({"robot_names": ["1st"]}, "robot_names.name: found '1st', expected a ROS name"),
-        ({"robot_names": ["bert"], "playground": TWO}, "robot_names: two robots are called 'bert'"),
+        ({"robot_names": ["bert"], "playground": TWO}, "robot_names: found 'bert' twice"),
     ],
 )
 def test_a_start_that_cannot_be_says_why(ros, wrong, reason):
@@ -302,16 +302,16 @@ def test_reliability_can_be_overridden(simulator_with):
 @pytest.mark.parametrize(
     ("policy", "value", "reason"),
     [
-        ("reliability", "best", "'best' found, expected system_default, reliable, best_effort, best_available"),
+        ("reliability", "best", "found 'best', expected system_default, reliable, best_effort, best_available"),
         (
             "durability",
             "unknown",
-            "'unknown' found, expected system_default, transient_local, volatile, best_available",
+            "found 'unknown', expected system_default, transient_local, volatile, best_available",
         ),
-        ("history", "3", "3 found, expected system_default, keep_last, keep_all"),
-        ("depth", "-1", "-1 found, expected 0 to 2147483647"),
-        ("depth", "many", "'many' found, expected 0 to 2147483647"),
-        ("depth", "true", "True found, expected 0 to 2147483647"),
+        ("history", "3", "found 3, expected system_default, keep_last, keep_all"),
+        ("depth", "-1", "found -1, expected 0 to 2147483647"),
+        ("depth", "many", "found 'many', expected 0 to 2147483647"),
+        ("depth", "true", "found True, expected 0 to 2147483647"),
     ],
 )
 def test_a_quality_of_service_that_is_none_is_refused_at_the_start(simulator_with, policy, value, reason):
@@ -328,7 +328,7 @@ def test_a_log_on_a_full_disk_ends_and_the_world_goes_on(ros, simulation):
     sim.step(5.0)
     ros.until(lambda: logs)
     sim.step(5.0)
-    sim.simulator.end()
+    sim.simulator.stop()
     ros.settle()
     assert [log.msg for log in logs] == ["the log ends here: /dev/full: No space left on device"]
     assert sim.world.now_ns == 10_000_000_000

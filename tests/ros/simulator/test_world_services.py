@@ -99,7 +99,7 @@ def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
         ("anna", numbers(math.nan, 0.5), "x_m: found nan"),
         ("anna", numbers(-0.5, 0.5, math.nan), "yaw_rad: found nan"),
         ("raw", numbers(-0.5, 0.5), "the name 'raw' is taken by topics of the robot that has no name"),
-        ("anna", ParameterValue(type=42), "anna: a value of unknown type 42 found"),
+        ("anna", ParameterValue(type=42), "anna: found a value of unknown type 42"),
     ],
 )
 def test_a_robot_that_cannot_be_is_refused_with_a_reason(ros, simulation, name, value, reason):
@@ -111,7 +111,7 @@ def test_a_robot_that_cannot_be_is_refused_with_a_reason(ros, simulation, name, 
 def test_each_name_has_an_answer_of_its_own(ros, simulation):
     sim = simulation(playground=ROOM)
     reasons = ask(ros, "remove", thymo=ParameterValue(), thymio=ParameterValue())
-    assert reasons == {"thymo": "nothing here is called 'thymo', expected 'thymio' (one of thymio)", "thymio": ""}
+    assert reasons == {"thymo": "found unknown name 'thymo', expected 'thymio' (one of thymio)", "thymio": ""}
     assert not sim.world.robots
     sim.step(0.1)
 
@@ -120,7 +120,7 @@ def test_robots_and_things_are_put_somewhere(ros, simulation):
     sim = simulation(playground=ROOM)
     reasons = ask(ros, "set_poses", thymio=numbers(-0.5, 0.0, 1.0), crate=numbers(0.25, 0.25), post=numbers(0.0, 0.0))
     assert (reasons["thymio"], reasons["crate"]) == ("", "")
-    assert reasons["post"] == "nothing here is called 'post', expected one of thymio, crate"
+    assert reasons["post"] == "found unknown name 'post', expected one of thymio, crate"
     sim.step(0.01)
     thymio, crate, post = poses(ros, "thymio", "crate", "post")
     assert (thymio, crate, post) == ([-0.5, 0.0, 1.0], [0.25, 0.25, 0.0], [])

@@ -146,13 +146,13 @@ def test_without_aiohttp_it_says_what_to_install(ros, monkeypatch):
 def test_tokens_are_in_the_invitation_and_not_in_the_greeting(ros, built_page, monkeypatch):
     monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
     page = ros.live(WebPage(ros.context, WebParams(port=0, address="0.0.0.0"), Tokens("fulltoken", "looktoken")))
-    assert page.invitation.splitlines() == [
+    assert page.access_urls.splitlines() == [
         f"Page      http://localhost:{page.port}/#token=fulltoken, from other computers "
         f"http://10.1.2.3:{page.port}/#token=fulltoken",
         f"Read only http://localhost:{page.port}/#token=looktoken, from other computers "
         f"http://10.1.2.3:{page.port}/#token=looktoken",
     ]
-    assert "token" not in page.greeting
+    assert "token" not in page.startup_message
 
 
 def test_a_port_in_use_is_one_clear_sentence(ros):

@@ -1,4 +1,4 @@
-"""From Aseba to ROS: where a program's variables, events and natives are on topics, from what plug-ins declare."""
+"""Tables of the topics for a program's variables, events and native functions, from the declarations of plug-ins."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.plugin_api.aseba_binding import Native
 from thymio_sim_ros.sim.sensors import Sensor
 
-__all__ = ["migration"]
+__all__ = ["mapping_tables"]
 
 STANDARD = ("math.", "deque.")
-INSIDE = "inside the robot: `aseba/get_variables`, `aseba/set_variables`"
+INSIDE = "internal: `aseba/get_variables`, `aseba/set_variables`"
 HEADS = "| {} | | topic |\n| --- | --- | --- |\n"
 
 
-def migration(sensing: Sequence[Sensor]) -> str:
-    """Three tables: variables, local events, native functions of the robot."""
+def mapping_tables(sensing: Sequence[Sensor]) -> str:
+    """Return three Markdown tables: variables, local events and native functions of the robot."""
     described = LAYOUTS[THYMIO].base
     parts = ["### Variables\n", "\n", HEADS.format("Aseba")]
     sensors = {name: sensor for sensor in sensing for name, _ in sensor.aseba.variables}
@@ -33,7 +33,7 @@ def migration(sensing: Sequence[Sensor]) -> str:
     events = dict(_events(sensing))
     for event in described.local_events:
         sensor = events.get(event.name)
-        where = f"out | {_sensed(sensor, event.name)}" if sensor else "| timers of a node of one’s own"
+        where = f"out | {_sensed(sensor, event.name)}" if sensor else "| timers of your own node"
         parts.append(f"| `{event.name}` | {where} |\n")
     parts += ["\n### Native functions\n", "\n", HEADS.format("call")]
     natives = bindings.natives()
@@ -42,9 +42,9 @@ def migration(sensing: Sequence[Sensor]) -> str:
             continue
         arguments = ", ".join(parameter.name for parameter in native.parameters)
         topic = _topic_of(natives[native.name]) if native.name in natives else None
-        where = f"in | `{topic}`" if topic else "| inside the robot"
+        where = f"in | `{topic}`" if topic else "| internal"
         parts.append(f"| `{native.name}({arguments})` | {where} |\n")
-    parts.append("\n`math.*` and `deque.*` are Python itself.\n")
+    parts.append("\nFor `math.*` and `deque.*` use Python.\n")
     return "".join(parts)
 
 
@@ -55,8 +55,8 @@ def _variable(name: str, sensors: dict[str, Sensor], outputs: dict[str, str]) ->
 
 
 def _sensed(sensor: Sensor, name: str) -> str:
-    """Topics in SI units, that of the name's last word alone if it has one, then the integers."""
-    topics = [row.topic for row in sensor_topics.select_rows(sensor)]
+    """Return the topics of a variable: in SI units (only the one for the last word of its name, if any), then raw."""
+    topics = [row.topic for row in sensor_topics.rows_of(sensor)]
     *units, raw = topics
     units = [topic for topic in units if not is_hidden(topic)] or units
     own = [topic for topic in units if topic.endswith(f"/{name.rpartition('.')[2]}")]

@@ -1,9 +1,9 @@
-"""How the robots of a runtime share the machine and the air: turns, and events from one to the others.
+"""Schedules the robots of a runtime and passes events between them.
 
-An event waits for its hearer's turn, so that robots that answer each other cannot starve the rest: after some rounds
-what is left waits for the node's next turn. So does, in a process of our own, what is left after a slice of wall time:
-the node serves messages and services every few milliseconds whatever programs do, and robots take their turns in the
-order in which they began to wait. Tests in lock-step have no slices, since their results must not depend on wall time.
+An event waits until its receiver runs, so robots that answer each other cannot starve the rest: after `MAX_ROUNDS`
+rounds the remaining work waits for the node's next iteration. In a process of its own the same happens after a slice of
+wall time: the node serves messages and services every few milliseconds whatever programs do, and robots run in the
+order in which they became ready. Tests in lock-step have no slices, since results must not depend on wall time.
 """
 
 from __future__ import annotations
@@ -16,130 +16,133 @@ from math import inf
 from rclpy.node import Node
 
 from thymio_sim_ros.device.firmware.behavior_host import is_internal
-from thymio_sim_ros.ros.aseba.device_endpoints import DevicePorts
-from thymio_sim_ros.ros.aseba.network import AsebaNetwork, Telegram
+from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
+from thymio_sim_ros.ros.aseba.network import AsebaNetwork, NetworkEvent
 
 __all__ = ["Bus"]
 
-MOST_ROUNDS = 10
-"""Times that robots may answer each other's events at once (as in the runner)."""
+MAX_ROUNDS = 10
+"""Rounds in which robots may answer each other's events at once, as in headless runs."""
 
 SLICE_S = 0.005
-"""Wall time in each turn of the node after which no other robot begins its turn."""
+"""Wall time in each iteration of the node after which no other robot starts to run."""
 
 COMPUTER = 0
-"""Number of the sender of what comes from ROS."""
+"""Sender number of events from ROS."""
 
 
 class Bus:
-    """The Aseba network of one runtime. `reaches_all`: what ROS emits on one robot's topics is for all."""
+    """The Aseba network of one runtime. `reaches_all`: an event emitted on one robot's topics is for all robots."""
 
     def __init__(
-        self, node: Node, robots: Callable[[], Sequence[DevicePorts]], told: Callable[[DevicePorts], None]
+        self,
+        node: Node,
+        robots: Callable[[], Sequence[DeviceEndpoints]],
+        status_changed: Callable[[DeviceEndpoints], None],
     ) -> None:
         self.reaches_all = True
         self._robots = robots
-        self._told = told
-        self._woken: dict[DevicePorts, None] = {}
-        self._is_settling = False
+        self._status_changed = status_changed
+        self._ready: dict[DeviceEndpoints, None] = {}
+        self._is_running = False
         self._slice_end_s: float | None = inf
-        """When no other robot begins its turn; None: a slice after the next one begins."""
-        self._network = AsebaNetwork(node, self._hear_others)
+        """Time after which no other robot starts to run; None: one slice after the next robot starts."""
+        self._network = AsebaNetwork(node, self._on_network_event)
 
     @property
-    def has_waiting(self) -> bool:
-        """Whether robots wait for a turn."""
-        return bool(self._woken)
+    def has_ready_robots(self) -> bool:
+        """Whether robots are ready to run."""
+        return bool(self._ready)
 
     @contextmanager
     def slice(self) -> Iterator[None]:
-        """Meanwhile robots take turns for a slice of wall time, which begins with the first of them."""
+        """Limit robots inside the context to one slice of wall time, which begins with the first robot."""
         self._slice_end_s = None
         try:
             yield
         finally:
             self._slice_end_s = inf
 
-    def settle(self, *robots: DevicePorts) -> None:
-        """Let robots take their turns, then those that they wake, for some rounds and until the slice ends."""
-        self._woken.update(dict.fromkeys(robots))
-        if self._is_settling:
+    def run_until_idle(self, *robots: DeviceEndpoints) -> None:
+        """Run these robots, then those that receive their events, until idle, `MAX_ROUNDS` or the end of the slice."""
+        self._ready.update(dict.fromkeys(robots))
+        if self._is_running:
             return
         if self._slice_end_s is None:
             self._slice_end_s = time.monotonic() + SLICE_S
-        self._is_settling = True
+        self._is_running = True
         try:
-            for _ in range(MOST_ROUNDS):
-                for robot in list(self._woken):
+            for _ in range(MAX_ROUNDS):
+                for robot in list(self._ready):
                     if time.monotonic() >= self._slice_end_s:
                         return
-                    del self._woken[robot]
-                    robot.turn()
-                if not self._woken:
+                    del self._ready[robot]
+                    robot.run_slice()
+                if not self._ready:
                     return
         finally:
-            self._is_settling = False
+            self._is_running = False
 
-    def forget(self, robot: DevicePorts) -> None:
-        """A robot goes."""
-        self._woken.pop(robot, None)
+    def remove(self, robot: DeviceEndpoints) -> None:
+        """Remove a robot from the schedule."""
+        self._ready.pop(robot, None)
 
-    def pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
-        """Robots of one runtime hear each other directly, others by the network's topic; nobody hears himself."""
+    def forward(self, sender: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
+        """Send an event to all other robots: directly in this runtime, by the network topic elsewhere."""
         source = sender.device.node_id
-        for ports in self._robots():
-            if ports is not sender and ports.device.receives_from(sender.device):
-                self._let_hear(ports, event, args, source)
-        self._network.send(Telegram(event, source, sender.device.services.network, tuple(args)))
+        for endpoints in self._robots():
+            if endpoints is not sender and endpoints.device.receives_from(sender.device):
+                self._enqueue(endpoints, event, args, source)
+        self._network.send(NetworkEvent(event, source, sender.device.services.network, tuple(args)))
 
-    def emit(self, ports: DevicePorts, event: str, args: Sequence[int]) -> None:
-        """An event from ROS reaches every robot that declares it, or only this one; too much data is refused."""
+    def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
+        """Send an event from ROS to all robots that declare it, or only to this one; too many values are rejected."""
         robots = (
-            [robot for robot in self._robots() if robot.device.receives_from(ports.device)]
+            [robot for robot in self._robots() if robot.device.receives_from(endpoints.device)]
             if self.reaches_all
-            else [ports]
+            else [endpoints]
         )
         sizes = {robot: _size(robot, event) for robot in robots}
         fits = {robot: size for robot, size in sizes.items() if size is not None and len(args) <= size}
         too_small = [size for size in sizes.values() if size is not None and len(args) > size]
         about = f"event {event}"
         if is_internal(event):
-            ports.warn(about, "refused: it stays inside the robot")
+            endpoints.warn(about, "rejected: internal events stay in the robot")
         elif too_small:
-            ports.warn(about, f"refused: {len(args)} values found, expected at most {min(too_small)}")
+            endpoints.warn(about, f"rejected: found {len(args)} values, expected at most {min(too_small)}")
         elif not fits and not (self.reaches_all and self._network.has_others):
-            ports.warn(about, f"refused: the program declares {_declared(ports)}")
+            endpoints.warn(about, f"rejected: the program declares {_declared(endpoints)}")
         else:
             for robot, size in fits.items():
-                robot.hear(event, [*args, *[0] * (size - len(args))], source=COMPUTER)
+                robot.receive_event(event, [*args, *[0] * (size - len(args))], source=COMPUTER)
             for robot in fits:
-                self.settle(robot)
+                self.run_until_idle(robot)
             if self.reaches_all:
-                self._network.send(Telegram(event, COMPUTER, ports.device.services.network, tuple(args)))
+                self._network.send(NetworkEvent(event, COMPUTER, endpoints.device.services.network, tuple(args)))
 
-    def told(self, ports: DevicePorts) -> None:
-        """The status of a robot is another."""
-        self._told(ports)
+    def status_changed(self, endpoints: DeviceEndpoints) -> None:
+        """Report that the status of a robot has changed."""
+        self._status_changed(endpoints)
 
-    def _hear_others(self, telegram: Telegram) -> None:
-        for ports in self._robots():
-            size = _size(ports, telegram.event)
-            if size is None or ports.device.services.network != telegram.radio:
+    def _on_network_event(self, event_message: NetworkEvent) -> None:
+        for endpoints in self._robots():
+            size = _size(endpoints, event_message.event)
+            if size is None or endpoints.device.services.network != event_message.radio:
                 continue
-            args = telegram.args[:size] + (0,) * (size - len(telegram.args))
-            self._let_hear(ports, telegram.event, args, telegram.source)
-        if self._woken:
-            self.settle(next(iter(self._woken)))
+            args = event_message.args[:size] + (0,) * (size - len(event_message.args))
+            self._enqueue(endpoints, event_message.event, args, event_message.source)
+        if self._ready:
+            self.run_until_idle(next(iter(self._ready)))
 
-    def _let_hear(self, ports: DevicePorts, event: str, args: Sequence[int], source: int) -> None:
-        if not is_internal(event) and ports.hear(event, args, source=source):
-            self._woken[ports] = None
-
-
-def _size(ports: DevicePorts, event: str) -> int | None:
-    return dict(ports.program.events).get(event)
+    def _enqueue(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int], source: int) -> None:
+        if not is_internal(event) and endpoints.receive_event(event, args, source=source):
+            self._ready[endpoints] = None
 
 
-def _declared(ports: DevicePorts) -> str:
-    events = [event for event, _ in ports.program.events if not is_internal(event)]
+def _size(endpoints: DeviceEndpoints, event: str) -> int | None:
+    return dict(endpoints.program.events).get(event)
+
+
+def _declared(endpoints: DeviceEndpoints) -> str:
+    events = [event for event, _ in endpoints.program.events if not is_internal(event)]
     return ", ".join(events) or "no events"

@@ -1,7 +1,7 @@
 """The service `~/check`: compile a text without loading it (docs/aseba_ros.md names the fields).
 
-The text and what belongs to it are the parameters of the request, the answer is JSON in the reason of the result: a
-service of a standard type, so that it works in every tool and through every bridge.
+The request has the text and its options as parameters, and the answer is JSON in the reason of the result, so that the
+service has a standard type and works in every tool and through every bridge.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ _TYPES = {
 
 
 class _RequestError(ThymioSimError, ValueError):
-    """A request that cannot be understood; the text says why."""
+    """An invalid request; the message says why."""
 
 
 class CheckService:
-    """Answers requests; `robots` gives the names of the robots that nodes of a file may be for."""
+    """The service `~/check`; `robots` returns the names of robots that a node of a file can belong to."""
 
     def __init__(self, node: Node, *, layout: str, robots: Callable[[], Iterable[str]]) -> None:
         self._layout = layout
@@ -69,7 +69,7 @@ class CheckService:
 
 @lru_cache(maxsize=16)
 def _answer(question: Question) -> tuple[bool, str]:
-    """Whether it compiles, and the JSON; editors ask for the same text again and again."""
+    """Return whether a text compiles, and the JSON. Cached, since editors check the same text repeatedly."""
     answer = check(question)
     return not answer["errors"], json.dumps(answer)
 
@@ -95,7 +95,7 @@ def _values(parameters: Sequence[ParameterMsg]) -> dict[str, Any]:
 
 
 def _pairs(name: str, items: Iterable[str]) -> tuple[tuple[str, int], ...]:
-    """Pairs of a name and a number, as `ping 1`."""
+    """Parse items such as `ping 1` into pairs of name and number."""
     pairs = []
     for item in items:
         word, _, number = item.rpartition(" ")

@@ -1,9 +1,9 @@
-"""Readings of a robot behind its ROS driver: its topics back to Thymio's integers.
+"""Converts topics of the Thymio's ROS driver back to integer readings.
 
 Source: docs/spec/ros-interface.md section 3.
 
-What the driver does not tell stays zero: ambient light, radio intensities, raw buttons. Ranges that come one by one
-make a reading together when all are there, or when one comes again.
+Values that the driver does not publish stay zero: ambient light, communication intensities, raw buttons. Single ranges
+are assembled to one reading when all have arrived, or when one arrives a second time.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ from thymio_sim_ros.sim.model.robot_constants import WHEEL_TRACK_M
 __all__ = ["Feed", "proximity_count", "subscribe", "twist_of"]
 
 Feed = Callable[[str, Sequence[int]], None]
-"""Takes the words of a sensor."""
+"""Receives the integer reading of a sensor."""
 
 FULL_SOUND = 255
 COMM_SENSORS = 7
 _REFLECTING, _DARK = (round(units.ground_response(grey)) for grey in (1.0, 0.0))
 
 
-class _Together:
-    """Values that make one reading."""
+class _ReadingAssembler:
+    """Assembles single values to one reading."""
 
     def __init__(self, size: int, finish: Callable[[Sequence[int]], None]) -> None:
         self._values = [0] * size
         self._seen: set[int] = set()
         self._finish = finish
 
-    def take(self, index: int, value: int) -> None:
-        """One value came; the reading is finished by the last one, or by one that comes before the others did."""
+    def add(self, index: int, value: int) -> None:
+        """Store a value; the reading is complete with the last one, or when a value repeats before the others came."""
         if index in self._seen:
             self._flush()
         self._values[index] = value
@@ -58,7 +58,7 @@ class _Together:
 
 
 def subscribe(node: Node, names: RobotNames, feed: Feed) -> list[Any]:
-    """Subscriptions to the driver's topics of one robot."""
+    """Subscribe to the driver topics of one robot and return the subscriptions."""
     return [
         node.create_subscription(kind, names.topic(topic), handle, qos.SENSOR)
         for topic, kind, handle in (*_ranges(feed), *_buttons(feed), *_others(feed))
@@ -66,7 +66,7 @@ def subscribe(node: Node, names: RobotNames, feed: Feed) -> list[Any]:
 
 
 def twist_of(command: MotorTargets) -> Twist:
-    """The velocity of a robot whose wheels turn like this."""
+    """Return the body velocity for wheel targets."""
     left, right = units.units_to_speed(command.left), units.units_to_speed(command.right)
     twist = Twist()
     twist.linear.x, twist.angular.z = (left + right) / 2.0, (right - left) / WHEEL_TRACK_M
@@ -74,7 +74,7 @@ def twist_of(command: MotorTargets) -> Twist:
 
 
 def proximity_count(message: Range) -> int:
-    """The count of a range: 0 for nothing (+inf, or -1 of the driver), the most for too close (-inf or the minimum)."""
+    """Return the sensor count of a range: 0 for no obstacle (+inf, driver: -1), the maximum for too close (-inf)."""
     value = message.range
     if math.isnan(value) or value in (-1.0, math.inf) or value > message.max_range:
         return 0
@@ -82,36 +82,36 @@ def proximity_count(message: Range) -> int:
 
 
 def _is_reflecting(message: Range) -> bool:
-    """Near (-inf or 0) is reflecting, far (+inf or 1) is not."""
+    """Whether the ground reflects: -inf or 0 means yes, +inf or 1 no."""
     return bool(message.range < message.min_range)
 
 
 def _ranges(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
-    ground = _Together(len(SIDES), lambda counts: feed("ground", (0, 0, *counts, *counts)))
-    proximity = _Together(len(PROXIMITY), partial(feed, "proximity"))
+    ground = _ReadingAssembler(len(SIDES), lambda counts: feed("ground", (0, 0, *counts, *counts)))
+    proximity = _ReadingAssembler(len(PROXIMITY), partial(feed, "proximity"))
     for index, side in enumerate(SIDES):
-        yield f"ground/{side}", Range, partial(_take_ground, ground, index)
+        yield f"ground/{side}", Range, partial(_set_ground, ground, index)
     for index, name in enumerate(PROXIMITY):
-        yield f"proximity/{name}", Range, partial(_take_proximity, proximity, index)
+        yield f"proximity/{name}", Range, partial(_set_proximity, proximity, index)
 
 
-def _take_ground(ground: _Together, index: int, message: Range) -> None:
-    ground.take(index, _REFLECTING if _is_reflecting(message) else _DARK)
+def _set_ground(ground: _ReadingAssembler, index: int, message: Range) -> None:
+    ground.add(index, _REFLECTING if _is_reflecting(message) else _DARK)
 
 
-def _take_proximity(proximity: _Together, index: int, message: Range) -> None:
-    proximity.take(index, proximity_count(message))
+def _set_proximity(proximity: _ReadingAssembler, index: int, message: Range) -> None:
+    proximity.add(index, proximity_count(message))
 
 
 def _buttons(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
     pressed = [0] * len(BUTTONS)
 
-    def take(message: Bool, index: int) -> None:
+    def on_button(message: Bool, index: int) -> None:
         pressed[index] = int(message.data)
         feed("buttons", pressed)
 
     for index, name in enumerate(BUTTONS):
-        yield f"buttons/{name}", Bool, partial(take, index=index)
+        yield f"buttons/{name}", Bool, partial(on_button, index=index)
 
 
 def _others(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
@@ -125,7 +125,7 @@ def _others(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
 
 
 def _acceleration(message: Imu) -> list[int]:
-    """acc counts to the right, back and down what Imu counts forward, left and up.
+    """Return `acc`, whose axes point right, back and down, while those of Imu point forward, left and up.
 
     Source: docs/spec/thymio-robot.md section 7.3.
     """

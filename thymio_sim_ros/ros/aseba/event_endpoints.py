@@ -1,4 +1,4 @@
-"""Events of one robot's program ↔ topics, both ways (docs/spec/ros-interface.md section 6.1)."""
+"""Topics for the events of one robot's program, in both directions (docs/spec/ros-interface.md section 6.1)."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name, topic_word
 
-__all__ = ["Emit", "EventPorts", "unlike"]
+__all__ = ["Emit", "EventEndpoints", "unique_topic_words"]
 
 Emit = Callable[[str, list[int]], None]
-"""An event that somebody in ROS emits: name, values."""
+"""Receives an event emitted from ROS: name, values."""
 
-_LONGEST_TOPIC = 247
-"""Of a full name, in characters; DDS refuses longer ones."""
+_MAX_TOPIC_LENGTH = 247
+"""Largest length of a full topic name in characters, a limit of DDS."""
 
 
-class EventPorts:
-    """The pair for any event, and a pair for each event of the program. They come and go with it."""
+class EventEndpoints:
+    """A pair of topics for all events, and a pair for each event of the current program."""
 
     def __init__(self, node: Node, names: RobotNames, emit: Emit, warn: Callable[[str, str], None]) -> None:
         self.words: Mapping[str, str] = {}
@@ -39,10 +39,10 @@ class EventPorts:
         self._subscriptions: list[Any] = []
 
     def open(self, program: ThymioProgram, local_events: Collection[str]) -> None:
-        """Have the topics of this program's events, and of these local ones."""
+        """Create the topics for the events of a program and for these local events."""
         self._close_program()
         events = [event for event, _ in program.events if not is_internal(event)]
-        self.words, unfit = unlike([*events, *local_events], self._topic)
+        self.words, unfit = unique_topic_words([*events, *local_events], self._topic)
         for event, why in unfit.items():
             self._warn(f"event {event}", f"{why}: use _aseba/events and _aseba/emit")
         for event, word in self.words.items():
@@ -53,7 +53,7 @@ class EventPorts:
                 self._subscriptions.append(subscription)
 
     def publish(self, event: str, args: Sequence[int]) -> None:
-        """The robot emitted an event, or a local one happened."""
+        """Publish an event that the robot emitted, or a local event."""
         data = list(args)
         self._any.publish(Int16MultiArray(layout=convert_readings.layout([(event, len(data))]), data=data))
         publisher = self._publishers.get(event)
@@ -82,22 +82,22 @@ class EventPorts:
 
     def _on_any_emit(self, message: Int16MultiArray) -> None:
         if len(message.layout.dim) != 1:
-            self._warn("_aseba/emit", "refused: layout.dim[0].label must be the name of the event")
+            self._warn("_aseba/emit", "rejected: layout.dim[0].label must be the name of the event")
             return
         self._emit(message.layout.dim[0].label, list(message.data))
 
 
-def unlike(names: Sequence[str], topic: Callable[[str], str]) -> tuple[dict[str, str], dict[str, str]]:
-    """Name → its word in topics, for those that can have a topic to themselves; for the others why not.
+def unique_topic_words(names: Sequence[str], topic: Callable[[str], str]) -> tuple[dict[str, str], dict[str, str]]:
+    """Return topic words by name for names with a unique, valid topic, and the reason for each other name.
 
-    `topic` makes the whole name of a topic from such a word.
+    `topic` returns the full topic name for a word.
     """
     words = {name: topic_word(name) for name in names}
     taken = list(words.values())
     unfit = {}
     for name, word in words.items():
         if taken.count(word) > 1:
-            unfit[name] = f"shares the topic name {word} with another"
-        elif len(topic(word)) > _LONGEST_TOPIC:
+            unfit[name] = f"has the same topic name {word} as another"
+        elif len(topic(word)) > _MAX_TOPIC_LENGTH:
             unfit[name] = "has a name that is too long for a topic"
     return {name: word for name, word in words.items() if name not in unfit}, unfit

@@ -1,4 +1,4 @@
-"""The Aseba network between runtimes in different processes: one topic, and nothing that is heard is repeated."""
+"""The Aseba network between runtimes in different processes: one topic; received events are never published again."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from rclpy.node import Node
 from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.ros.interface import convert_readings, qos
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 
-__all__ = ["TOPIC", "AsebaNetwork", "Telegram"]
+__all__ = ["TOPIC", "AsebaNetwork", "NetworkEvent"]
 
 TOPIC = "_aseba/network"
-"""Relative: runtimes in one namespace hear each other."""
+"""Relative: connects the runtimes of one namespace."""
 HEAD = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Telegram:
-    """A global event on its way: sender's number (0 is a computer), its radio's channel and network, values."""
+class NetworkEvent:
+    """A global event: name, sender number (0 is a computer), radio channel and network, values."""
 
     event: str
     source: int
@@ -30,31 +30,31 @@ class Telegram:
 
 
 class AsebaNetwork:
-    """Sends what happens here to other runtimes, and tells what comes from them."""
+    """Exchanges events with other runtimes; `hear` is called with each received event."""
 
-    def __init__(self, node: Node, hear: Callable[[Telegram], None]) -> None:
-        self._hear, self._warn = hear, Warner(node)
+    def __init__(self, node: Node, hear: Callable[[NetworkEvent], None]) -> None:
+        self._set_demand, self._warn = hear, ThrottledLog(node)
         self._own = uuid.uuid4().hex
         self._publisher = node.create_publisher(Int16MultiArray, TOPIC, qos.EVENTS)
         node.create_subscription(Int16MultiArray, TOPIC, self._on_message, qos.EVENTS)
 
     @property
     def has_others(self) -> bool:
-        """Whether somebody else listens."""
+        """Whether other runtimes are subscribed."""
         return self._publisher.get_subscription_count() > 1
 
-    def send(self, telegram: Telegram) -> None:
-        """Tell the others, if there are any."""
+    def send(self, event_message: NetworkEvent) -> None:
+        """Publish an event if there are other runtimes."""
         if self.has_others:
-            data = [telegram.source, *telegram.radio, *telegram.args]
-            labels = [(telegram.event, len(data)), (self._own, 0)]
+            data = [event_message.source, *event_message.radio, *event_message.args]
+            labels = [(event_message.event, len(data)), (self._own, 0)]
             self._publisher.publish(Int16MultiArray(layout=convert_readings.layout(labels), data=data))
 
     def _on_message(self, message: Int16MultiArray) -> None:
         labels: Sequence[str] = [dimension.label for dimension in message.layout.dim]
         if len(labels) != 2 or len(message.data) < HEAD:
-            found = f"{len(labels)} labels and {len(message.data)} values found"
-            self._warn(self._publisher.topic_name, f"refused: {found}, expected 2 and 3 or more")
+            found = f"found {len(labels)} labels and {len(message.data)} values"
+            self._warn(self._publisher.topic_name, f"rejected: {found}, expected 2 and 3 or more")
         elif labels[1] != self._own:
             source, channel, network, *args = message.data
-            self._hear(Telegram(labels[0], source, (channel, network), tuple(args)))
+            self._set_demand(NetworkEvent(labels[0], source, (channel, network), tuple(args)))

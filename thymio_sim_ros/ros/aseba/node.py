@@ -1,8 +1,8 @@
-"""The Aseba runtime as a ROS node: feeds readings to devices, sends their commands, carries their events.
+"""The Aseba runtime as a ROS node: feeds readings to devices, publishes their commands, exchanges their events.
 
-It knows topics, not simulators: any robot that has them will do (docs/spec/ros-interface.md section 6,
-docs/aseba_ros.md). Devices keep simulated time by the node's clock. Programs are parameters; a text that does not
-compile is refused with its place, and the old program goes on. A robot without a program is switched on with its menu.
+It uses topics only and works with every robot that has them (docs/spec/ros-interface.md section 6, docs/aseba_ros.md).
+Devices follow the clock of the node. Programs are parameters; a text that does not compile is rejected with its
+position, and the current program continues. A robot without a program is switched on with its menu.
 """
 
 from __future__ import annotations
@@ -39,24 +39,24 @@ from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba import script_parameters
 from thymio_sim_ros.ros.aseba.bus import SLICE_S, Bus
 from thymio_sim_ros.ros.aseba.check_service import CheckService
-from thymio_sim_ros.ros.aseba.device_endpoints import DevicePorts, Wishes
+from thymio_sim_ros.ros.aseba.device_endpoints import DebugOptions, DeviceEndpoints
 from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, WrongValueError
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
-from thymio_sim_ros.ros.interface.raw_topic import Decoder
+from thymio_sim_ros.ros.interface.raw_topic import RawDecoder
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
-from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, deliver, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, deliver, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
-from thymio_sim_ros.ros.rclpy_ext.type_mismatch import InputTypes
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
+from thymio_sim_ros.ros.rclpy_ext.type_mismatch import TypeMismatches
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
 SIMULATOR_STATE, SIMULATOR_RAW = "simulator/_state", "simulator/_raw"
-"""Relative: of the simulator in the same namespace."""
+"""Relative names: topics of the simulator in the same namespace."""
 DIAGNOSTICS_S = 1.0
-LISTENERS_S = 0.25
-"""How often robots look whether somebody has come to listen to them."""
+SUBSCRIBERS_S = 0.25
+"""Period of polling for new subscribers of commands."""
 
 NO_OVERRIDES: Mapping[str, Any] = MappingProxyType({})
 _SENSORS = frozenset(sensor_names())
@@ -65,7 +65,7 @@ PROGRAM_ERRORS = (ProgramError, resources.ResourceError, OSError)
 
 @dataclass(frozen=True, slots=True)
 class _Accepted:
-    """Parameters that were checked: all values, those that change, and each robot's program."""
+    """Checked parameters: all values, the changes, and the program of each robot."""
 
     values: dict[str, Any]
     changes: dict[str, Any]
@@ -83,7 +83,7 @@ class AsebaRuntime:
         use_sim_time: bool | None = None,
         overrides: Mapping[str, Any] = NO_OVERRIDES,
     ) -> None:
-        """`overrides`: values of parameters by name, as from a command line."""
+        """`overrides`: parameter values by name, like those of a command line."""
         given = dict(overrides) | ({} if use_sim_time is None else {"use_sim_time": use_sim_time})
         self.node = parameter_node(
             "aseba_runtime",
@@ -92,12 +92,12 @@ class AsebaRuntime:
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
         )
-        self.robots: list[DevicePorts] = []
+        self.robots: list[DeviceEndpoints] = []
         self._accepted: _Accepted | None = None
         self._is_declaring = False
         self._raw: Any = None
-        """The subscription to the integers of all robots of the simulator."""
-        self._decoder, self._warn = Decoder(), Warner(self.node)
+        """The subscription to the integer readings of all robots of the simulator."""
+        self._decoder, self._warn = RawDecoder(), ThrottledLog(self.node)
         try:
             self._start(defaults or RuntimeParams())
         except (OptionError, WrongValueError, SdCardError, SettingsError, *PROGRAM_ERRORS) as error:
@@ -105,46 +105,48 @@ class AsebaRuntime:
             raise StartError(str(error)) from error
 
     @property
-    def greeting(self) -> str:
-        """What the robots run, for a person; who they are is not known before the simulator tells."""
-        programs = dict.fromkeys(ports.program.name for ports in self.robots if ports.program.name)
+    def startup_message(self) -> str:
+        """The programs, for the user; the robots are unknown until the simulator publishes its state."""
+        programs = dict.fromkeys(endpoints.program.name for endpoints in self.robots if endpoints.program.name)
         return f"Program: {', '.join(programs) or 'none'}"
 
-    def turn(self, executor: Executor) -> None:
-        """Handle messages, then let robots take turns that wait for one, for a slice of wall time.
+    def run_once(self, executor: Executor) -> None:
+        """Handle messages, then run ready robots for one slice of wall time.
 
-        Where a slice was not enough for programs without an end, the rest of the process has the interpreter for as
-        long.
+        If endless programs used up the previous slice, other threads of the process get the interpreter for one slice
+        first.
         """
         with self._bus.slice():
-            busy = [ports for ports in self.robots if ports.is_busy]
-            if busy and self._bus.has_waiting:
-                self._rest(executor)
-            wait_s = min((ports.resumes_s for ports in busy), default=inf) - time.monotonic()
-            if wait_s > 0.0 and not self._bus.has_waiting:
+            busy = [endpoints for endpoints in self.robots if endpoints.is_busy]
+            if busy and self._bus.has_ready_robots:
+                self._spin_only(executor)
+            wait_s = min((endpoints.resumes_s for endpoints in busy), default=inf) - time.monotonic()
+            if wait_s > 0.0 and not self._bus.has_ready_robots:
                 executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
                 return
             deliver(executor)
             now_s = time.monotonic()
-            self._bus.settle(*[ports for ports in busy if ports.is_busy and ports.resumes_s <= now_s])
+            self._bus.run_until_idle(
+                *[endpoints for endpoints in busy if endpoints.is_busy and endpoints.resumes_s <= now_s]
+            )
 
     @staticmethod
-    def _rest(executor: Executor) -> None:
-        """Do no more than handle messages for a while."""
+    def _spin_only(executor: Executor) -> None:
+        """Handle messages for one slice without running robots."""
         end_s = time.monotonic() + SLICE_S
         while (wait_s := end_s - time.monotonic()) > 0.0:
             executor.spin_once(timeout_sec=wait_s)
 
-    def end(self) -> None:
-        """Stop the wheels that programs drive."""
-        for ports in self.robots:
-            ports.halt()
+    def stop(self) -> None:
+        """Stop the wheels and programs of all robots."""
+        for endpoints in self.robots:
+            endpoints.stop()
 
     def close(self) -> None:
         """Stop the wheels, then destroy the node."""
         self._jumps.unregister()
-        for ports in self.robots:
-            ports.close()
+        for endpoints in self.robots:
+            endpoints.close()
         self.node.destroy_node()
 
     # -- start
@@ -158,26 +160,28 @@ class AsebaRuntime:
             aseba_params.check_value(name, value)
         self._options = self.params.options
         self._behaviour = check_behaviour(self.params.behaviour, self.params.layout)
-        self._bus = Bus(node, lambda: self.robots, self._on_told)
+        self._bus = Bus(node, lambda: self.robots, self._on_status_changed)
         self._bus.reaches_all = self.params.emit_reaches == "network"
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
-        self._input_types = InputTypes(node)
-        self._behaviours = node.create_publisher(String, "~/_behaviours", qos.LATCHED)
+        self._type_mismatches = TypeMismatches(node)
+        self._behaviours = node.create_publisher(String, "~/_behaviours", qos.TRANSIENT_LOCAL)
         listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
         self._behaviours.publish(String(data=json.dumps(listed)))
         self._check = CheckService(
-            node, layout=self.params.layout, robots=lambda: [ports.names.name for ports in self.robots]
+            node, layout=self.params.layout, robots=lambda: [endpoints.names.name for endpoints in self.robots]
         )
         if (
             self.params.follow_simulator
             and self.params.robot_topics != "driver"
             and node.count_publishers(SIMULATOR_RAW)
         ):
-            self._listen_to(SIMULATOR_RAW)  # it will say so; subscriptions for a hundred robots are not made in vain
+            self._subscribe_raw(
+                SIMULATOR_RAW
+            )  # avoids creating subscriptions per robot, which _on_simulator_state would replace
         self._set_robots(self.params.robots)
         if self.params.follow_simulator:
-            node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
-        node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, self._told))
+            node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.TRANSIENT_LOCAL)
+        node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, self._last_set_text))
         node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(self._apply_parameters)
         self._jumps = node.get_clock().create_jump_callback(
@@ -186,138 +190,142 @@ class AsebaRuntime:
         )
         self._wall = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_timer(DIAGNOSTICS_S, self._publish_diagnostics, clock=self._wall)
-        node.create_timer(DIAGNOSTICS_S, self._see_who_tells, clock=self._wall)
-        node.create_timer(LISTENERS_S, self._see_listeners, clock=self._wall)
-        self._looks = node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
+        node.create_timer(DIAGNOSTICS_S, self._check_raw_publisher, clock=self._wall)
+        node.create_timer(SUBSCRIBERS_S, self._poll_subscribers, clock=self._wall)
+        self._variable_timer = node.create_timer(
+            1.0 / self.params.watch_rate, self._publish_variables, clock=self._wall
+        )
 
     # -- robots
 
     def _set_robots(self, names: Sequence[str]) -> None:
-        """One device for each of these namespaces; those that are there already go on, numbers stay."""
-        here = {ports.names.name: ports for ports in self.robots}
-        for name, ports in here.items():
+        """Create one device for each of these namespaces; existing devices continue with their numbers."""
+        here = {endpoints.names.name: endpoints for endpoints in self.robots}
+        for name, endpoints in here.items():
             if name not in names:
-                ports.close()
-        kept = {name: ports for name, ports in here.items() if name in names}
+                endpoints.close()
+        kept = {name: endpoints for name, endpoints in here.items() if name in names}
         self.robots = list(kept.values())
         new = [name for name in names if name not in kept]
         for name in new:
             self.robots.append(self._new_robot(name, self._free_number(names.index(name)), alone=len(names) == 1))
-        self.robots.sort(key=lambda ports: names.index(ports.names.name))
+        self.robots.sort(key=lambda endpoints: names.index(endpoints.names.name))
         self._share_out(new)
 
     def _free_number(self, place: int) -> int:
-        taken = {ports.number for ports in self.robots}
+        taken = {endpoints.number for endpoints in self.robots}
         wanted = self.params.first_id + place
         return wanted if wanted not in taken else max(taken) + 1
 
-    def _new_robot(self, name: str, number: int, *, alone: bool) -> DevicePorts:
+    def _new_robot(self, name: str, number: int, *, alone: bool) -> DeviceEndpoints:
         if name:
             self._is_declaring = True
             self._values |= aseba_params.declare_robot(self.node, name)
             self._is_declaring = False
-        return DevicePorts(
+        return DeviceEndpoints(
             self.node,
             RobotNames(name),
             number=number,
-            around=self._bus,
+            bus=self._bus,
             options=self._options.for_robot(name, alone=alone),
-            wishes=self._wishes(name),
+            debug_options=self._debug_options(name),
             has_driver=self.params.robot_topics == "driver",
             is_fed=self._raw is not None,
         )
 
     def _share_out(self, new: Sequence[str]) -> None:
-        """New robots begin; others only if the file is shared out differently now."""
+        """Start new robots, and those whose program changes because the file is assigned differently."""
         shares = script_parameters.shares(self._values, self._members(), self.params.layout)
-        for ports in self.robots:
-            share = shares[ports.names.name]
-            if ports.names.name in new or _program(share) != _program(ports.share):
-                self._begin(ports, share)
+        for endpoints in self.robots:
+            share = shares[endpoints.names.name]
+            if endpoints.names.name in new or _program(share) != _program(endpoints.share):
+                self._start_program(endpoints, share)
 
-    def _begin(self, ports: DevicePorts, share: Assignment | None) -> None:
-        """Let a robot begin with its program, or with the behaviour that it is to be switched on with."""
+    def _start_program(self, endpoints: DeviceEndpoints, share: Assignment | None) -> None:
+        """Start a robot with its program or with a built-in behavior."""
         for note in share.notes if share is not None else ():
-            self.node.get_logger().warning(f"{ports.names.name or 'robot'}: {note}")
+            self.node.get_logger().warning(f"{endpoints.names.name or 'robot'}: {note}")
         if share is None and self.params.layout != THYMIO:  # the reference playground has no menu
             share = Assignment(None)
         if share is None or self._behaviour:
-            ports.start(self._behaviour or MENU, share)
+            endpoints.start(self._behaviour or MENU, share)
         else:
-            ports.load(share.program, share.notes)
+            endpoints.load(share.program, share.notes)
 
     def _members(self) -> list[RobotId]:
-        return [RobotId(ports.names.name, ports.number) for ports in self.robots]
+        return [RobotId(endpoints.names.name, endpoints.number) for endpoints in self.robots]
 
     def _on_simulator_state(self, message: String) -> None:
-        """Another playground may have other robots; they come and go while it runs."""
+        """Follow the robots of the simulator."""
         try:
             told = json.loads(message.data)
             names, raw = [str(robot["name"]) for robot in told["robots"]], str(told.get("raw", ""))
         except (ValueError, KeyError, TypeError) as error:
-            self._warn(full_name(self.node, SIMULATOR_STATE), f"refused: {error!r}")
+            self._warn(full_name(self.node, SIMULATOR_STATE), f"rejected: {error!r}")
             return
-        self._listen_to("" if self.params.robot_topics == "driver" else raw)
-        if names != [ports.names.name for ports in self.robots]:
+        self._subscribe_raw("" if self.params.robot_topics == "driver" else raw)
+        if names != [endpoints.names.name for endpoints in self.robots]:
             try:
                 self._set_robots(names)
             except (SdCardError, SettingsError, *PROGRAM_ERRORS) as error:
                 self.node.get_logger().error(f"robots {', '.join(names)}: {error}")
 
-    def _listen_to(self, topic: str) -> None:
-        """Hear the integers of all robots at once where a simulator tells them; else each robot has its topics."""
+    def _subscribe_raw(self, topic: str) -> None:
+        """Subscribe to the readings of all robots in one topic; "" selects one topic per robot and sensor."""
         topic = topic and self.node.resolve_topic_name(topic)
         if self._raw is not None and self._raw.topic_name != topic:
             self.node.destroy_subscription(self._raw)
             self._raw = None
         if self._raw is None and topic:
             self._raw = self.node.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
-        for ports in self.robots:
-            ports.is_fed = self._raw is not None
+        for endpoints in self.robots:
+            endpoints.is_fed = self._raw is not None
 
-    def _see_who_tells(self) -> None:
-        """There may be no simulator any more, and a robot of another kind instead."""
+    def _check_raw_publisher(self) -> None:
+        """Return to the topics of each robot if the simulator has ended."""
         if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
-            self._listen_to("")
+            self._subscribe_raw("")
 
-    def _see_listeners(self) -> None:
-        for ports in self.robots:
-            ports.see_listeners()
+    def _poll_subscribers(self) -> None:
+        for endpoints in self.robots:
+            endpoints.poll_subscribers()
 
     def _on_raw(self, data: bytes) -> None:
-        """A tick of the simulator: all that was measured is there before anybody takes a turn, as in the runner."""
-        robots = {ports.names.name: ports for ports in self.robots if ports.is_fed}
-        fed: dict[DevicePorts, None] = {}
+        """Feed all readings of one tick, then run robots with work to do, in the order of headless runs."""
+        robots = {endpoints.names.name: endpoints for endpoints in self.robots if endpoints.is_fed}
+        fed: dict[DeviceEndpoints, None] = {}
         try:
             for robot, sensor, words in self._decoder.decode(data):
                 if robot in robots and sensor in _SENSORS:
                     robots[robot].feed(sensor, words)
                     fed[robots[robot]] = None
         except (ValueError, RuntimeError) as error:
-            self._warn(full_name(self.node, SIMULATOR_RAW), f"refused: {error}")
+            self._warn(full_name(self.node, SIMULATOR_RAW), f"rejected: {error}")
         now_ns = self.node.get_clock().now().nanoseconds
-        self._bus.settle(*[ports for ports in fed if ports.is_due(now_ns)])
+        self._bus.run_until_idle(*[endpoints for endpoints in fed if endpoints.is_due(now_ns)])
 
     def _on_jump(self, jump: TimeJump) -> None:
-        """Time went back: the simulator was reset, and so are the robots' machines."""
+        """Restart all robots when time jumps back, as at a reset of the simulator."""
         if jump.clock_change in (ClockChange.ROS_TIME_NO_CHANGE, ClockChange.SYSTEM_TIME_NO_CHANGE):
-            for ports in self.robots:
-                ports.restart()
+            for endpoints in self.robots:
+                endpoints.restart()
 
-    # -- what is told
+    # -- status and variables
 
-    def _look(self) -> None:
-        for ports in self.robots:
-            ports.look()
+    def _publish_variables(self) -> None:
+        for endpoints in self.robots:
+            endpoints.publish_variables()
 
-    def _on_told(self, ports: DevicePorts) -> None:
-        self._publish_statuses([ports.status.message])
+    def _on_status_changed(self, endpoints: DeviceEndpoints) -> None:
+        self._publish_statuses([endpoints.status.message])
 
     def _publish_diagnostics(self) -> None:
-        for ports in self.robots:
-            ports.observe_load()
-        self._input_types.look()
-        self._publish_statuses([*(ports.status.message for ports in self.robots), self._input_types.status()])
+        for endpoints in self.robots:
+            endpoints.observe_load()
+        self._type_mismatches.poll()
+        self._publish_statuses(
+            [*(endpoints.status.message for endpoints in self.robots), self._type_mismatches.status()]
+        )
 
     def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:
         if self._diagnostics.get_subscription_count():
@@ -331,12 +339,12 @@ class AsebaRuntime:
         if self._is_declaring:
             return SetParametersResult(successful=True)
         changes = params.changes(parameters)
-        named = script_parameters.named(changes, self._told)
+        named = script_parameters.named(changes, self._last_set_text)
         values = self._values | named
         try:
             for name, value in changes.items():
                 if not (self.node.has_parameter(name) or aseba_params.is_free(name)):
-                    raise WrongValueError(f"there is no parameter {name}")
+                    raise WrongValueError(f"found unknown parameter {name}")
                 aseba_params.check_value(name, value)
             if reason := params.refusal(self.params, parameters):
                 raise WrongValueError(reason)
@@ -348,15 +356,15 @@ class AsebaRuntime:
         self._accepted = _Accepted(values, named, shares)
         return SetParametersResult(successful=True)
 
-    def _told(self, name: str) -> str:
-        """A text parameter as it was set last; empty if it never was."""
+    def _last_set_text(self, name: str) -> str:
+        """Return the value of a text parameter as set last, or an empty text."""
         return str(self.node.get_parameter_or(name, Parameter(name, value="")).value)
 
     def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Assignment | None]:
-        """Each robot's program by the new values, if a script changes; those of absent robots must compile too."""
+        """Return the program of each robot if a script changes; programs of absent robots must compile too."""
         if not any(".script." in f".{name}" for name in changes):
             return {}
-        absent = set(script_parameters.named_robots(changes)) - {ports.names.name for ports in self.robots}
+        absent = set(script_parameters.named_robots(changes)) - {endpoints.names.name for endpoints in self.robots}
         for name in sorted(absent):
             script_parameters.shares(values, [RobotId(name, self.params.first_id)], self.params.layout)
         return script_parameters.shares(values, self._members(), self.params.layout)
@@ -371,30 +379,34 @@ class AsebaRuntime:
         self.params = params.updated(self.params, parameters)
         self._bus.reaches_all = self.params.emit_reaches == "network"
         if "watch_rate" in changes:
-            self.node.destroy_timer(self._looks)
-            self._looks = self.node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
+            self.node.destroy_timer(self._variable_timer)
+            self._variable_timer = self.node.create_timer(
+                1.0 / self.params.watch_rate, self._publish_variables, clock=self._wall
+            )
         if "behaviour" in changes:
             self._behaviour = self.params.behaviour
-        for ports in self.robots:
-            ports.want(self._wishes(ports.names.name))
-            self._apply_script(ports, old, accepted, is_switched=self._behaviour != before)
+        for endpoints in self.robots:
+            endpoints.set_debug_options(self._debug_options(endpoints.names.name))
+            self._apply_script(endpoints, old, accepted, is_switched=self._behaviour != before)
 
-    def _apply_script(self, ports: DevicePorts, old: dict[str, Any], accepted: _Accepted, *, is_switched: bool) -> None:
-        name = ports.names.name
-        share = accepted.shares.get(name, ports.share)
+    def _apply_script(
+        self, endpoints: DeviceEndpoints, old: dict[str, Any], accepted: _Accepted, *, is_switched: bool
+    ) -> None:
+        name = endpoints.names.name
+        share = accepted.shares.get(name, endpoints.share)
         is_other = script_parameters.script_of(old, name) != script_parameters.script_of(accepted.values, name)
-        if is_other or _program(share) != _program(ports.share):
+        if is_other or _program(share) != _program(endpoints.share):
             if "behaviour" not in accepted.changes:
                 self._behaviour = ""
-            self._begin(ports, share or Assignment(None))
+            self._start_program(endpoints, share or Assignment(None))
         elif is_switched:
-            self._begin(ports, share)
+            self._start_program(endpoints, share)
 
-    def _wishes(self, robot: str) -> Wishes:
-        """What is wanted of one robot: breakpoints of its own in place of those for all, watches of its own besides."""
+    def _debug_options(self, robot: str) -> DebugOptions:
+        """Return the options of one robot: its breakpoints replace those for all, its watches are added to them."""
         values = self._values
         own = f"robots.{robot}."
-        return Wishes(
+        return DebugOptions(
             breakpoints=tuple(values.get(f"{own}breakpoints") or values.get("breakpoints") or ()),
             watch=(*(values.get("watch") or ()), *(values.get(f"{own}watch") or ())),
             local_events=tuple(values.get("local_events") or ()),
@@ -407,5 +419,5 @@ def _program(share: Assignment | None) -> object:
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """The executable `aseba_runtime`."""
-    return run_main(lambda context: greeted([AsebaRuntime(context)]), args)
+    """Run the executable `aseba_runtime`."""
+    return run_main(lambda context: announce([AsebaRuntime(context)]), args)

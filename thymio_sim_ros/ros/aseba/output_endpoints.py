@@ -1,7 +1,7 @@
-"""What an Aseba program tells its robot: a publisher for each topic, and what a robot that listens later has to know.
+"""Publishes the commands of an Aseba program, again for late subscribers where needed.
 
-These topics are volatile, and finding each other takes a while: what a program says in its first lines would be lost to
-a robot that is found a moment later, or that was started again meanwhile.
+The topics are volatile and discovery takes time: without re-sending, the first commands of a program would be lost to a
+robot that is discovered later or was restarted.
 """
 
 from __future__ import annotations
@@ -20,41 +20,41 @@ from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.sim.commands import Command, SetLed, ShowOnLeds
 
-__all__ = ["OutputPorts"]
+__all__ = ["OutputEndpoints"]
 
 FRESH_S = 10.0
-"""For so long after a program began, whoever comes is told, even where somebody listened: a robot that was killed is
-taken for one that listens for a while."""
+"""Time after the start of a program during which retained commands are re-sent to every new subscriber, even if there
+was one before: discovery reports a killed robot as a subscriber for a while."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Outlet:
-    """The publisher of a topic, and how many listen."""
+class _CommandPublisher:
+    """The publisher of a command topic with its encoder and its count of subscriptions."""
 
     encode: Callable[[Any], Any]
     publisher: Any
     count: Callable[[], int]
-    holds: bool
+    is_retained: bool
 
 
 @dataclass(slots=True)
-class _Told:
-    """A message, how many of those who listen now may have heard it, and whether somebody has come who has not."""
+class _SentCommand:
+    """A sent message, the number of current subscribers that may have received it, and whether to send it again."""
 
     message: Any
     listeners: int
     is_due: bool = False
 
 
-class OutputPorts:
-    """Publishers of one robot's commands."""
+class OutputEndpoints:
+    """Publishers of the commands of one robot."""
 
     def __init__(self, node: Node, names: RobotNames, *, has_driver: bool) -> None:
-        """`has_driver`: wheels are told by `cmd_vel`, as the ROS driver wants it."""
+        """`has_driver`: drive the wheels by `cmd_vel`, as the ROS driver expects."""
         self._node = node
-        self._outlets: dict[str, _Outlet] = {}
-        self._told: dict[tuple[str, Hashable], _Told] = {}
-        """By topic and what of it the message is about, in the order in which it was said."""
+        self._publishers: dict[str, _CommandPublisher] = {}
+        self._sent: dict[tuple[str, Hashable], _SentCommand] = {}
+        """By topic and part of the topic (such as one LED), in the order of sending."""
         self._fresh_until_s = 0.0
         for row in (*command_topics.ROWS, *plugin_topics.rows()):
             if row.encode is None:
@@ -65,29 +65,34 @@ class OutputPorts:
             else:
                 topic = driver_topics.driver_name(row.topic) if has_driver else row.topic
                 publisher, encode = node.create_publisher(row.type, names.topic(topic), row.profile), row.encode
-            self._outlets[row.topic] = _Outlet(encode, publisher, raw_publisher.counter(publisher), row.holds)
+            self._publishers[row.topic] = _CommandPublisher(
+                encode, publisher, raw_publisher.counter(publisher), row.is_retained
+            )
         self._counts = self._count()
 
-    def begin(self) -> None:
-        """A program begins."""
+    def start_program(self) -> None:
+        """Note that a program starts."""
         self._fresh_until_s = time.monotonic() + FRESH_S
         self._counts = self._count()
 
     def send(self, command: Command) -> None:
-        """Tell the robot; nothing for a command that has no topic."""
+        """Publish a command; commands without a topic are ignored."""
         topic = _topic(command)
         if topic is None:
             return
-        outlet = self._outlets[topic]
-        told = _Told(outlet.encode(command), outlet.count())
-        outlet.publisher.publish(told.message)
+        publisher = self._publishers[topic]
+        sent = _SentCommand(publisher.encode(command), publisher.count())
+        publisher.publisher.publish(sent.message)
         key = (topic, _part(command))
-        self._told.pop(key, None)
-        if outlet.holds or not told.listeners:
-            self._told[key] = told
+        self._sent.pop(key, None)
+        if publisher.is_retained or not sent.listeners:
+            self._sent[key] = sent
 
     def send_all(self, commands: Sequence[Command], *, latest: bool = False) -> int:
-        """Send commands in order; `latest`: of those about the same thing the last only. How many were left out."""
+        """Publish commands in order and return how many were skipped.
+
+        With `latest` only the last command for each topic and part is published.
+        """
         kept = commands
         if latest:
             last: dict[Hashable, Command] = {}
@@ -100,31 +105,34 @@ class OutputPorts:
             self.send(command)
         return len(commands) - len(kept)
 
-    def look(self) -> None:
-        """Tell those who have come what holds, and what nobody has heard: in the order of old, once no more come."""
+    def resend(self) -> None:
+        """Send retained and unreceived commands again to new subscribers.
+
+        Waits until discovery is quiet (no change of counts since the last poll), so that the original order is kept.
+        """
         before, self._counts = self._counts, self._count()
         is_fresh = time.monotonic() < self._fresh_until_s
-        for (topic, _), told in self._told.items():
+        for (topic, _), sent in self._sent.items():
             count = self._counts[topic]
-            is_unheard = not told.listeners and count > 0
-            told.is_due |= is_unheard or (is_fresh and count > before[topic])
-            told.listeners = min(told.listeners, count)
+            is_unheard = not sent.listeners and count > 0
+            sent.is_due |= is_unheard or (is_fresh and count > before[topic])
+            sent.listeners = min(sent.listeners, count)
         if self._counts == before:
-            for (topic, part), told in [(key, told) for key, told in self._told.items() if told.is_due]:
-                outlet = self._outlets[topic]
-                outlet.publisher.publish(told.message)
-                told.listeners, told.is_due = self._counts[topic], False
-                if not outlet.holds:
-                    del self._told[topic, part]
+            for (topic, part), sent in [(key, sent) for key, sent in self._sent.items() if sent.is_due]:
+                publisher = self._publishers[topic]
+                publisher.publisher.publish(sent.message)
+                sent.listeners, sent.is_due = self._counts[topic], False
+                if not publisher.is_retained:
+                    del self._sent[topic, part]
 
     def close(self) -> None:
         """Destroy the topics."""
-        for outlet in self._outlets.values():
-            self._node.destroy_publisher(outlet.publisher)
+        for publisher in self._publishers.values():
+            self._node.destroy_publisher(publisher.publisher)
 
     def _count(self) -> dict[str, int]:
-        """How many listen to each topic."""
-        return {topic: outlet.count() for topic, outlet in self._outlets.items()}
+        """Return the number of subscriptions by topic."""
+        return {topic: publisher.count() for topic, publisher in self._publishers.items()}
 
 
 def _topic(command: Command) -> str | None:
@@ -132,7 +140,7 @@ def _topic(command: Command) -> str | None:
 
 
 def _part(command: Command) -> Hashable:
-    """What of its topic a command is about, where one does not replace all that was said before."""
+    """Return the part of a topic that a command sets, if it does not replace all earlier commands of the topic."""
     if isinstance(command, ShowOnLeds):
         return command.group
     return command.number if isinstance(command, SetLed) else None

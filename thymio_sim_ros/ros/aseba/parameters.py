@@ -1,4 +1,4 @@
-"""Parameters of the Aseba runtime: those for all robots, and the free ones (constants, what differs per robot)."""
+"""Parameters of the Aseba runtime: those for all robots, and free parameters (constants, values for one robot)."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ INT16 = range(-0x8000, 0x8000)
 
 BEHAVIOUR = "behaviour"
 ROBOT_NAMES, OLD_ROBOT_NAMES = "robot_names", "robots"
-"""`ros2 param dump` cannot write a parameter `robots` beside those that begin with `robots.`."""
+"""Renamed: `ros2 param dump` cannot write a parameter `robots` together with names that begin with `robots.`."""
 
 ROBOT_TEXTS = {
-    "script.path": "Program for this robot in place of that for all: a built-in program's name or an .aesl file",
-    "script.source": "Program for this robot in place of that for all: the text",
+    "script.path": "Program for this robot instead of the common one: name of a built-in program or an .aesl file",
+    "script.source": "Program for this robot instead of the common one: the text",
     "script.name": "Name shown for a program given as text",
 }
 ROBOT_ARRAYS = {
-    "breakpoints": (INTEGERS, "Lines to stop at on this robot, in place of those for all"),
-    "watch": (STRINGS, "Variables of this robot with a topic of their own, besides those for all"),
+    "breakpoints": (INTEGERS, "Breakpoint lines for this robot instead of the common ones"),
+    "watch": (STRINGS, "Additional variables of this robot that have a topic"),
 }
 ARRAYS = {"local_events": STRINGS} | {word: kind for word, (kind, _) in ROBOT_ARRAYS.items()}
 _FREE = re.compile(
@@ -54,7 +54,7 @@ _FREE = re.compile(
 
 
 class WrongValueError(ThymioSimError, ValueError):
-    """A value that a parameter cannot have; the text says why."""
+    """An invalid value of a parameter; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -63,77 +63,75 @@ class RuntimeParams:
 
     robots: list[str] = param(
         [""],
-        "Namespaces of the robots that run the program at first; '' is the only robot",
+        "Namespaces of the robots until the simulator is found; '' is a single robot without one",
         name=ROBOT_NAMES,
         fixed=True,
     )
     follow_simulator: bool = param(
-        True, "Whether the robots are those of simulator/_state, once there is one", fixed=True
+        True, "Whether to follow the robots of simulator/_state once it is published", fixed=True
     )
-    path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
+    path: str = param("", "Program: name of a built-in behavior or an .aesl file", name="script.path")
     source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
     name: str = param("", "Name shown for a program given as text", name="script.name")
     behaviour: str = param(
-        "", "Built-in behaviour, such as menu, that the robot is switched on with; '' is the program, or the menu"
+        "", "Built-in behavior, such as menu, that runs when the robot is switched on; '' is the program, or the menu"
     )
-    breakpoints: list[int] = param(
-        [], "Lines of the program's file, from 1, before which robots stop; at most 16", array=INTEGERS
-    )
-    watch: list[str] = param([], "Variables with a topic of their own, aseba/variables/<name>", array=STRINGS)
-    watch_rate: float = param(10.0, "Looks at variables per second of wall time", low=0.1, high=100.0)
+    breakpoints: list[int] = param([], "Breakpoints: lines of the program file, from 1; at most 16", array=INTEGERS)
+    watch: list[str] = param([], "Variables with a topic, aseba/variables/<name>", array=STRINGS)
+    watch_rate: float = param(10.0, "Polls of variables per second of wall time", low=0.1, high=100.0)
     local_events: list[str] = param(
-        [], "Local events, such as prox, that are published as those of the program are; * is all", array=STRINGS
+        [], "Local events, such as prox, that are published like events of the program; * is all", array=STRINGS
     )
     emit_reaches: str = param(
         "network",
-        "Whom _aseba/emit of a robot reaches: network (all that declare the event) or robot (that one)",
+        "Receivers of _aseba/emit of a robot: network (all that declare the event) or robot (only this one)",
         choices=("network", "robot"),
     )
-    language: str = param("en", "Language of the help in _aseba/target; English where it is not translated")
+    language: str = param("en", "Language of the help in _aseba/target; English if not translated")
     first_id: int = param(1, "Number of the first robot on the Aseba network", low=1, high=32000, fixed=True)
     robot_topics: str = param(
         "raw",
-        "Where readings come from: raw (the simulator's _raw/...) or driver (the ROS driver's topics)",
+        "Source of readings: raw (_raw/... of the simulator) or driver (topics of the ROS driver)",
         fixed=True,
         choices=("raw", "driver"),
     )
     layout: str = param(
-        "thymio", "Order of variables and natives: thymio (firmware 14) or playground (the reference's)", fixed=True
+        "thymio", "Variables and native functions: thymio (firmware 14) or playground (Aseba Playground)", fixed=True
     )
     events: str = param(
-        "firmware", "How events meet: firmware (they wait) or playground (they end a handler that runs)", fixed=True
+        "firmware", "Event policy: firmware (events wait) or playground (an event ends the running handler)", fixed=True
     )
-    card: str = param("", "Folder that stands for the memory card; '' is no card", fixed=True)
-    settings: str = param("", "Folder that keeps the robot's settings; '' forgets them", fixed=True)
+    card: str = param("", "Folder used as memory card; '' is no card", fixed=True)
+    settings: str = param("", "Folder where the robot's settings are stored; '' does not store them", fixed=True)
 
     @property
     def options(self) -> DeviceOptions:
-        """What these say about the robots; OptionError for a choice that does not exist."""
+        """Options of the devices. Raises OptionError for an unknown choice."""
         folders = (resources.expanded(text) if text else None for text in (self.card, self.settings))
         return DeviceOptions(self.layout, self.events, *folders)
 
 
 def adopt_overrides(node: Node) -> dict[str, Any]:
-    """Declare free parameters that the command line or a file gives; their values. The others are declared as usual.
+    """Declare free parameters given at the start and return their values. The others are declared as usual.
 
-    WrongValueError.
+    Raises WrongValueError.
     """
     found = {}
     ours = params.by_name(RuntimeParams())
     params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name) or name == OLD_ROBOT_NAMES, ours)
     given = params.overrides(node)
     if OLD_ROBOT_NAMES in given and ROBOT_NAMES not in given:
-        node.get_logger().warning(f"the parameter {OLD_ROBOT_NAMES} is called {ROBOT_NAMES} now")
+        node.get_logger().warning(f"parameter {OLD_ROBOT_NAMES} was renamed to {ROBOT_NAMES}")
         node._parameter_overrides[ROBOT_NAMES] = Parameter(ROBOT_NAMES, value=given[OLD_ROBOT_NAMES])
     for name, value in given.items():
-        if value is not None and is_free(name):  # an empty list has no type, and says what would be without it
+        if value is not None and is_free(name):  # an empty list has no type, and equals the default
             check_value(name, value)
             found[name] = node.declare_parameter(name, value).value
     return found
 
 
 def declare_robot(node: Node, robot: str) -> dict[str, Any]:
-    """Declare what may differ for one robot, unless it is declared; values in force by full name."""
+    """Declare the parameters of one robot that are not declared yet and return their values by full name."""
     values: dict[str, Any] = {}
     for word, text in ROBOT_TEXTS.items():
         name = f"robots.{robot}.{word}"
@@ -147,7 +145,7 @@ def declare_robot(node: Node, robot: str) -> dict[str, Any]:
 
 
 def check_value(name: str, value: Any) -> None:
-    """Raise WrongValueError for a free parameter that does not exist or cannot have this value."""
+    """Raise WrongValueError for an unknown free parameter or an invalid value."""
     if name == "local_events":
         _check_strings(name, value)
     if name == ROBOT_NAMES:
@@ -173,9 +171,9 @@ def is_free(name: str) -> bool:
 
 
 def exclusive(parameters: Sequence[Parameter], present: Callable[[str], Any]) -> list[Parameter]:
-    """The same with the other of path and source emptied where one is given, and empty lists of their own type.
+    """Return the parameters with path or source emptied where the other is given, and typed empty lists.
 
-    Another program for all, different from the `present` one, ends a behaviour.
+    A new common program, different from the `present` one, also resets the built-in behavior.
     """
     given = {parameter.name for parameter in parameters}
     result = []
@@ -222,7 +220,7 @@ def _check_strings(name: str, value: Any) -> None:
 
 
 def _list(name: str, value: Any, of: str) -> list[Any]:
-    """The items of a list; one that was never set has none."""
+    """Return the items of a list parameter; one that was never set is empty."""
     if isinstance(value, str | bytes | int | float):  # a bool is an int
         raise WrongValueError(f"{name}: {value!r} found, expected a list of {of}")
     return list(value or ())

@@ -1,4 +1,4 @@
-"""From the script parameters to each robot's program (docs/spec/ros-interface.md section 6.2)."""
+"""Determines the program of each robot from the script parameters (docs/spec/ros-interface.md section 6.2)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SOURCE = "script.source"
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """What a robot is to run: a path or a text, with constants. `is_own`: it has it to itself."""
+    """The program parameters of a robot: a path or a text, with constants. `is_own`: for this robot only."""
 
     path: str
     source: str
@@ -29,12 +29,12 @@ class Script:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is neither path nor text."""
+        """Whether neither path nor text is set."""
         return not (self.path or self.source)
 
 
 def script_of(values: Mapping[str, Any], robot: str) -> Script:
-    """The script that the parameters give a robot; what is empty for it is as for all."""
+    """Return the script of a robot; empty values of the robot default to the common ones."""
     prefix = f"robots.{robot}."
     is_own = bool(values.get(f"{prefix}script.path") or values.get(f"{prefix}script.source"))
     own = prefix if is_own else ""
@@ -48,7 +48,7 @@ def script_of(values: Mapping[str, Any], robot: str) -> Script:
 
 
 def shares(values: Mapping[str, Any], robots: Sequence[RobotId], layout: str) -> dict[str, Assignment | None]:
-    """Robot's name → its program; None for a robot that no script is for.
+    """Return programs by robot name; None for a robot without a script.
 
     Raises ProgramError, ResourceError, OSError.
     """
@@ -68,8 +68,11 @@ def shares(values: Mapping[str, Any], robots: Sequence[RobotId], layout: str) ->
 
 
 def named(changes: Mapping[str, Any], waiting: Callable[[str], Any]) -> dict[str, Any]:
-    """Changes of parameters with a script's name only beside its text: one set before waits, so that a text that is
-    refused leaves the name of the program that goes on. `waiting` gives the name set last."""
+    """Return parameter changes in which a script's name appears only together with its text.
+
+    A name that is set before its text is held back, so that a rejected text does not change the name of the running
+    program. `waiting` returns the name set last.
+    """
     names = {name: value for name, value in changes.items() if name.endswith(_NAME)}
     result = {name: value for name, value in changes.items() if name not in names}
     for text in [name for name in result if name.endswith(_SOURCE)]:
@@ -79,7 +82,7 @@ def named(changes: Mapping[str, Any], waiting: Callable[[str], Any]) -> dict[str
 
 
 def named_robots(names: Iterable[str]) -> list[str]:
-    """Robots that these parameters' names speak of."""
+    """Return the robots that appear in parameter names."""
     return list(dict.fromkeys(name.split(".")[1] for name in names if name.startswith("robots.")))
 
 

@@ -1,4 +1,4 @@
-"""What one robot's machine tells: state, place, use of the memories, warnings; and what its program is."""
+"""Publishes the status of one robot's machine and the description of its program."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from thymio_sim_ros.device.programs.status import FAULT, RUNNING, DeviceStatus
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import RobotNames
 
-__all__ = ["Loaded", "StatusPorts", "place"]
+__all__ = ["Loaded", "StatusEndpoints", "describe_position"]
 
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A program as it was loaded: the words of its events in topics, notes for people, breakpoints."""
+    """A loaded program: topic words of its events, notes for the user, breakpoints."""
 
     program: ThymioProgram
     topics: Mapping[str, str] = field(default_factory=dict)
@@ -31,8 +31,8 @@ class Loaded:
     breakpoints: Breakpoints = field(default_factory=Breakpoints)
 
 
-class StatusPorts:
-    """The latched topics `_aseba/status` and `_aseba/target`."""
+class StatusEndpoints:
+    """The retained topics `_aseba/status` and `_aseba/target`."""
 
     def __init__(self, node: Node, names: RobotNames, *, number: int) -> None:
         self._node = node
@@ -42,11 +42,11 @@ class StatusPorts:
         self._constant: list[KeyValue] = []
         self._program = ""
         self.message = DiagnosticStatus(name=self._name)
-        self._status = node.create_publisher(DiagnosticStatus, names.topic("_aseba/status"), qos.LATCHED)
-        self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.LATCHED)
+        self._status = node.create_publisher(DiagnosticStatus, names.topic("_aseba/status"), qos.TRANSIENT_LOCAL)
+        self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.TRANSIENT_LOCAL)
 
-    def begin(self, loaded: Loaded, spoken: str) -> None:
-        """Something about the program is new: tell the target, in a language, and the status at the next `tell`."""
+    def set_program(self, loaded: Loaded, spoken: str) -> None:
+        """Publish the target of a changed program; help texts are in the language `spoken`. The status follows."""
         self._last = None
         self._constant = _constant(loaded)
         self._program = loaded.program.name
@@ -54,8 +54,8 @@ class StatusPorts:
         fixed = _target_json(loaded.program.layout, spoken)
         self._target.publish(String(data=f'{fixed[:-1]}, "program": {told}}}'))
 
-    def tell(self, status: DeviceStatus, overload: str = "") -> bool:
-        """Publish the status if it is news; whether it was. `overload`: what the program does too fast."""
+    def publish_if_changed(self, status: DeviceStatus, overload: str = "") -> bool:
+        """Publish the status if it has changed, and return whether it has. `overload`: a warning text."""
         is_running = status.state == RUNNING
         shown = DeviceStatus(RUNNING) if is_running else status
         overload = overload if is_running else ""
@@ -90,15 +90,15 @@ class StatusPorts:
         self._node.destroy_publisher(self._target)
 
 
-def place(status: DeviceStatus) -> str:
-    """The state with its place, for people."""
+def describe_position(status: DeviceStatus) -> str:
+    """Return the state with line and event, for the user."""
     if status.state == RUNNING or status.line is None:
         return status.state
     return f"{status.state} at line {status.line} in {status.event}"
 
 
 def _constant(loaded: Loaded) -> list[KeyValue]:
-    """What does not change while a program runs."""
+    """Return the values that do not change while a program runs."""
     program, points = loaded.program, loaded.breakpoints
     warnings = [
         {key: doubt[key] for key in ("line", "column", "message")} for doubt in language_service.doubts(program)

@@ -1,4 +1,4 @@
-"""Variables of one robot's program: services of parameters' types, and topics.
+"""Services and topics for the variables of one robot's program.
 
 Source: docs/spec/ros-interface.md section 6.2.
 """
@@ -24,19 +24,19 @@ from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.editor.help import help_of
-from thymio_sim_ros.ros.aseba.event_endpoints import unlike
+from thymio_sim_ros.ros.aseba.event_endpoints import unique_topic_words
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 
-__all__ = ["VariablePorts"]
+__all__ = ["VariableEndpoints"]
 
 AT_LEAST_EVERY_S = 1.0
-"""A table of all variables is repeated so often for those who have just come."""
+"""Period after which an unchanged table of variables is published again for new subscribers."""
 
 _ELEMENT = re.compile(r"(?P<name>.+)\[(?P<index>\d{1,5})\]")
 
 
-class VariablePorts:
+class VariableEndpoints:
     """Reads and writes the variables of a device; `changed` is called after a write."""
 
     def __init__(
@@ -48,7 +48,7 @@ class VariablePorts:
         self._device = device
         self._changed = changed
         self._watched: dict[str, Any] = {}
-        self._told: dict[str, tuple[int, ...]] = {}
+        self._published: dict[str, tuple[int, ...]] = {}
         self._places: list[tuple[str, int, int]] = []
         self._last_table: list[int] = []
         self._last_table_s = 0.0
@@ -61,26 +61,28 @@ class VariablePorts:
             node.create_service(DescribeParameters, topic("aseba/describe_variables"), self._on_describe),
         ]
 
-    def begin(self, watch: Sequence[str]) -> None:
-        """A program was loaded, or others are to be watched: topics for those of these that there are."""
+    def set_program(self, watch: Sequence[str]) -> None:
+        """Set up the variables of a new program, and topics for the watched ones that exist."""
         places = self._device.variables()
         self._places = sorted(((name, *place) for name, place in places.items()), key=lambda item: item[1])
         self._layout = convert_readings.layout([(name, size) for name, _, size in self._places])
         self._last_table = []
-        words, _ = unlike([name for name in dict.fromkeys(watch) if name in places], self._topic)
+        words, _ = unique_topic_words([name for name in dict.fromkeys(watch) if name in places], self._topic)
         for name in [name for name in self._watched if name not in words]:
             self._node.destroy_publisher(self._watched.pop(name))
         for name, word in words.items():
             if name not in self._watched:
-                self._watched[name] = self._node.create_publisher(Int16MultiArray, self._topic(word), qos.LATCHED)
-        self._told.clear()
+                self._watched[name] = self._node.create_publisher(
+                    Int16MultiArray, self._topic(word), qos.TRANSIENT_LOCAL
+                )
+        self._published.clear()
 
-    def look(self) -> None:
-        """Publish what changed since the last look."""
+    def publish_changes(self) -> None:
+        """Publish variables that changed since the last call."""
         for name, publisher in self._watched.items():
             words = self._device.get_variable(name)
-            if self._told.get(name) != words:
-                self._told[name] = words
+            if self._published.get(name) != words:
+                self._published[name] = words
                 publisher.publish(Int16MultiArray(data=list(words)))
         if self._table.get_subscription_count():
             self._publish_table()
@@ -136,9 +138,9 @@ class VariablePorts:
             return
         all_words = list(self._device.get_variable(whole))
         if index >= len(all_words):
-            raise IndexError(f"{whole}: element {index} found, expected 0 to {len(all_words) - 1}")
+            raise IndexError(f"{whole}: found element {index}, expected 0 to {len(all_words) - 1}")
         if len(words) != 1:
-            raise ValueError(f"{name}: {len(words)} words found, expected 1")
+            raise ValueError(f"{name}: found {len(words)} integers, expected 1")
         all_words[index] = words[0]
         self._device.set_variable(whole, all_words)
 
@@ -177,11 +179,11 @@ def _words(name: str, value: ParameterValue) -> list[int]:
         return [value.integer_value]
     if value.type == ParameterType.PARAMETER_INTEGER_ARRAY:
         return list(value.integer_array_value)
-    raise ValueError(f"{name}: a value of type {value.type} found, expected an integer (2) or an integer array (7)")
+    raise ValueError(f"{name}: found a value of type {value.type}, expected an integer (2) or an integer array (7)")
 
 
 def _is_wanted(name: str, prefixes: Sequence[str], depth: int) -> bool:
-    """As nodes list their parameters: depth 0 is any."""
+    """Whether a name matches prefixes and depth as in ListParameters of nodes; depth 0 means any."""
 
     def is_shallow(rest: str) -> bool:
         return depth == ListParameters.Request.DEPTH_RECURSIVE or rest.count(".") < depth

@@ -18,7 +18,7 @@ from pathlib import Path
 SHARED_MEMORY = Path("/dev/shm")
 PATTERN = "lttng-ust-wait-*"
 PORTS = "fastrtps_port*"
-HALF_MADE = {b"", bytes(4), b"\x01\x00\x00\x00"}
+INCOMPLETE = {b"", bytes(4), b"\x01\x00\x00\x00"}
 """How a segment of Boost.Interprocess begins until it is initialised: the first word counts 0, 1, then 2."""
 MAKING_S = 10.0
 """Making a port takes microseconds."""
@@ -41,7 +41,7 @@ def remove_new(before: frozenset[Path], folder: Path = SHARED_MEMORY) -> None:
                 path.unlink()
 
 
-def remove_half_made_ports(folder: Path = SHARED_MEMORY) -> list[Path]:
+def remove_incomplete_ports(folder: Path = SHARED_MEMORY) -> list[Path]:
     """Remove the ports that nobody will ever finish; which they were."""
     removed = []
     for path in folder.glob(PORTS):
@@ -49,7 +49,7 @@ def remove_half_made_ports(folder: Path = SHARED_MEMORY) -> list[Path]:
             if path.name.endswith("_el") or time.time() - path.stat().st_mtime < MAKING_S:
                 continue
             with path.open("rb") as file:
-                is_half_made = file.read(4) in HALF_MADE
+                is_half_made = file.read(4) in INCOMPLETE
             if is_half_made:
                 path.unlink()
                 removed.append(path)

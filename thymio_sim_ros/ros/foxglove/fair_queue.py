@@ -32,7 +32,7 @@ class FairQueue(Generic[K, T]):
         self._by_sender.setdefault(sender, deque()).append(value)
         self._count += 1
 
-    def take(self, is_free: Callable[[K], bool] = lambda sender: True) -> T:
+    def pop(self, is_free: Callable[[K], bool] = lambda sender: True) -> T:
         """Remove and return the next value of those senders; IndexError when there is none."""
         sender = next((sender for sender in self._by_sender if is_free(sender)), None)
         if sender is None:

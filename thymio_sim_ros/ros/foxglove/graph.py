@@ -52,7 +52,7 @@ def connection_graph(node: Node, topics: Iterable[str], services: Iterable[str])
     topics, wanted = list(topics), set(services)
     nodes = node.get_node_names_and_namespaces()
     distinct = set(nodes)
-    publishers, subscribers, providers = (_By(names) for names in (topics, topics, wanted))
+    publishers, subscribers, providers = (_NodesByName(names) for names in (topics, topics, wanted))
     for name, namespace in distinct:
         try:
             publishers.add(name, namespace, node.get_publisher_names_and_types_by_node(name, namespace))
@@ -67,7 +67,7 @@ def connection_graph(node: Node, topics: Iterable[str], services: Iterable[str])
     return ConnectionGraph(publishers.sorted(), subscribers.sorted(), providers.sorted())
 
 
-class _By:
+class _NodesByName:
     """Nodes by the names that they use, of which some are wanted."""
 
     def __init__(self, wanted: Iterable[str]) -> None:

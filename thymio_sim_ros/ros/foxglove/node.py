@@ -36,17 +36,17 @@ from thymio_sim_ros.ros.foxglove.graph import (
     visible,
     visible_topics,
 )
-from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, announced, check, tls_context
+from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, check, server_capabilities, tls_context
 from thymio_sim_ros.ros.foxglove.parameters import Parameters
 from thymio_sim_ros.ros.foxglove.publishers import ClientPublishers
-from thymio_sim_ros.ros.foxglove.service_calls import Calls
+from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 from thymio_sim_ros.ros.foxglove.services import Services
 from thymio_sim_ros.ros.foxglove.time_share import TimeShare
 from thymio_sim_ros.ros.foxglove.topics import Topics
-from thymio_sim_ros.ros.interface.qos import LATCHED
+from thymio_sim_ros.ros.interface.qos import TRANSIENT_LOCAL
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
-from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.web import tokens as node_tokens
 
@@ -59,7 +59,7 @@ goes to asking for the publishers of subscribed topics, and to who talks to whom
 _REFRESH_S = 1.0
 _REPEAT_S = 1.0
 """After time went back: what a client gets while it drops the past may go with it (measured with Lichtblick)."""
-_HURRY_S = 0.02
+_FAST_POLL_S = 0.02
 """Period of polling while something waits for discovery: a call, a message of a new publisher."""
 
 
@@ -110,7 +110,7 @@ class FoxgloveBridge:
         self._build()
 
     @property
-    def greeting(self) -> str:
+    def startup_message(self) -> str:
         """Where to connect, for a person."""
         place = self._scheme, self.address, self.port
         is_open = not self.tokens.is_required
@@ -118,7 +118,7 @@ class FoxgloveBridge:
         return f"Foxglove: {places(*place)} {how}; access: {access(self.address, self.tokens)}"
 
     @property
-    def invitation(self) -> str:
+    def access_urls(self) -> str:
         """Where to connect with which token, for standard output; never for the log, which clients may read."""
         if not self.tokens.is_required:
             return ""
@@ -137,26 +137,26 @@ class FoxgloveBridge:
             return Tokens()
         return Tokens.for_address(self.params.address, given.full, given.read_only)
 
-    def turn(self, executor: Executor) -> None:
+    def run_once(self, executor: Executor) -> None:
         """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """End server and thread; call it when nobody turns the executor any more."""
         self._mailbox.close()
         self._server.close()
 
     def close(self) -> None:
         """End all that it opened, and the node."""
-        self.end()
+        self.stop()
         self._jump_handle.unregister()
         self._topics.close()
-        self._publishers.end()
+        self._publishers.close_all()
         self.node.destroy_node()
 
     def _open_server(self) -> ServerThread:
         values = self.params
-        capabilities = announced(values, uses_sim_time=self._uses_sim_time)
+        capabilities = server_capabilities(values, uses_sim_time=self._uses_sim_time)
         try:
             return ServerThread(
                 ServerInfo(
@@ -187,11 +187,11 @@ class FoxgloveBridge:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._is_topic = allow_list(values.topic_whitelist)
         self._is_service = allow_list(values.service_whitelist)
-        self._hurry = self.node.create_timer(_HURRY_S, self._poll_waiting, clock=steady)
-        self._hurry.cancel()
+        self._fast_poll_timer = self.node.create_timer(_FAST_POLL_S, self._poll_waiting, clock=steady)
+        self._fast_poll_timer.cancel()
         self._repeat = self.node.create_timer(_REPEAT_S, self._repeat_kept, clock=steady)
         self._repeat.cancel()
-        self._calls = Calls(self.node, wake=self._poll_soon)
+        self._calls = ServiceCalls(self.node, wake=self._poll_soon)
         self._topics = Topics(
             self.node,
             post,
@@ -204,14 +204,20 @@ class FoxgloveBridge:
         )
         self._services = Services(self.node, self._calls, post)
         self._parameters = Parameters(
-            self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist), wake=self._poll_soon
+            self.node,
+            self._calls,
+            post,
+            is_allowed=allow_list(values.param_whitelist),
+            wake=self._poll_soon,
         )
         self._publishers = ClientPublishers(
             self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._poll_soon
         )
-        self._told_count = -1
+        self._published_count = -1
         self._count = (
-            self.node.create_publisher(UInt32, "~/client_count", LATCHED) if values.publish_client_count else None
+            self.node.create_publisher(UInt32, "~/client_count", TRANSIENT_LOCAL)
+            if values.publish_client_count
+            else None
         )
         self._seen: tuple[Any, Any] = ({}, {})
         self._discovery, self._graph_share = TimeShare(_DISCOVER_SHARE), TimeShare(_DISCOVER_SHARE)
@@ -249,7 +255,7 @@ class FoxgloveBridge:
         self._mailbox.drain()
         self._check_publishers()
         if self._wants_graph and self._is_graph_old:
-            self._tell_graph()
+            self._send_graph()
         if not self._discovery.is_due:
             return
         with self._discovery.work():
@@ -275,12 +281,12 @@ class FoxgloveBridge:
 
     def _refresh(self) -> None:
         self._parameters.refresh(is_watched=self._server.client_count > 0)
-        if self._count is not None and self._told_count != self._server.client_count:
-            self._told_count = self._server.client_count
-            self._count.publish(UInt32(data=self._told_count))
+        if self._count is not None and self._published_count != self._server.client_count:
+            self._published_count = self._server.client_count
+            self._count.publish(UInt32(data=self._published_count))
         self._is_graph_old = True
 
-    def _tell_graph(self) -> None:
+    def _send_graph(self) -> None:
         """Send who talks to whom, unless that takes more than its share of time."""
         if self._graph_share.is_due:
             self._is_graph_old = False
@@ -289,13 +295,13 @@ class FoxgloveBridge:
 
     def _poll_soon(self) -> None:
         """Poll until nothing waits. A timer that is reset again and again would never be due."""
-        if self._hurry.is_canceled():
-            self._hurry.reset()
+        if self._fast_poll_timer.is_canceled():
+            self._fast_poll_timer.reset()
 
     def _poll_waiting(self) -> None:
         waits = [self._calls.poll(), self._publishers.poll(), self._topics.poll(), self._parameters.poll()]
         if not any(waits):
-            self._hurry.cancel()
+            self._fast_poll_timer.cancel()
 
     def _on_event(self, event: ev.Event) -> None:
         try:
@@ -308,13 +314,13 @@ class FoxgloveBridge:
             elif isinstance(event, (ev.ParametersSet, ev.ParametersRequested)):
                 self._server.post(ev.SendParameters(event.client, (), event.request_id, ev.size_of(event)))
 
-    def _want_graph(self, event: ev.GraphSubscriptionChanged) -> None:
+    def _on_graph_wanted(self, event: ev.GraphSubscriptionChanged) -> None:
         self._wants_graph = event.wanted
         self._is_graph_old = True
         if event.wanted:
-            self._tell_graph()
+            self._send_graph()
 
-    def _give_asset(self, event: ev.AssetRequested) -> None:
+    def _on_asset_wanted(self, event: ev.AssetRequested) -> None:
         try:
             answer = AssetResponse(event.request_id, load_asset(event.uri, self.params.asset_uri_allowlist))
         except AssetError as error:
@@ -323,8 +329,8 @@ class FoxgloveBridge:
 
 
 _HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
-    ev.ChannelSubscribed: lambda self, event: self._topics.want(event.channel_id),
-    ev.ChannelUnsubscribed: lambda self, event: self._topics.unwant(event.channel_id),
+    ev.ChannelSubscribed: lambda self, event: self._topics.subscribe(event.channel_id),
+    ev.ChannelUnsubscribed: lambda self, event: self._topics.unsubscribe(event.channel_id),
     ev.ClientChannelOpened: lambda self, event: self._publishers.open(event.client, event.channel),
     ev.ClientChannelClosed: lambda self, event: self._publishers.close(event.client, event.channel_id),
     ev.ClientMessageReceived: lambda self, event: self._publishers.publish(
@@ -334,8 +340,8 @@ _HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
     ev.ParametersSet: lambda self, event: self._parameters.set(event),
     ev.ParametersRequested: lambda self, event: self._parameters.get(event),
     ev.ParametersWatched: lambda self, event: self._parameters.watch(event),
-    ev.GraphSubscriptionChanged: FoxgloveBridge._want_graph,
-    ev.AssetRequested: FoxgloveBridge._give_asset,
+    ev.GraphSubscriptionChanged: FoxgloveBridge._on_graph_wanted,
+    ev.AssetRequested: FoxgloveBridge._on_asset_wanted,
 }
 
 
@@ -354,4 +360,4 @@ def _new_id() -> str:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `foxglove_bridge`."""
-    return run_main(lambda context: greeted([FoxgloveBridge(context=context)]), args)
+    return run_main(lambda context: announce([FoxgloveBridge(context=context)]), args)

@@ -11,7 +11,7 @@ from thymio_sim_ros.ros.foxglove.assets import ASSETS
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
 
-__all__ = ["READ_ONLY_SERVICES", "FoxgloveParams", "announced", "check", "tls_context"]
+__all__ = ["READ_ONLY_SERVICES", "FoxgloveParams", "check", "server_capabilities", "tls_context"]
 
 READ_ONLY_SERVICES = (
     r"/(.+/)?aseba/(get|list|describe)_variables",
@@ -100,7 +100,7 @@ def tls_context(values: FoxgloveParams) -> ssl.SSLContext | None:
     return context
 
 
-def announced(values: FoxgloveParams, *, uses_sim_time: bool) -> tuple[Capability, ...]:
+def server_capabilities(values: FoxgloveParams, *, uses_sim_time: bool) -> tuple[Capability, ...]:
     """Capabilities for serverInfo; StartError for a name that is none."""
     known = {item.value: item for item in Capability}
     for name in filter(None, values.capabilities):

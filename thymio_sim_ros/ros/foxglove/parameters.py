@@ -35,7 +35,7 @@ from thymio_sim_ros.bridge.messages import Parameter, RemoveStatus, Status, para
 from thymio_sim_ros.bridge.switchboard import MAX_REFUSALS, MAX_WATCHED
 from thymio_sim_ros.ros.foxglove.file_access import parameter_refusal
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
-from thymio_sim_ros.ros.foxglove.service_calls import Calls
+from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 
 __all__ = ["Parameters"]
 
@@ -49,9 +49,9 @@ _FIRST_ANSWER_S = 1.0
 
 @dataclass(slots=True)
 class _Change:
-    """A client's wish on its way: names in the order of the request, reasons of those that were refused."""
+    """A client's request on its way: names in the order of the request, reasons of those that were refused."""
 
-    wish: ParametersSet
+    request: ParametersSet
     names: tuple[str, ...]
     refused: dict[str, str] = field(default_factory=dict)
     portions_left: int = 0
@@ -72,7 +72,7 @@ class Parameters:
     def __init__(
         self,
         node: Node,
-        calls: Calls,
+        calls: ServiceCalls,
         post: Callable[[Command], None],
         *,
         is_allowed: Callable[[str], bool] = lambda name: True,
@@ -107,7 +107,7 @@ class Parameters:
             self._unread.discard(node)
             for service in ("list", "get", "set"):
                 self._calls.forget(f"{node}/{service}_parameters")
-            self._was_read(node)
+            self._finish_reading(node)
             self._post(ParametersChanged((), tuple(f"{node}.{name}" for name in gone)))
         self._ask(self._present if self._wants_all else self._watched & self._present)
 
@@ -131,24 +131,24 @@ class Parameters:
             wait.then()
         return bool(self._waits)
 
-    def get(self, wish: ParametersRequested) -> None:
+    def get(self, request: ParametersRequested) -> None:
         """Answer with the values in force, once the nodes have been asked for them."""
-        names = wish.names or None
+        names = request.names or None
         self._wants_all = self._wants_all or names is None
         nodes = self._present if names is None else _nodes_of(names) & self._present
-        self._after(nodes, lambda: self._post(SendParameters(wish.client, names, wish.request_id)))
+        self._after(nodes, lambda: self._post(SendParameters(request.client, names, request.request_id)))
 
-    def watch(self, wish: ParametersWatched) -> None:
+    def watch(self, request: ParametersWatched) -> None:
         """A client wants to be told of changes."""
-        nodes = _nodes_of(wish.names)
+        nodes = _nodes_of(request.names)
         if len(self._watched) <= MAX_WATCHED:
             self._watched |= nodes
         self._ask(nodes & self._present)
 
-    def set(self, wish: ParametersSet) -> None:
+    def set(self, request: ParametersSet) -> None:
         """Set values node by node, then answer."""
-        names = tuple(item.name for item in wish.parameters)
-        self._after(_nodes_of(names) & self._present, lambda: self._set(wish, names))
+        names = tuple(item.name for item in request.parameters)
+        self._after(_nodes_of(names) & self._present, lambda: self._set(request, names))
 
     def _ask(self, nodes: Iterable[str]) -> None:
         """Ask those nodes for their parameters that were never asked."""
@@ -167,7 +167,7 @@ class Parameters:
         else:
             then()
 
-    def _was_read(self, node: str) -> None:
+    def _finish_reading(self, node: str) -> None:
         """The node has answered, or will not: nothing waits for it any more."""
         self._reading.discard(node)
         ready = []
@@ -180,10 +180,10 @@ class Parameters:
         for wait in ready:
             wait.then()
 
-    def _set(self, wish: ParametersSet, names: tuple[str, ...]) -> None:
-        change = _Change(wish, names)
+    def _set(self, request: ParametersSet, names: tuple[str, ...]) -> None:
+        change = _Change(request, names)
         by_node: dict[str, list[RosParameter]] = {}
-        for parameter in wish.parameters:
+        for parameter in request.parameters:
             node, _, name = parameter.name.partition(".")
             try:
                 value = self._checked(parameter, node, name)
@@ -222,7 +222,7 @@ class Parameters:
                 for name, result in zip_longest(names, response.results[: len(names)], fillvalue=missing):
                     if not result.successful:
                         change.refused[f"{node}.{name}"] = result.reason or "refused by the node"
-            self._read(node, names, lambda: was_read(), sender=change.wish.client)
+            self._read(node, names, lambda: was_read(), sender=change.request.client)
 
         def was_read() -> None:
             change.portions_left -= 1
@@ -230,31 +230,31 @@ class Parameters:
                 self._answer(change)
 
         request = SetParameters.Request(parameters=parameters)
-        self._calls.call(SetParameters, f"{node}/set_parameters", request, was_set, sender=change.wish.client)
+        self._calls.call(SetParameters, f"{node}/set_parameters", request, was_set, sender=change.request.client)
 
     def _answer(self, change: _Change) -> None:
-        wish = change.wish
+        request = change.request
         accepted = tuple(parameter_status(name) for name in change.names if name not in change.refused)
         if accepted:
-            self._post(SendToClient(wish.client, RemoveStatus(accepted)))
+            self._post(SendToClient(request.client, RemoveStatus(accepted)))
         refused = list(change.refused.items())
         for name, reason in refused[:MAX_REFUSALS]:
             self._post(
-                SendToClient(wish.client, Status(StatusLevel.ERROR, f"{name}: {reason}", parameter_status(name)))
+                SendToClient(request.client, Status(StatusLevel.ERROR, f"{name}: {reason}", parameter_status(name)))
             )
         if more := len(refused[MAX_REFUSALS:]):
-            self._post(SendToClient(wish.client, Status(StatusLevel.ERROR, f"{more} more parameters were refused")))
-        self._post(SendParameters(wish.client, change.names, wish.request_id, size_of(wish)))
+            self._post(SendToClient(request.client, Status(StatusLevel.ERROR, f"{more} more parameters were refused")))
+        self._post(SendParameters(request.client, change.names, request.request_id, size_of(request)))
 
     def _read_all(self, node: str) -> None:
         self._reading.add(node)
 
         def listed(response: Any, reason: str) -> None:
             if response is not None:
-                self._read(node, response.result.names, lambda: self._was_read(node))
+                self._read(node, response.result.names, lambda: self._finish_reading(node))
             else:
                 self._unread.add(node)
-                self._was_read(node)
+                self._finish_reading(node)
 
         self._calls.call(ListParameters, f"{node}{_LIST}", ListParameters.Request(), listed)
 

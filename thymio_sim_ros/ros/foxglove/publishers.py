@@ -25,13 +25,13 @@ from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
 from thymio_sim_ros.ros.foxglove.fair_queue import FairQueue
-from thymio_sim_ros.ros.foxglove.qos import publishing
+from thymio_sim_ros.ros.foxglove.qos import publisher_qos
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
 
 __all__ = ["ClientPublishers"]
 
 _HELD = 10
-_SETTLE_S = 1.0
+_DISCOVERY_S = 1.0
 """A new publisher holds its last `_HELD` messages until it has met all subscribers, at most this long.
 
 They leave as far apart as they came: a button that is pressed and let go meanwhile was held all the same.
@@ -51,14 +51,14 @@ class _RefusalError(ThymioSimError):
 
 
 @dataclass(slots=True)
-class _Port:
+class _SharedPublisher:
     """One ROS publisher, shared by all clients' channels of its topic and type."""
 
     topic: str
     type_name: str
     message_type: Any
     publisher: Publisher
-    settled_s: float
+    discovery_end_s: float
     users: int = 0
     held: deque[tuple[float, Any]] = field(default_factory=lambda: deque(maxlen=_HELD))
     """When it came, s, and what."""
@@ -86,8 +86,8 @@ class ClientPublishers:
         self._is_allowed = is_allowed
         self._wake = wake
         self._now_s = now_s
-        self._ports: dict[tuple[str, str], _Port] = {}
-        self._channels: dict[tuple[int, int], tuple[_Port, str]] = {}
+        self._by_topic: dict[tuple[str, str], _SharedPublisher] = {}
+        self._channels: dict[tuple[int, int], tuple[_SharedPublisher, str]] = {}
         self._opening: dict[tuple[int, int], ClientChannel] = {}
         self._order: FairQueue[int, tuple[int, int]] = FairQueue()
         """The channels of `_opening` by client, in the order in which their publishers are created."""
@@ -104,25 +104,25 @@ class ClientPublishers:
 
     def _create(self, client: int, channel: ClientChannel) -> None:
         try:
-            port = self._port(channel)
+            shared = self._publisher_for(channel)
         except _RefusalError as error:
             self._refuse(client, str(error))
             return
-        port.users += 1
-        self._channels[client, channel.id] = (port, channel.encoding)
+        shared.users += 1
+        self._channels[client, channel.id] = (shared, channel.encoding)
 
     def close(self, client: int, channel_id: int) -> None:
         """The channel is over; the last one takes the publisher with it."""
         if self._opening.pop((client, channel_id), None) is not None:
             self._order.remove(client, (client, channel_id))
             return
-        port, _ = self._channels.pop((client, channel_id), (None, ""))
-        if port is None:
+        shared, _ = self._channels.pop((client, channel_id), (None, ""))
+        if shared is None:
             return
-        port.users -= 1
-        if port.users == 0:
-            del self._ports[port.topic, port.type_name]
-            self._node.destroy_publisher(port.publisher)
+        shared.users -= 1
+        if shared.users == 0:
+            del self._by_topic[shared.topic, shared.type_name]
+            self._node.destroy_publisher(shared.publisher)
 
     def publish(self, client: int, channel_id: int, payload: bytes) -> None:
         """Publish a client's message, or tell the client why not."""
@@ -130,71 +130,71 @@ class ClientPublishers:
         if channel is not None:
             self._order.remove(client, (client, channel_id))
             self._create(client, channel)
-        port, encoding = self._channels.get((client, channel_id), (None, ""))
-        if port is None:  # refused when it was opened, and told so
+        shared, encoding = self._channels.get((client, channel_id), (None, ""))
+        if shared is None:  # refused when it was opened, and told so
             return
         try:
-            message = _decode(payload, encoding, port)
+            message = _decode(payload, encoding, shared)
         except _RefusalError as error:
-            self._refuse(client, f"{port.topic}: {error}")
+            self._refuse(client, f"{shared.topic}: {error}")
             return
-        port.held.append((self._now_s(), message))
-        if not self._flush(port):
+        shared.held.append((self._now_s(), message))
+        if not self._flush(shared):
             self._wake()
 
     def poll(self) -> bool:
-        """Create publishers, and send what was held for subscribers not met before; whether something is left to do."""
+        """Create publishers and send held messages to new subscribers; return whether work is left."""
         end_s = time.monotonic() + _SLICE_S
         while self._order and time.monotonic() < end_s:
-            client, channel_id = self._order.take()
+            client, channel_id = self._order.pop()
             self._create(client, self._opening.pop((client, channel_id)))
-        flushed = [self._flush(port) for port in self._ports.values()]
+        flushed = [self._flush(shared) for shared in self._by_topic.values()]
         return bool(self._order) or not all(flushed)
 
-    def end(self) -> None:
+    def close_all(self) -> None:
         """End all publishers."""
-        for port in self._ports.values():
-            self._node.destroy_publisher(port.publisher)
-        self._ports.clear()
+        for shared in self._by_topic.values():
+            self._node.destroy_publisher(shared.publisher)
+        self._by_topic.clear()
         self._channels.clear()
         self._opening.clear()
         self._order = FairQueue()
 
-    def _flush(self, port: _Port) -> bool:
+    def _flush(self, shared: _SharedPublisher) -> bool:
         """Publish what is due, unless the publisher has still to meet subscribers; whether nothing is left."""
         now_s = self._now_s()
-        if port.held and now_s < port.settled_s and not self._has_met_all(port):
-            port.is_waiting = True
+        if shared.held and now_s < shared.discovery_end_s and not self._has_met_all(shared):
+            shared.is_waiting = True
             return False
-        if port.is_waiting:
-            port.is_waiting, port.late_s, port.met_s = False, now_s - port.held[0][0], now_s
-        while port.held:
-            came_s, message = port.held[0]
-            if came_s <= port.met_s and came_s + port.late_s > now_s:
+        if shared.is_waiting:
+            shared.is_waiting, shared.late_s, shared.met_s = False, now_s - shared.held[0][0], now_s
+        while shared.held:
+            came_s, message = shared.held[0]
+            if came_s <= shared.met_s and came_s + shared.late_s > now_s:
                 return False
-            port.held.popleft()
+            shared.held.popleft()
             try:
-                port.publisher.publish(message)
+                shared.publisher.publish(message)
             except RCLError as error:  # beyond a bound of its type, which reading does not check
-                self._node.get_logger().warning(f"{port.topic}: a client's message was refused: {error}")
+                self._node.get_logger().warning(f"{shared.topic}: a client's message was refused: {error}")
         return True
 
-    def _has_met_all(self, port: _Port) -> bool:
-        known = self._node.count_subscribers(port.topic)
-        return 0 < known <= port.publisher.get_subscription_count()
+    def _has_met_all(self, shared: _SharedPublisher) -> bool:
+        known = self._node.count_subscribers(shared.topic)
+        return 0 < known <= shared.publisher.get_subscription_count()
 
-    def _port(self, channel: ClientChannel) -> _Port:
+    def _publisher_for(self, channel: ClientChannel) -> _SharedPublisher:
         topic = channel.topic if channel.topic.startswith("/") else f"/{channel.topic}"
         type_name = full_name(channel.schema_name)
-        port = self._ports.get((topic, type_name))
-        if port is not None:
-            return port
+        shared = self._by_topic.get((topic, type_name))
+        if shared is not None:
+            return shared
         if not self._is_allowed(topic):
             raise _RefusalError(f"{topic}: clients may not publish here (client_topic_whitelist)")
         try:
             validate_full_topic_name(topic)
             message_type = load_type(type_name)
-            profile = publishing(
+            profile = publisher_qos(
                 self._node.get_publishers_info_by_topic(topic), self._node.get_subscriptions_info_by_topic(topic)
             )
             publisher = self._node.create_publisher(message_type, topic, profile, event_callbacks=_NO_EVENTS)
@@ -206,27 +206,27 @@ class ClientPublishers:
             raise _RefusalError(f"{topic}: cannot publish {type_name} here, it carries another type") from error
         except (ValueError, TypeError, RuntimeError) as error:  # no text, no type of messages
             raise _RefusalError(f"{topic!r}: cannot publish {type_name}: {error}") from error
-        port = self._ports[topic, type_name] = _Port(
-            topic, type_name, message_type, publisher, self._now_s() + _SETTLE_S
+        shared = self._by_topic[topic, type_name] = _SharedPublisher(
+            topic, type_name, message_type, publisher, self._now_s() + _DISCOVERY_S
         )
-        return port
+        return shared
 
     def _refuse(self, client: int, text: str) -> None:
         self._post(SendToClient(client, Status(StatusLevel.ERROR, text)))
 
 
-def _decode(payload: bytes, encoding: str, port: _Port) -> Any:
+def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Any:
     """The message, or its checked bytes where there is no class for it."""
     try:
-        if port.type_name == tf2_messages.TF_TYPE_NAME and encoding != JSON:
-            check_parts(payload, port.message_type)
+        if shared.type_name == tf2_messages.TF_TYPE_NAME and encoding != JSON:
+            check_parts(payload, shared.message_type)
             tf2_messages.decode(payload)
             return payload
         if encoding == JSON:
-            message = json_messages.from_json(payload, port.message_type)
+            message = json_messages.from_json(payload, shared.message_type)
         else:
-            check_parts(payload, port.message_type)
-            message = deserialize_message(payload, port.message_type)
+            check_parts(payload, shared.message_type)
+            message = deserialize_message(payload, shared.message_type)
     except (
         RMWError,
         json_messages.JsonMessageError,
@@ -234,10 +234,10 @@ def _decode(payload: bytes, encoding: str, port: _Port) -> Any:
         TooManyPartsError,
     ) as error:
         first_line = str(error).partition("\n")[0]
-        raise _RefusalError(f"expected a {port.type_name} in {encoding}: {first_line}") from error
+        raise _RefusalError(f"expected a {shared.type_name} in {encoding}: {first_line}") from error
     except TypeError as error:  # a type without a Python class
-        raise _RefusalError(f"{port.type_name} is accepted as cdr only") from error
-    if port.type_name in _MOTION_TYPES and not _is_finite(getattr(message, "twist", message)):
+        raise _RefusalError(f"{shared.type_name} is accepted as cdr only") from error
+    if shared.type_name in _MOTION_TYPES and not _is_finite(getattr(message, "twist", message)):
         raise _RefusalError("a velocity that is not a number or infinite is refused")
     return message
 

@@ -19,7 +19,7 @@ from rclpy.task import Future
 
 from thymio_sim_ros.ros.foxglove.fair_queue import FairQueue
 
-__all__ = ["CALL_TIMEOUT_S", "Calls"]
+__all__ = ["CALL_TIMEOUT_S", "ServiceCalls"]
 
 CALL_TIMEOUT_S = 5.0
 _IN_FLIGHT = 5
@@ -55,7 +55,7 @@ class _Call:
     deadline_s: float
 
 
-class Calls:
+class ServiceCalls:
     """All calls of the bridge. Belongs to the executor's thread; `poll` must be called while it returns True."""
 
     def __init__(
@@ -88,7 +88,7 @@ class Calls:
         """Send what can be sent, give up what is too old; whether calls are open still."""
         now_s = time.monotonic()
         while self._open and (call := next(iter(self._open))).deadline_s <= now_s:
-            self._give_up(call)
+            self._time_out(call)
         for queue in list(self._queues.values()):
             self._send(queue)
         self._finish_all()
@@ -109,7 +109,7 @@ class Calls:
             return
         while queue.waiting and len(queue.in_flight) < _IN_FLIGHT:
             try:
-                call = queue.waiting.take(queue.is_free)
+                call = queue.waiting.pop(queue.is_free)
             except IndexError:
                 return
             try:
@@ -131,7 +131,7 @@ class Calls:
         self._send(call.queue)
         self._finish_all()
 
-    def _give_up(self, call: _Call) -> None:
+    def _time_out(self, call: _Call) -> None:
         future = call.queue.in_flight.get(call)
         if future is not None:
             call.queue.client.remove_pending_request(future)

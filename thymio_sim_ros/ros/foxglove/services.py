@@ -25,7 +25,7 @@ from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
 from thymio_sim_ros.ros.foxglove.file_access import call_refusal
 from thymio_sim_ros.ros.foxglove.schemas import service_definitions
-from thymio_sim_ros.ros.foxglove.service_calls import Calls
+from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 
 __all__ = ["Services"]
@@ -40,7 +40,7 @@ class _Offer:
 class Services:
     """Keeps the offered services equal to the graph. Belongs to the executor's thread."""
 
-    def __init__(self, node: Node, calls: Calls, post: Callable[[Command], None]) -> None:
+    def __init__(self, node: Node, calls: ServiceCalls, post: Callable[[Command], None]) -> None:
         self._node = node
         self._calls = calls
         self._post = post

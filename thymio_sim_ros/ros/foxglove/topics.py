@@ -14,14 +14,14 @@ from rclpy.subscription import Subscription
 from thymio_sim_ros.bridge.constants import CDR
 from thymio_sim_ros.bridge.events import AddChannels, Command, RemoveChannels, RetainLast
 from thymio_sim_ros.bridge.messages import Channel
-from thymio_sim_ros.ros.foxglove.qos import Reception, reception
+from thymio_sim_ros.ros.foxglove.qos import SubscriptionQos, subscription_qos
 from thymio_sim_ros.ros.foxglove.schemas import message_definition
 from thymio_sim_ros.ros.foxglove.time_share import TimeShare
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 
 __all__ = ["Topics"]
 
-_ALL_IN = 10
+_FULL_CHECK_PERIOD = 10
 """Publishers are asked for their QoS when their number has changed, and else in one of so many refreshes: asking costs
 0.3 ms a topic, a tenth of a core for the hundred topics of a page that shows twenty robots."""
 
@@ -39,9 +39,9 @@ class _Topic:
     def __init__(self, channel: Channel, message_type: Any) -> None:
         self.channel = channel
         self.message_type = message_type
-        self.reception: Reception | None = None
+        self.qos: SubscriptionQos | None = None
         self.publishers = 0
-        """How many there were when the reception was chosen."""
+        """How many there were when the qos was chosen."""
         self.subscription: Subscription | None = None
         self.is_wanted = False
 
@@ -97,15 +97,15 @@ class Topics:
         if added:
             self._post(AddChannels(tuple(added)))
 
-    def want(self, channel_id: int) -> None:
+    def subscribe(self, channel_id: int) -> None:
         """Subscribe for the first client, soon."""
-        self._note_demand(channel_id, is_wanted=True)
+        self._set_wanted(channel_id, is_wanted=True)
 
-    def unwant(self, channel_id: int) -> None:
+    def unsubscribe(self, channel_id: int) -> None:
         """Unsubscribe after the last client, soon."""
-        self._note_demand(channel_id, is_wanted=False)
+        self._set_wanted(channel_id, is_wanted=False)
 
-    def _note_demand(self, channel_id: int, *, is_wanted: bool) -> None:
+    def _set_wanted(self, channel_id: int, *, is_wanted: bool) -> None:
         topic = self._by_id.get(channel_id)
         if topic is None:
             return
@@ -122,10 +122,10 @@ class Topics:
                 while self._demand and time.monotonic() < end_s:
                     channel_id = next(iter(self._demand))
                     del self._demand[channel_id]
-                    self._follow_demand(channel_id)
+                    self._apply_demand(channel_id)
         return bool(self._demand)
 
-    def _follow_demand(self, channel_id: int) -> None:
+    def _apply_demand(self, channel_id: int) -> None:
         topic = self._by_id.get(channel_id)
         if topic is None:
             return
@@ -155,11 +155,11 @@ class Topics:
             yield
 
     def _check(self, number: int, topic: _Topic) -> None:
-        is_due = number % _ALL_IN == self._refreshes % _ALL_IN
+        is_due = number % _FULL_CHECK_PERIOD == self._refreshes % _FULL_CHECK_PERIOD
         if not is_due and self._node.count_publishers(topic.channel.topic) == topic.publishers:
             return
         fitting = self._reception(topic)
-        if fitting != topic.reception:
+        if fitting != topic.qos:
             self._unsubscribe(topic)
             self._subscribe(topic, fitting)
 
@@ -191,13 +191,13 @@ class Topics:
             del self._by_id[topic.channel.id]
         self._post(RemoveChannels(tuple(topic.channel.id for topic in topics)))
 
-    def _reception(self, topic: _Topic) -> Reception:
+    def _reception(self, topic: _Topic) -> SubscriptionQos:
         name = topic.channel.topic
         publishers = self._node.get_publishers_info_by_topic(name)
         topic.publishers = len(publishers)
-        return reception(publishers, **self._depths, best_effort=self._is_best_effort(name))
+        return subscription_qos(publishers, **self._depths, best_effort=self._is_best_effort(name))
 
-    def _subscribe(self, topic: _Topic, fitting: Reception) -> None:
+    def _subscribe(self, topic: _Topic, fitting: SubscriptionQos) -> None:
         channel_id, now_ns, publish = topic.channel.id, self._now_ns, self._publish
 
         def forward(payload: bytes) -> None:
@@ -211,12 +211,12 @@ class Topics:
         except RCLError as error:  # this process uses the topic with another type
             self._refuse(topic.channel.topic, topic.channel.schema_name, str(error))
             return
-        topic.reception = fitting
+        topic.qos = fitting
 
     def _unsubscribe(self, topic: _Topic) -> None:
         if topic.subscription is not None:
             self._node.destroy_subscription(topic.subscription)
-            topic.subscription = topic.reception = None
+            topic.subscription = topic.qos = None
 
     def _refuse(self, name: str, type_name: str, reason: str) -> None:
         """Say once why a topic is not there."""

@@ -24,16 +24,16 @@ __all__ = [
     "RAYS",
     "TEMPERATURE",
     "TRUTH",
-    "below_m",
-    "below_patch",
     "grey",
-    "grey_patch",
+    "ground_patch",
+    "ground_range_m",
     "laser_m",
     "led_levels",
+    "proximity_patch",
+    "proximity_range_m",
     "ray_lines",
+    "reflectance_patch",
     "rotation",
-    "seen_m",
-    "seen_patch",
     "wheel_rotation",
     "words_patch",
 ]
@@ -67,7 +67,7 @@ def wheel_rotation(angle_rad: float) -> tuple[float, float, float, float]:
     return (0.0, y, 0.0, w) if w >= 0.0 else (0.0, -y, 0.0, -w)
 
 
-def seen_m(reading: readings.ProximityReading, options: Any, index: int) -> float:
+def proximity_range_m(reading: readings.ProximityReading, options: Any, index: int) -> float:
     """A proximity sensor's range in m, or what stands for nothing and too close."""
     value, nearest = reading.ranges_m[index], options.proximity[index].min_m
     if options.driver_ranges:
@@ -75,7 +75,7 @@ def seen_m(reading: readings.ProximityReading, options: Any, index: int) -> floa
     return -math.inf if value < nearest else value
 
 
-def below_m(reading: readings.GroundReading, options: Any, index: int) -> float:
+def ground_range_m(reading: readings.GroundReading, options: Any, index: int) -> float:
     """What stands for a floor that reflects, or does not."""
     dark = reading.words[4 + index] < options.ground_threshold
     not_reflecting, reflecting = (1.0, 0.0) if options.driver_ranges else (math.inf, -math.inf)
@@ -184,17 +184,17 @@ def words_patch(count: int) -> Patch | None:
     return Patch((Span(struct.Struct(f"<{count}h"), lambda reading, _options: reading.words),), has_stamp=False)
 
 
-def seen_patch(index: int) -> Patch:
+def proximity_patch(index: int) -> Patch:
     """Of one proximity sensor's Range."""
-    return _range_patch(seen_m, index)
+    return _range_patch(proximity_range_m, index)
 
 
-def below_patch(index: int) -> Patch:
+def ground_patch(index: int) -> Patch:
     """Of one ground sensor's Range."""
-    return _range_patch(below_m, index)
+    return _range_patch(ground_range_m, index)
 
 
-def grey_patch(index: int) -> Patch:
+def reflectance_patch(index: int) -> Patch:
     """Of one ground sensor's grey."""
     return Patch((Span(struct.Struct("<f"), lambda reading, _options: (grey(reading, index),)),), has_stamp=False)
 

@@ -1,4 +1,4 @@
-"""Messages → commands, with the checks that topics share."""
+"""Conversions from messages to commands, with common checks."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from thymio_sim_ros.sim import commands
 
 
 class CommandError(ThymioSimError, ValueError):
-    """A message that is refused; the text says what was found and what was expected."""
+    """A rejected message; the text says what was found and what was expected."""
 
 
 def body_twist(message: TwistMsg, timeout_ns: int) -> commands.BodyTwist:
-    """geometry_msgs/Twist → command; linear.x and angular.z count. NaN and inf are refused."""
+    """Convert a geometry_msgs/Twist; only linear.x and angular.z are used. Raises CommandError for NaN and inf."""
     finite(message.linear.x, "linear.x")
     finite(message.angular.z, "angular.z")
     return commands.BodyTwist(message.linear.x, message.angular.z, timeout_ns)
@@ -46,14 +46,14 @@ def led_levels(group: str, intensities: Any) -> commands.SetLeds:
 
 
 def sized(data: Any, size: int, what: str) -> list[Any]:
-    """The values of an array of this size; CommandError for another."""
+    """Return the values of an array. Raises CommandError unless it has `size` values."""
     values = list(data)
     if len(values) != size:
-        raise CommandError(f"{len(values)} values found, expected {what}")
+        raise CommandError(f"found {len(values)} values, expected {what}")
     return values
 
 
 def finite(value: float, what: str) -> None:
-    """CommandError for NaN and infinities."""
+    """Raise CommandError for NaN and infinities."""
     if not math.isfinite(value):
         raise CommandError(f"{what} is {value}, expected a finite number")

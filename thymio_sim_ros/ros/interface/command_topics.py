@@ -1,7 +1,7 @@
-"""Commands ↔ messages, one row per topic that a robot listens to and an Aseba program speaks on.
+"""Command topics, one row per topic: conversions between commands and messages.
 
-The simulator decodes what arrives, the Aseba runtime encodes what its programs command: both from these rows
-(docs/spec/ros-interface.md sections 4.2 and 6.3). Topics that only people and nodes speak on are rows without `encode`.
+The simulator decodes messages and the Aseba runtime encodes commands of programs with the same rows
+(docs/spec/ros-interface.md sections 4.2 and 6.3). Topics on which programs do not publish are rows without `encode`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from std_msgs.msg import (
 from thymio_sim_ros.ros.interface import command_checks, convert_readings, qos, saturation
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
-from thymio_sim_ros.ros.interface.saturation import Beyond
+from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators.leds import LED_NUMBERS
 from thymio_sim_ros.sim.actuators.pen import PEN_WIDTHS_M
@@ -40,11 +40,11 @@ from thymio_sim_ros.sim.commands import Command
 __all__ = ["BODY_LEDS", "ROWS", "CommandRow", "led_topic", "topic_of"]
 
 BODY_LEDS = ("top", "bottom_left", "bottom_right")
-"""Groups that are one color: their topics are those of the driver."""
+"""Groups with a single color; their topics are those of the driver."""
 
 ALIVE_S = 4.0
-"""Period of the gesture that shows that the robot lives. Own choice."""
-MOST_SAMPLES = 10 * 60 * 7813
+"""Period of the `alive` gesture. Modeling assumption."""
+MAX_SAMPLES = 10 * 60 * 7813
 """Samples of one sound: ten minutes."""
 
 
@@ -52,9 +52,9 @@ MOST_SAMPLES = 10 * 60 * 7813
 class CommandRow:
     """One topic: `decode` gives the command of a message or raises CommandError.
 
-    `encode` gives the message of a command; the row's topic is then what `topic_of` says of the command. `about`:
-    content and units, for the reference. `beyond`: what of a message is limited. `holds`: until the next one, so that a
-    robot that comes later has to know it.
+    `encode` gives the message of a command; `topic` is then `topic_of(command)`. `about` is content and units for
+    docs/ros.md. `limit_check` describes the part of a message that will be clamped. `is_retained`: the command stays in
+    force until the next one, so late subscribers need it.
     """
 
     topic: str
@@ -63,19 +63,19 @@ class CommandRow:
     encode: Callable[[Any], Any] | None = None
     profile: QoSProfile = field(default_factory=lambda: qos.COMMAND)
     about: str = ""
-    beyond: Beyond = saturation.nothing
-    holds: bool = False
+    limit_check: LimitCheck = saturation.nothing
+    is_retained: bool = False
 
 
 def led_topic(group: str) -> str:
-    """The topic of a group of lights; all but the body's and the circle's are hidden."""
+    """Return the topic of a group of lights; all except body and circle are hidden."""
     if group in BODY_LEDS:
         return f"led/body/{group}"
     return "led/circle" if group == "circle" else f"_led/{group}"
 
 
 def topic_of(command: Command) -> str | None:
-    """The topic on which a program's command leaves; None for one that only the runtime's own simulator knows."""
+    """Return the topic on which a program's command is published, or None if it has no topic."""
     if isinstance(command, commands.SetLeds | commands.ReleaseLeds):
         return led_topic(command.group)
     return _TOPICS.get(type(command))
@@ -116,7 +116,7 @@ def _decode_color(message: ColorRGBA, *, group: str) -> Command:
 
 
 def _encode_levels(command: commands.SetLeds | commands.ReleaseLeds) -> Float32MultiArray:
-    """A group that is given back to the robot's own rules is an array of nothing."""
+    """An empty array returns a group to firmware behavior."""
     levels = command.levels if isinstance(command, commands.SetLeds) else ()
     return Float32MultiArray(data=[level / commands.LED_FULL for level in levels])
 
@@ -156,13 +156,13 @@ def _encode_tone(command: commands.PlayTone | commands.StopSound) -> Float32Mult
 
 
 def _decode_tone(message: Float32MultiArray) -> Command:
-    """[Hz, s]; 0 s, or more than anybody waits for, is until stopped; a negative time stops."""
+    """[Hz, s]; 0 s, or more than `MAX_TONE_S`, means until stopped; a negative time stops the sound."""
     hertz, seconds = command_checks.sized(message.data, 2, "[Hz, s]")
     command_checks.finite(hertz, "frequency")
     command_checks.finite(seconds, "duration")
     if seconds < 0:
         return commands.StopSound()
-    is_endless = seconds == 0.0 or seconds > saturation.LONGEST_TONE_S
+    is_endless = seconds == 0.0 or seconds > saturation.MAX_TONE_S
     return commands.PlayTone(float(hertz), None if is_endless else round(seconds * SECOND_NS) or None)
 
 
@@ -179,8 +179,8 @@ def _encode_samples(command: commands.PlaySamples) -> UInt8MultiArray:
 
 
 def _decode_samples(message: UInt8MultiArray) -> Command:
-    if len(message.data) > MOST_SAMPLES:
-        raise CommandError(f"{len(message.data)} samples found, expected at most {MOST_SAMPLES}")
+    if len(message.data) > MAX_SAMPLES:
+        raise CommandError(f"{len(message.data)} samples found, expected at most {MAX_SAMPLES}")
     return commands.PlaySamples(bytes(message.data))
 
 
@@ -274,9 +274,9 @@ def _rows() -> Iterator[CommandRow]:
         Int16MultiArray,
         _decode_targets,
         _encode_targets,
-        about="left, right in Thymio units, ±500; they hold until the next ones",
-        beyond=saturation.targets,
-        holds=True,
+        about="left, right in Thymio units, ±500; valid until the next command",
+        limit_check=saturation.targets,
+        is_retained=True,
     )
     for group in commands.LED_GROUPS:
         if group in BODY_LEDS:
@@ -288,8 +288,8 @@ def _rows() -> Iterator[CommandRow]:
                 _encode_color,
                 qos.LEDS,
                 about="0…1; alpha is ignored",
-                beyond=saturation.color,
-                holds=True,
+                limit_check=saturation.color,
+                is_retained=True,
             )
         else:
             decode = partial(_decode_levels, group=group)
@@ -299,9 +299,9 @@ def _rows() -> Iterator[CommandRow]:
                 decode,
                 _encode_levels,
                 qos.LEDS,
-                about=f"{commands.LED_GROUPS[group]} intensities 0…1; none: back to the robot's own rules",
-                beyond=saturation.intensities,
-                holds=True,
+                about=f"{commands.LED_GROUPS[group]} intensities 0…1; empty: firmware behavior",
+                limit_check=saturation.intensities,
+                is_retained=True,
             )
     yield CommandRow(
         "_led/single",
@@ -310,8 +310,8 @@ def _rows() -> Iterator[CommandRow]:
         _encode_single,
         qos.LEDS,
         about="number of the light 0…39 (15 is none), brightness 0…32",
-        beyond=saturation.single,
-        holds=True,
+        limit_check=saturation.single,
+        is_retained=True,
     )
     yield CommandRow(
         "_led/own",
@@ -319,9 +319,9 @@ def _rows() -> Iterator[CommandRow]:
         _decode_own,
         _encode_own,
         qos.LEDS,
-        about="what the robot shows by itself; the group in layout.dim[0].label",
-        beyond=saturation.intensities,
-        holds=True,
+        about="firmware behavior of a group; its name is layout.dim[0].label",
+        limit_check=saturation.intensities,
+        is_retained=True,
     )
     for name in ("circle", "blink", "kit"):
         yield CommandRow(
@@ -332,10 +332,18 @@ def _rows() -> Iterator[CommandRow]:
             about="period in s, its sign the direction",
         )
     yield CommandRow(
-        "_led/gesture/alive", Empty, _decode_alive, profile=qos.LEDS, about="the gesture of a robot that lives"
+        "_led/gesture/alive",
+        Empty,
+        _decode_alive,
+        profile=qos.LEDS,
+        about="the slow gesture that shows that the robot is on",
     )
     yield CommandRow(
-        "_led/gesture/off", Empty, _decode_still, profile=qos.LEDS, about="no gesture; its lights go back to the robot"
+        "_led/gesture/off",
+        Empty,
+        _decode_still,
+        profile=qos.LEDS,
+        about="stop the gesture; lights return to firmware behavior",
     )
     yield CommandRow(
         "sound/tone",
@@ -344,7 +352,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_tone,
         qos.EVENTS,
         about="Hz, s; 0 s until stopped, a negative time stops",
-        beyond=saturation.tone,
+        limit_check=saturation.tone,
     )
     yield CommandRow(
         "_sound/system",
@@ -353,7 +361,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_system,
         qos.EVENTS,
         about="the robot's sound 0…7, -1 stops",
-        beyond=saturation.system_sound,
+        limit_check=saturation.system_sound,
     )
     yield CommandRow(
         "_sound/samples",
@@ -370,7 +378,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_wave,
         qos.EVENTS,
         about="the period that tones are made of, 142 samples",
-        holds=True,
+        is_retained=True,
     )
     yield CommandRow(
         "_sound/volume",
@@ -379,16 +387,16 @@ def _rows() -> Iterator[CommandRow]:
         _encode_volume,
         qos.EVENTS,
         about="bits that samples lose: 0 is loudest, 8 is off",
-        holds=True,
+        is_retained=True,
     )
     yield CommandRow(
         "_sound_threshold",
         Float32,
         _decode_threshold,
         _encode_threshold,
-        about="0…1 of 255: louder is told on `_sound`; 0 is off",
-        beyond=saturation.threshold,
-        holds=True,
+        about="0…1 of 255: louder sounds are published on `_sound`; 0 is off",
+        limit_check=saturation.threshold,
+        is_retained=True,
     )
     yield CommandRow(
         "_comm/enable",
@@ -396,7 +404,7 @@ def _rows() -> Iterator[CommandRow]:
         _decode_enable,
         _encode_enable,
         about="infrared communication on or off",
-        holds=True,
+        is_retained=True,
     )
     yield CommandRow(
         "_comm/tx",
@@ -404,12 +412,14 @@ def _rows() -> Iterator[CommandRow]:
         _decode_payload,
         _encode_payload,
         about="the value that is sent, 0…2047",
-        beyond=saturation.payload,
-        holds=True,
+        limit_check=saturation.payload,
+        is_retained=True,
     )
-    yield CommandRow("_alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
+    yield CommandRow("_alarm", Bool, _decode_alarm, about="true: play the sound of an arrow button every three seconds")
     yield CommandRow("pen/down", Bool, _decode_pen_down, about="true: the pen draws")
-    yield CommandRow("_pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", beyond=saturation.paint)
+    yield CommandRow(
+        "_pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", limit_check=saturation.paint
+    )
     yield CommandRow("_pen/width", Float32, _decode_pen_width, about="m, 0.001…0.1")
 
 

@@ -93,7 +93,7 @@ def proximity_range(
         field_of_view=said.fov_rad,
         min_range=said.min_m,
         max_range=said.max_m,
-        range=cdr_fields.seen_m(reading, options, index),
+        range=cdr_fields.proximity_range_m(reading, options, index),
     )
     return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
 
@@ -121,12 +121,12 @@ def ground_range(reading: readings.GroundReading, names: RobotNames, options: Co
         field_of_view=GROUND_FOV_RAD,
         min_range=GROUND_MIN_M,
         max_range=GROUND_MAX_M,
-        range=cdr_fields.below_m(reading, options, index),
+        range=cdr_fields.ground_range_m(reading, options, index),
     )
     return stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
 
 
-def ground_grey(
+def ground_reflectance(
     reading: readings.GroundReading, _names: RobotNames, _options: ConvertOptions, *, index: int
 ) -> Float32:
     """A ground sensor: how much light the floor reflects, 0 (black) to 1 (white)."""
@@ -199,12 +199,12 @@ def sound(reading: readings.LoudspeakerReading, _names: RobotNames, _options: Co
     return Float32MultiArray(layout=parts, data=[reading.frequency_hz, seconds, volume(reading.shift)])
 
 
-def heard_samples(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Any:
+def played_samples(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Any:
     """A sound that begins; None for a tone."""
     return UInt8MultiArray(data=reading.samples) if reading.samples else None
 
 
-def heard_wave(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Int8MultiArray:
+def played_wave(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Int8MultiArray:
     """The period that tones are made of."""
     return Int8MultiArray(data=list(reading.wave))
 

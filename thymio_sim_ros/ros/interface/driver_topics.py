@@ -19,24 +19,24 @@ from thymio_sim_ros.ros.interface import command_checks, qos, saturation, sensor
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import HIDDEN
-from thymio_sim_ros.ros.interface.saturation import Beyond
+from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.ros.interface.sensor_topics import Row
-from thymio_sim_ros.ros.simulator.robot_inputs import Moment, RobotInput, robot_inputs
+from thymio_sim_ros.ros.simulator.robot_inputs import InputContext, RobotInput, robot_inputs
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["PACKAGE", "PLAIN", "TOPICS", "DriverTopics", "driver_name", "found"]
+__all__ = ["PACKAGE", "STANDARD_TOPICS", "TOPICS", "DriverTopics", "driver_name", "found"]
 
 PACKAGE = "thymio_msgs"
 
 GROUPS = ("circle", "proximity", "buttons", "ground", "temperature", "microphone", "remote")
 """Groups of lights by the number in `Led` and `LedGesture`."""
 
-SHORTEST_NS = SECOND_NS // 60
+MIN_TONE_NS = SECOND_NS // 60
 """Of a tone, as the driver plays it."""
 
-PLAIN = (
+STANDARD_TOPICS = (
     "alarm",
     "buttons",
     "comm/enable",
@@ -81,7 +81,7 @@ class DriverTopics:
     @classmethod
     def plain(cls) -> DriverTopics:
         """The topics with hidden names under those of the driver."""
-        rows = {sensor.name: _plain(sensor_topics.select_rows(sensor)) for sensor in all_sensors()}
+        rows = {sensor.name: _plain(sensor_topics.rows_of(sensor)) for sensor in all_sensors()}
         return cls({sensor: plain for sensor, plain in rows.items() if plain}, _plain(robot_inputs()))
 
     def with_all(self, other: DriverTopics) -> DriverTopics:
@@ -98,9 +98,11 @@ class DriverTopics:
             words = reading.words
             return messages.Comm(value=words[0], payloads=words[1:8], intensities=words[8:15])
 
-        def taken(topic: str, act: Any, profile: QoSProfile, beyond: Beyond = saturation.nothing) -> RobotInput:
+        def taken(
+            topic: str, act: Any, profile: QoSProfile, limit_check: LimitCheck = saturation.nothing
+        ) -> RobotInput:
             _, kind, about = TOPICS[topic]
-            return RobotInput(topic, getattr(messages, kind), act, about, profile, beyond)
+            return RobotInput(topic, getattr(messages, kind), act, about, profile, limit_check)
 
         return cls(
             {"comm": (Row("comm/rx", messages.Comm, comm, TOPICS["comm/rx"][2]),)},
@@ -116,7 +118,7 @@ class DriverTopics:
 def driver_name(topic: str) -> str:
     """The driver's name of one of our topics."""
     plain = topic.removeprefix(HIDDEN)
-    return plain if plain in PLAIN else topic
+    return plain if plain in STANDARD_TOPICS else topic
 
 
 def found(node: Node) -> DriverTopics:
@@ -144,7 +146,7 @@ def _group(number: int) -> str:
     return GROUPS[number]
 
 
-def _led(message: Any, _moment: Moment) -> Sequence[Command]:
+def _led(message: Any, _input_context: InputContext) -> Sequence[Command]:
     group = _group(message.id)
     size = commands.LED_GROUPS[group]
     return (command_checks.led_levels(group, list(message.values)[:size]),)
@@ -154,7 +156,7 @@ def _too_bright(message: Any) -> str:
     return saturation.brightness(message.values[: commands.LED_GROUPS[GROUPS[message.id]]])
 
 
-def _gesture(message: Any, _moment: Moment) -> Sequence[Command]:
+def _gesture(message: Any, _input_context: InputContext) -> Sequence[Command]:
     """The driver's own four are told apart by group, shape and length."""
     if message.gesture == message.OFF:
         return (commands.StopGesture(),)
@@ -173,11 +175,11 @@ def _gesture(message: Any, _moment: Moment) -> Sequence[Command]:
         raise CommandError(str(error)) from error
 
 
-def _tone(message: Any, _moment: Moment) -> Sequence[Command]:
+def _tone(message: Any, _input_context: InputContext) -> Sequence[Command]:
     command_checks.finite(message.frequency, "frequency")
     duration_ns = message.duration.sec * SECOND_NS + message.duration.nanosec
-    return (commands.PlayTone(max(1.0, float(message.frequency)), max(SHORTEST_NS, duration_ns)),)
+    return (commands.PlayTone(max(1.0, float(message.frequency)), max(MIN_TONE_NS, duration_ns)),)
 
 
-def _system(message: Any, _moment: Moment) -> Sequence[Command]:
+def _system(message: Any, _input_context: InputContext) -> Sequence[Command]:
     return (commands.StopSound() if message.sound == message.STOP else commands.PlaySystemSound(int(message.sound)),)

@@ -38,7 +38,7 @@ class FrameNames:
     right_wheel_joint: str = "right_wheel_joint"
 
 
-USUAL = FrameNames()
+DEFAULT_FRAMES = FrameNames()
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class RobotNames:
 
     name: str
     prefix: str | None = None
-    frames: FrameNames = USUAL
+    frames: FrameNames = DEFAULT_FRAMES
 
     def topic(self, relative: str) -> str:
         """Topic or service name, relative to the node's namespace."""
@@ -73,7 +73,7 @@ class Naming:
     prefix: str = ""
     namespaced_tf: bool = False
     keeps_names: bool = False
-    frames: FrameNames = USUAL
+    frames: FrameNames = DEFAULT_FRAMES
 
     def one(self, robot: str) -> RobotNames:
         """A robot that comes to others."""

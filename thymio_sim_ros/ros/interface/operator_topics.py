@@ -1,4 +1,4 @@
-"""What an operator does to a robot, one row per topic `_press/…`; programs never speak on them.
+"""Topics `_press/…` for stimuli by an operator, one row each; programs do not publish on them.
 
 Names: docs/spec/ros-interface.md section 4.2; those beyond it follow their pattern.
 """
@@ -24,7 +24,7 @@ C = TypeVar("C", bound=Command)
 
 
 def _checked(make: Callable[..., C], *values: Any) -> C:
-    """A command whose ranges may refuse these values."""
+    """Create a command. Raises CommandError for values out of range."""
     try:
         return make(*values)
     except ValueError as error:
@@ -86,16 +86,16 @@ ROWS = (
         Float32,
         lambda message: commands.Clap(_level(message)),
         profile=qos.EVENTS,
-        about="a clap beside the robot, 0…1; others hear it by their distance",
-        beyond=saturation.loudness,
+        about="a clap beside the robot, 0…1; other robots hear it depending on their distance",
+        limit_check=saturation.loudness,
     ),
     CommandRow(
         "_press/sound",
         Float32,
         lambda message: commands.SetNoiseLevel(_level(message)),
         profile=qos.EVENTS,
-        about="steady noise round the robot, 0…1",
-        beyond=saturation.loudness,
+        about="steady noise around the robot, 0…1",
+        limit_check=saturation.loudness,
     ),
     CommandRow("_press/remote", Int8, _remote, profile=qos.EVENTS, about="a key of a remote control, 0…127"),
     CommandRow(
@@ -106,32 +106,32 @@ ROWS = (
         Float32MultiArray,
         _tilt,
         profile=qos.EVENTS,
-        about="roll, pitch in rad: hold the robot at this angle until told otherwise",
+        about="roll, pitch in rad: hold the robot at this angle until the next message",
     ),
     CommandRow(
         "_press/light",
         Float32,
         _light,
         profile=qos.EVENTS,
-        about="light on the ground besides the sensors' own, 0…1",
-        beyond=saturation.light,
+        about="ambient light on the ground, 0…1",
+        limit_check=saturation.light,
     ),
     CommandRow(
         "_press/proximity",
         Int16MultiArray,
         _proximity,
         profile=qos.EVENTS,
-        about="what the seven sensors count from now on, 0…4505, -1 what it sees by itself; empty: all do",
+        about="override of the seven sensor counts, 0…4505; -1: simulated value; empty: all simulated",
     ),
     CommandRow(
         "_press/ground",
         Int16MultiArray,
         _ground,
         profile=qos.EVENTS,
-        about="what the two ground sensors count, 0…1023, -1 what it sees by itself; empty: both do",
+        about="override of the two ground sensor counts, 0…1023; -1: simulated value; empty: both simulated",
     ),
-    CommandRow("_press/temperature", Float32, _temperature, profile=qos.EVENTS, about="°C round the robot, -40…85"),
+    CommandRow("_press/temperature", Float32, _temperature, profile=qos.EVENTS, about="°C around the robot, -40…85"),
     CommandRow("_press/battery", Float32, _battery, profile=qos.EVENTS, about="V of the battery, 0…5"),
     CommandRow("_press/charger", Bool, _charger, profile=qos.EVENTS, about="whether the charger is connected"),
 )
-"""Loudness is 0…1 of 255, light of 1023, both limited; temperature in °C, battery in V, refused when out of range."""
+"""Loudness is 0…1 of 255, light of 1023, both clamped; temperature in °C, battery in V, rejected if out of range."""

@@ -20,33 +20,33 @@ def _reliable(depth: int, durability: DurabilityPolicy = DurabilityPolicy.VOLATI
 
 
 SENSOR = _reliable(10)
-"""Sensors and state: reliable, since driver code subscribes reliable."""
+"""Sensors and state: reliable, because code for the driver subscribes reliably."""
 
-LATCHED = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
-"""Latched: a late joiner gets the last message."""
+TRANSIENT_LOCAL = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
+"""Late subscribers get the last message."""
 
 TRANSFORMS = _reliable(100)
 CLOCK = _reliable(1)
 COMMAND = _reliable(1)
 LEDS = _reliable(10)
 EVENTS = _reliable(100)
-"""Aseba events: nothing lost in bursts."""
+"""Aseba events: no loss in bursts."""
 
 
 KINDS: dict[str, tuple[QoSProfile, str]] = {
     "sensor": (SENSOR, "sensors and state; volatile"),
-    "latched": (LATCHED, "a late joiner gets the last message; transient local"),
-    "transforms": (TRANSFORMS, "as tf2 has it; volatile"),
-    "clock": (CLOCK, "the newest counts; volatile"),
-    "command": (COMMAND, "the newest wins; volatile"),
+    "transient local": (TRANSIENT_LOCAL, "retained state: late subscribers get the last message"),
+    "transforms": (TRANSFORMS, "as in tf2; volatile"),
+    "clock": (CLOCK, "newest message only; volatile"),
+    "command": (COMMAND, "newest message only; volatile"),
     "lights": (LEDS, "volatile"),
-    "event": (EVENTS, "nothing lost in bursts; volatile"),
+    "event": (EVENTS, "no loss in bursts; volatile"),
 }
-"""Every profile by the name that the reference gives it, and what it is for; all are reliable, keep last."""
+"""Profiles by their name in docs/ros.md, with their purpose; all are reliable, keep last."""
 
 
 def kind_of(profile: QoSProfile) -> str:
-    """The name of one of our profiles; some that differ in purpose alone share the first name."""
+    """Return the name of a profile."""
     return next(kind for kind, (known, _) in KINDS.items() if known is profile)
 
 
@@ -55,11 +55,11 @@ _POLICIES: Mapping[str, type[HistoryPolicy] | type[ReliabilityPolicy] | type[Dur
     "reliability": ReliabilityPolicy,
     "durability": DurabilityPolicy,
 }
-_MOST_DEPTH = 2**31 - 1
+_MAX_DEPTH = 2**31 - 1
 
 
 def check_overrides(node: Node) -> None:
-    """StartError for a `qos_overrides.<topic>.publisher.…` that the node was started with and no publisher can have."""
+    """Raise StartError for an invalid value of `qos_overrides.<topic>.publisher.…` given at the start."""
     for name, parameter in node._parameter_overrides.items():
         head, _, policy = name.rpartition(".")
         if not (name.startswith("qos_overrides.") and head.endswith(".publisher")):
@@ -68,24 +68,24 @@ def check_overrides(node: Node) -> None:
         if policy in _POLICIES:
             words = [word for word in map(str.lower, _POLICIES[policy].__members__) if word != "unknown"]
             expected = "" if value in words else ", ".join(words)
-        elif policy == "depth" and (type(value) is not int or not 0 <= value <= _MOST_DEPTH):
-            expected = f"0 to {_MOST_DEPTH}"
+        elif policy == "depth" and (type(value) is not int or not 0 <= value <= _MAX_DEPTH):
+            expected = f"0 to {_MAX_DEPTH}"
         if expected:
-            raise StartError(f"parameter {name}: {value!r} found, expected {expected}")
+            raise StartError(f"parameter {name}: found {value!r}, expected {expected}")
 
 
 def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
-    """Arguments of `create_publisher`: its profile, and the parameters `qos_overrides.<topic>.publisher.…`.
+    """Return arguments for `create_publisher`: the profile, and QoS overrides if any were given for the topic.
 
-    They are declared only where the node was started with one of them: for every topic of a hundred robots they would
-    be ten thousand.
+    Override parameters are declared only if the node was started with one of them; for all topics of a hundred robots
+    there would be ten thousand.
     """
-    # rclpy tells nobody what a node was started with but the node itself.
+    # rclpy has no public accessor for start parameters.
     started_with = [name for name in node._parameter_overrides if name.startswith("qos_overrides.")]
     if started_with and any(
         name.startswith(f"qos_overrides.{node.resolve_topic_name(topic)}.publisher.") for name in started_with
     ):
-        # rclpy writes the overrides into the profile that it is given.
+        # rclpy writes the overrides into the given profile.
         own = copy.copy(profile)
         return {"qos_profile": own, "qos_overriding_options": QoSOverridingOptions.with_default_policies()}
     return {"qos_profile": profile}

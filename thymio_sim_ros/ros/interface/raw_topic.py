@@ -18,23 +18,23 @@ from std_msgs.msg import Int16MultiArray
 from thymio_sim_ros.ros.interface import sensor_topics
 from thymio_sim_ros.ros.interface.names import raw_topic
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
-from thymio_sim_ros.ros.simulator.subscriber_demand import Audience, Heard
+from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["Decoder", "RawTopic", "Told", "encode"]
+__all__ = ["RawDecoder", "RawTopic", "SensorWords", "encode"]
 
-Told = tuple[str, str, Sequence[int]]
+SensorWords = tuple[str, str, Sequence[int]]
 """A robot's name in ROS, a sensor, its integers."""
 
 _LITTLE_ENDIAN_CDR = b"\0\1\0\0"
 _TWO = struct.Struct("<II")
 _COUNT = struct.Struct("<I")
-_MOST_KNOWN = 500
+_MAX_KNOWN = 500
 """So many kinds of messages are remembered: which sensors measure together hardly changes."""
 
 
-def encode(readings: Iterable[Told]) -> bytes:
+def encode(readings: Iterable[SensorWords]) -> bytes:
     """The message of these readings, serialised."""
     heads: list[bytes] = []
     words: list[int] = []
@@ -45,7 +45,7 @@ def encode(readings: Iterable[Told]) -> bytes:
     return b"".join((*head, struct.pack(f"<{len(words)}h", *words)))
 
 
-class Decoder:
+class RawDecoder:
     """Takes messages apart. Invariant: what is known of a message by its first bytes is true of all that begin so."""
 
     def __init__(self) -> None:
@@ -53,7 +53,7 @@ class Decoder:
         """By size of the message: how it begins, and robot, sensor, first word and end of each reading."""
         self._count = 0
 
-    def decode(self, data: bytes) -> Iterator[Told]:
+    def decode(self, data: bytes) -> Iterator[SensorWords]:
         """The readings of a serialised message; RuntimeError when it is none, ValueError when words are missing."""
         for head, parts in self._known.get(len(data), ()):
             if data.startswith(head):
@@ -70,7 +70,7 @@ class Decoder:
         own = encode((robot, sensor, words[begin:end]) for robot, sensor, begin, end in parts)
         if not data.startswith(own):
             return  # written by somebody else in another way
-        if self._count >= _MOST_KNOWN:
+        if self._count >= _MAX_KNOWN:
             self._known.clear()
             self._count = 0
         self._count += 1
@@ -80,30 +80,30 @@ class Decoder:
 class RawTopic:
     """The simulator's side: what a tick gave is sent at its end, if anybody listens."""
 
-    def __init__(self, publisher: Any, audience: Audience) -> None:
+    def __init__(self, publisher: Any, demand: SubscriberDemand) -> None:
         self._send, self._count = raw_publisher.sender(publisher), raw_publisher.counter(publisher)
-        self._audience = audience
+        self._demand = demand
         self._heard = {
-            sensor.name: Heard(sensor.name, is_regular=sensor_topics.is_regular(sensor, row))
+            sensor.name: TopicDemand(sensor.name, is_periodic=sensor_topics.is_periodic(sensor, row))
             for sensor in all_sensors()
-            for row in sensor_topics.select_rows(sensor)
+            for row in sensor_topics.rows_of(sensor)
             if row.topic == raw_topic(sensor.name)
         }
-        self._is_heard = False
-        self._waiting: list[Told] = []
+        self._has_subscribers = False
+        self._waiting: list[SensorWords] = []
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Find out whether somebody listens now."""
-        is_heard = self._count() > 0
-        if is_heard == self._is_heard:
+        has_subscribers = self._count() > 0
+        if has_subscribers == self._has_subscribers:
             return
-        self._is_heard = is_heard
+        self._has_subscribers = has_subscribers
         for heard in self._heard.values():
-            (self._audience.join if is_heard else self._audience.leave)(heard)
+            (self._demand.add if has_subscribers else self._demand.remove)(heard)
 
-    def take(self, robot: str, sensor: str, reading: Reading) -> None:
+    def add(self, robot: str, sensor: str, reading: Reading) -> None:
         """A reading of this tick, of the robot with this name in ROS."""
-        if self._is_heard and sensor in self._heard:
+        if self._has_subscribers and sensor in self._heard:
             self._waiting.append((robot, sensor, reading.words))
 
     def flush(self) -> None:

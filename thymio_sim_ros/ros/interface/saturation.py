@@ -1,7 +1,6 @@
-"""What in a message lies beyond what the robot can do: it is limited, and whoever sent it is told once.
+"""Describes values of messages beyond the limits of the robot, which are clamped and logged once per topic.
 
-Each function answers for messages of one type with a sentence, or with nothing (docs/spec/ros-interface.md section
-4.2).
+Each function returns a sentence for messages of one type, or an empty text (docs/spec/ros-interface.md section 4.2).
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from thymio_sim_ros.sim.audio.synthesis import HIGHEST_HZ, LOWEST_HZ, SYSTEM_SOU
 from thymio_sim_ros.sim.model import robot_constants
 
 __all__ = [
-    "LONGEST_TONE_S",
-    "Beyond",
+    "MAX_TONE_S",
+    "LimitCheck",
     "brightness",
     "color",
     "frequency",
@@ -42,9 +41,9 @@ __all__ = [
     "wheels",
 ]
 
-Beyond = Callable[[Any], str]
+LimitCheck = Callable[[Any], str]
 
-LONGEST_TONE_S = 3600.0
+MAX_TONE_S = 3600.0
 """A tone that would be longer sounds until it is stopped."""
 STOP_SOUND = -1
 """In place of the number of a sound."""
@@ -86,7 +85,7 @@ def _speeds(command: commands.BodyTwist | commands.WheelVelocities) -> str:
 def _outside(values: Iterable[float], low: float, high: float, what: str) -> str:
     for value in values:
         if not low - abs(low) * _ROUNDING <= value <= high + abs(high) * _ROUNDING:
-            return f"{what} {value:g} found, expected {low:g} to {high:g}"
+            return f"found {what} {value:g}, expected {low:g} to {high:g}"
     return ""
 
 
@@ -119,15 +118,15 @@ def _one(message: Float32, *, what: str) -> str:
     return _outside((message.data,), 0.0, 1.0, what)
 
 
-loudness: Beyond = partial(_one, what="loudness")
-light: Beyond = partial(_one, what="light")
+loudness: LimitCheck = partial(_one, what="loudness")
+light: LimitCheck = partial(_one, what="light")
 
 
 def threshold(message: Float32) -> str:
     """A threshold that no loudness has: every sound is above a negative one, none above one beyond 1."""
-    beyond = _outside((message.data,), 0.0, 1.0, "threshold")
+    limit_check = _outside((message.data,), 0.0, 1.0, "threshold")
     every = "every" if message.data < 0.0 else "no"
-    return beyond and f"{beyond} (0 is off); {every} sound is told with this one"
+    return limit_check and f"{limit_check} (0 is off); {every} sound is published with this value"
 
 
 def tone(message: Float32MultiArray) -> str:
@@ -135,7 +134,7 @@ def tone(message: Float32MultiArray) -> str:
     hertz, seconds = message.data
     if seconds < 0:
         return ""
-    return frequency(hertz) or _outside((seconds,), 0.0, LONGEST_TONE_S, "seconds")
+    return frequency(hertz) or _outside((seconds,), 0.0, MAX_TONE_S, "seconds")
 
 
 def frequency(hertz: float) -> str:
@@ -150,14 +149,14 @@ def system_sound(message: Int8) -> str:
 
 def sound_number(number: int) -> str:
     """The same of a number."""
-    beyond = _outside((number,), STOP_SOUND, len(SYSTEM_SOUNDS) - 1, "sound")
-    return beyond and f"{beyond}; the robot beeps instead"
+    limit_check = _outside((number,), STOP_SOUND, len(SYSTEM_SOUNDS) - 1, "sound")
+    return limit_check and f"{limit_check}; the robot beeps instead"
 
 
 def payload(message: Int16) -> str:
     """Values that infrared frames cannot carry."""
-    beyond = _outside((message.data,), 0, FULL_PAYLOAD, "value")
-    return f"{beyond}; a negative one is a pulse without data" if message.data < 0 else beyond
+    limit_check = _outside((message.data,), 0, FULL_PAYLOAD, "value")
+    return f"{limit_check}; a negative one is a pulse without data" if message.data < 0 else limit_check
 
 
 def single(message: Int16MultiArray) -> str:

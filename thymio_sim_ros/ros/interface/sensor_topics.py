@@ -1,4 +1,4 @@
-"""The topics of every sensor, one row for each, and how often they are sent.
+"""Topics of all sensors, one row each, with their rates.
 
 Names, units, frames and QoS are those of docs/spec/ros-interface.md sections 4, 6.3 and 9.
 """
@@ -44,7 +44,7 @@ Encode = Callable[[Any, RobotNames, ConvertOptions], Any]
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One topic made from one sensor: `encode` gives the message, or None for nothing new.
+    """One topic of one sensor; `encode` returns the message, or None if there is nothing to publish.
 
     `about`: its content and units, for the reference; `frame`: the usual name of its header's frame, if it has one.
     `every_ns`: not more often than that; 0 all. `always`: published also when nobody listens. `on_change`: only when
@@ -73,9 +73,9 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 f"ground/{side}",
                 Range,
                 partial(convert_readings.ground_range, index=i),
-                "-inf: the floor reflects, +inf: it does not; as the driver has it 0 and 1",
+                "-inf: the floor reflects, +inf: it does not; in the driver 0 and 1",
                 f"ground_{side}_link",
-                patch=cdr_fields.below_patch(i),
+                patch=cdr_fields.ground_patch(i),
             )
             for i, side in enumerate(SIDES)
         ),
@@ -83,9 +83,9 @@ ROWS: dict[str, tuple[Row, ...]] = {
             Row(
                 f"ground/{side}/reflectance",
                 Float32,
-                partial(convert_readings.ground_grey, index=i),
-                "grey of the floor as the sensor counts it: 0 black (or no floor), 1 white",
-                patch=cdr_fields.grey_patch(i),
+                partial(convert_readings.ground_reflectance, index=i),
+                "gray value of the floor measured by the sensor: 0 black (or no floor), 1 white",
+                patch=cdr_fields.reflectance_patch(i),
             )
             for i, side in enumerate(SIDES)
         ),
@@ -96,9 +96,9 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 f"proximity/{name}",
                 Range,
                 partial(convert_readings.proximity_range, index=i),
-                "distance in m of a wall; +inf: nothing, -inf: too close; as the driver has it -1 and the minimum",
+                "distance in m; +inf: no obstacle, -inf: too close; in the driver -1 and the minimum",
                 f"proximity_{name}_link",
-                patch=cdr_fields.seen_patch(i),
+                patch=cdr_fields.proximity_patch(i),
             )
             for i, name in enumerate(PROXIMITY)
         ),
@@ -106,7 +106,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "_proximity/laser",
             LaserScan,
             convert_readings.laser,
-            "the five front sensors from right to left, m from the robot's middle; intensities are counts",
+            "the five front sensors from right to left, m from the center of the robot; intensities are counts",
             "laser_link",
             patch=cdr_fields.LASER,
         ),
@@ -114,7 +114,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "_proximity/rays",
             Marker,
             convert_sensors.rays,
-            "the seven rays as lines, as long as what they measure; red where something is met",
+            "the seven rays as lines of the measured length; red if there is an obstacle",
             "base_link",
             patch=cdr_fields.RAYS,
         ),
@@ -156,11 +156,11 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "odom",
             Odometry,
             convert_readings.odometry,
-            "by the wheels, from zero; they slip",
+            "wheel odometry, from zero; with slip",
             "odom",
             patch=cdr_fields.ODOMETRY,
         ),
-        Row(TRUTH, Odometry, convert_readings.truth, "where the robot really is", MAP_FRAME, patch=cdr_fields.TRUTH),
+        Row(TRUTH, Odometry, convert_readings.truth, "true pose and velocity", MAP_FRAME, patch=cdr_fields.TRUTH),
     ),
     "leds": (
         Row(
@@ -168,7 +168,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             Float32MultiArray,
             convert_readings.leds,
             "brightness 0…1 of every light, a labelled dimension for each group",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
             patch=cdr_fields.LEDS,
         ),
@@ -208,12 +208,12 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "_collision",
             Bool,
             convert_sensors.collision,
-            "whether anything but the floor is touched",
+            "whether the robot touches anything except the floor",
             on_change=attrgetter("is_touching"),
             always=True,
         ),
     ),
-    "tap": (Row("_tap", Empty, convert_sensors.tap, "a shock was felt"),),
+    "tap": (Row("_tap", Empty, convert_sensors.tap, "a tap was detected"),),
     "sound": (Row("_sound", Float32, convert_sensors.sound, "loudness 0…1 above `_sound_threshold`", is_event=True),),
     "remote": (Row("_remote", Int8, convert_sensors.remote, "command 0…127 of a key of an RC5 remote control"),),
     "comm": (Row("_comm/received", Int16, convert_sensors.received, "value of an infrared frame"),),
@@ -223,7 +223,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             MarkerArray,
             convert_readings.trail,
             "what the pen drew, a line strip for each stroke",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
         ),
     ),
@@ -231,16 +231,16 @@ ROWS: dict[str, tuple[Row, ...]] = {
         Row(
             "_sound/state/wave",
             Int8MultiArray,
-            convert_readings.heard_wave,
+            convert_readings.played_wave,
             "the period that tones are made of, 142 samples",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
             on_change=attrgetter("wave"),
         ),
         Row(
             "_sound/state/samples",
             UInt8MultiArray,
-            convert_readings.heard_samples,
+            convert_readings.played_samples,
             "unsigned 8 bit at 7812.5 Hz of a sound that begins",
             profile=qos.EVENTS,
         ),
@@ -249,7 +249,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             Float32MultiArray,
             convert_readings.sound,
             "Hz, s, volume 0…1 of what plays; zeros for silence",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
         ),
     ),
@@ -261,11 +261,11 @@ AT_START: Mapping[str, Reading] = {
     "pen": PenReading(0, (), False, (0.0, 0.0, 0.0), 0.0, False, ()),
     "loudspeaker": LoudspeakerReading(0, (), 0, 0.0, 0, TRIANGLE, b"", 0),
 }
-"""What these sensors, which tell changes only, would say of a robot that has done nothing yet."""
+"""Readings at the start for sensors that report changes only."""
 
 
-def select_rows(sensor: Sensor) -> tuple[Row, ...]:
-    """Topics of a sensor; one added by a plug-in has those of its words."""
+def rows_of(sensor: Sensor) -> tuple[Row, ...]:
+    """Return the topics of a sensor; that of a plug-in has the raw topic only."""
     variables = ", ".join(f"`{name}`" if size == 1 else f"`{name}[{size}]`" for name, size in sensor.aseba.variables)
     about = f"Aseba's integers: {variables}" if variables else "the event, without values"
     about += "".join(f", then {name}" for name in sensor.aseba.unseen)
@@ -286,7 +286,7 @@ def select_rows(sensor: Sensor) -> tuple[Row, ...]:
     return ROWS.get(sensor.name, ()) + raw
 
 
-RARE: Mapping[str, str] = {
+IRREGULAR: Mapping[str, str] = {
     "collision": "change",
     "comm": "event",
     "current": "change",
@@ -297,16 +297,16 @@ RARE: Mapping[str, str] = {
     "sound_finished": "event",
     "tap": "event",
 }
-"""When sensors give readings that look for something now and then."""
+"""Sensors without periodic readings: whether they publish on change or on an event."""
 
 
-def is_regular(sensor: Sensor, row: Row) -> bool:
-    """Whether a row of a sensor is sent again and again, and not when something happens."""
-    return not (row.is_event or row.on_change or sensor.name in RARE)
+def is_periodic(sensor: Sensor, row: Row) -> bool:
+    """Whether a row is published periodically, rather than on change or on an event."""
+    return not (row.is_event or row.on_change or sensor.name in IRREGULAR)
 
 
-def often(sensor: Sensor, row: Row) -> str:
-    """How often a row of a sensor is sent: in Hz, on a change, or when something happens."""
-    if not is_regular(sensor, row):
-        return "event" if row.is_event else RARE.get(sensor.name, "change")
+def rate(sensor: Sensor, row: Row) -> str:
+    """Return the rate of a row: a number in Hz, "change" or "event"."""
+    if not is_periodic(sensor, row):
+        return "event" if row.is_event else IRREGULAR.get(sensor.name, "change")
     return f"{SECOND_NS / max(sensor.period_ns, row.every_ns):.3g}"

@@ -1,7 +1,7 @@
-"""The folder where rcl writes its log files: rcl raises an error where it cannot create it.
+"""Ensures that rcl can create its log directory, without which it does not start.
 
-rcl's rule: `ROS_LOG_DIR`, else `log` in `ROS_HOME`, else `.ros/log` in `HOME`. A container or a service may have no
-`HOME`, or one that cannot be written.
+rcl uses `ROS_LOG_DIR`, else `log` in `ROS_HOME`, else `.ros/log` in `HOME`. Containers and services may have no `HOME`,
+or one that is not writable.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _NAME = "thymio-sim-log-"
 
 
 def ensure(environment: MutableMapping[str, str] = os.environ) -> None:
-    """Set `ROS_LOG_DIR` to a temporary folder, and report it on stderr, if rcl's own choice cannot be written."""
+    """Set `ROS_LOG_DIR` to a temporary folder, and report it on stderr, if rcl's default is not writable."""
     wanted = _wanted(environment)
     problem = "HOME is not set" if wanted is None else _problem(wanted)
     if not problem:
@@ -37,7 +37,7 @@ def _wanted(environment: MutableMapping[str, str]) -> Path | None:
 
 
 def _problem(folder: Path) -> str:
-    """Why log files cannot be written there; empty if they can."""
+    """Return the reason why log files cannot be written to `folder`, or an empty text."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

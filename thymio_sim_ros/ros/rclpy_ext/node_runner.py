@@ -1,8 +1,8 @@
-"""How our nodes live: one executor each, driven by one thread, ended in order.
+"""Runs nodes, each with its own executor and thread, and shuts them down in order.
 
-A `Life` owns one rclpy node and what belongs to it. `run_main` gives it a process of its own
-(`ros2 run`); `thymio` gives several of them a thread each in one process. Same behaviour both ways.
-The shutdown pattern is the one of docs/spec/ros-packaging.md section 5 that always exits cleanly.
+A `RunnableNode` owns one rclpy node and its resources. `run_main` runs one in its own process (`ros2 run`), or several
+in one process with one thread each (`thymio`), with the same behavior.
+The shutdown sequence follows docs/spec/ros-packaging.md section 5, so that the process always exits cleanly.
 """
 
 from __future__ import annotations
@@ -30,89 +30,89 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.ros.compat.shm_cleanup import remove_half_made_ports
+from thymio_sim_ros.ros.compat.shm_cleanup import remove_incomplete_ports
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 
 SWITCH_INTERVAL_S = 0.0005
-"""How long a thread may keep the interpreter while others wait: a tenth of Python's default, since a command that waits
-for 5 ms is 12 ticks late at 25 times real time (measured: the line follower strays 36 mm instead of 17 mm)."""
+"""Thread switch interval of the interpreter, a tenth of Python's default: at 25 times real time, a command that waits
+for 5 ms is 12 ticks late (measured: the line follower deviates by 36 mm instead of 17 mm)."""
 
-YOUNG_OBJECTS = 20_000
-"""New objects after which Python looks for cycles among them, instead of 700: a tick of twenty robots makes more than
-that, nearly all of which are gone soon (measured: 6 % of the simulator's time)."""
+GC_THRESHOLD = 20_000
+"""Threshold of the youngest garbage collector generation, instead of 700: one tick of twenty robots allocates more than
+that, and nearly all of it is freed soon (measured: 6 % of the simulator's time)."""
 
 SPIN_SLICE_S = 0.1
-"""Longest wait in one spin: the events executor needs finite time-outs (docs/spec/ros-packaging.md section 3)."""
+"""Longest wait of one spin: the events executor needs finite time-outs (docs/spec/ros-packaging.md section 3)."""
 
 
-MOST_FAULTS = 10
-"""Turns that fail one after the other before a node gives up."""
+MAX_CONSECUTIVE_ERRORS = 10
+"""Consecutive failed iterations after which a node ends."""
 
 STOP_S = 1.5
-"""Longest time for all threads to come to the end of their turns; then they count as stuck."""
+"""Longest time for all threads to finish their current iteration; after that they count as stuck."""
 
 LEAVE_S = 4.0
-"""Longest time from Ctrl-C to the end of the process: Fast DDS compares each endpoint with all others once more, which
-takes a minute with a hundred robots. `ros2 launch` kills after 10 s."""
+"""Longest time from Ctrl-C to the end of the process. Fast DDS compares each endpoint with all others on shutdown, for
+a minute with a hundred robots. `ros2 launch` kills after 10 s."""
 
 LAST_RESORT_S = 0.5
-"""So much later the process ends even if no thread gets the interpreter, which a call into DDS may keep."""
+"""After this additional time the process ends even if a call into DDS holds the interpreter lock."""
 
 
 STUCK = 1
-"""Exit code of a process with a thread that did not stop."""
+"""Exit code if a thread did not stop."""
 
 
 class StartError(ThymioSimError):
-    """A node cannot start for a reason that the user can mend; the text is one line."""
+    """A node cannot start for a reason that the user can fix; the message is one line."""
 
 
-class Life(Protocol):
-    """Something that owns a node: it is turned until it shall end, then closed."""
+class RunnableNode(Protocol):
+    """An object that owns a node; its runner calls `run_once` repeatedly, then `stop` and `close`."""
 
     @property
     def node(self) -> Node:
         """The ROS node."""
 
-    def turn(self, executor: Executor) -> None:
-        """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
+    def run_once(self, executor: Executor) -> None:
+        """Do what is due and return within `SPIN_SLICE_S`."""
 
-    def end(self) -> None:
-        """Nobody turns it any more: let wheels stand, close files and what people connect to. Twice does no harm."""
+    def stop(self) -> None:
+        """Stop wheels, close files and server ports. Called after the last `run_once`; may be called twice."""
 
     def close(self) -> None:
-        """`end` it, and take everything out of the graph."""
+        """Call `stop`, then destroy the node and all its endpoints."""
 
 
-class Host(Life, Protocol):
-    """A life that has something to say when it begins."""
+class AnnouncedNode(RunnableNode, Protocol):
+    """A node that logs a message when it starts."""
 
     @property
-    def greeting(self) -> str:
-        """One line for a person: what there is, and where."""
+    def startup_message(self) -> str:
+        """One line for the user: what runs, and where."""
 
 
 @runtime_checkable
-class Inviting(Protocol):
-    """A life with addresses that contain a token."""
+class HasAccessUrls(Protocol):
+    """A node with URLs that contain an access token."""
 
     @property
-    def invitation(self) -> str:
-        """The addresses, for standard output only: clients may read the log (/rosout). Empty: there is no token."""
+    def access_urls(self) -> str:
+        """The URLs, for standard output only, since clients may read the log (/rosout). Empty without a token."""
 
 
-def greeted(hosts: Iterable[Host]) -> Iterator[Life]:
-    """The same lives, each with its greeting in the log, and its addresses with tokens on standard output."""
-    for host in hosts:
-        host.node.get_logger().info(host.greeting)
-        if isinstance(host, Inviting) and host.invitation:
-            with suppress(OSError):  # nobody reads it
-                print(host.invitation, flush=True)
-        yield host
+def announce(nodes: Iterable[AnnouncedNode]) -> Iterator[RunnableNode]:
+    """Yield the nodes; log each startup message, and print URLs with tokens to standard output."""
+    for node in nodes:
+        node.node.get_logger().info(node.startup_message)
+        if isinstance(node, HasAccessUrls) and node.access_urls:
+            with suppress(OSError):  # standard output is closed
+                print(node.access_urls, flush=True)
+        yield node
 
 
 def make_executor(context: Context) -> Executor:
-    """The events executor where this rclpy has it, else the standard one (docs/spec/ros-packaging.md section 3)."""
+    """Return an events executor if rclpy has one, else the standard one (docs/spec/ros-packaging.md section 3)."""
     try:
         from rclpy.experimental.events_executor import EventsExecutor
     except ImportError:
@@ -121,42 +121,48 @@ def make_executor(context: Context) -> Executor:
 
 
 def deliver(executor: Executor) -> None:
-    """Handle all messages that are there now; `spin_once` of the events executor handles those of one entity."""
-    last_in_line = executor.create_task(_nothing)
+    """Handle all messages that have arrived.
+
+    `spin_once` of the events executor handles one entity only. Tasks run in order, so a task created now is done when
+    everything queued before it has been handled.
+    """
+    last_in_line = executor.create_task(_no_op)
     while not last_in_line.done():
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
 
-def _nothing() -> None:
-    """A task whose turn comes after everything that waited before it."""
+def _no_op() -> None:
+    """Task that marks the end of the queue."""
 
 
-def drive(life: Life, context: Context, stop: Callable[[], bool]) -> None:
-    """Turn a life on an executor of its own until `stop` says so or the context ends.
+def run_node(runnable: RunnableNode, context: Context, stop: Callable[[], bool]) -> None:
+    """Spin a node on its own executor until `stop()` is true or the context is shut down.
 
-    A fault of our own in a callback is logged and does not end a node that a class works with; `MOST_FAULTS` turns in a
-    row that fail do.
+    An exception in a callback is logged as an internal error and the node continues, so that one bug does not interrupt
+    a lesson. After `MAX_CONSECUTIVE_ERRORS` failed iterations in a row the exception is raised.
     """
     executor = make_executor(context)
-    executor.add_node(life.node)
-    faults = 0
+    executor.add_node(runnable.node)
+    errors = 0
     try:
         while not stop() and context.ok():
             try:
-                life.turn(executor)
-                faults = 0
+                runnable.run_once(executor)
+                errors = 0
             except Exception:  # rclpy raises what a callback raises
-                faults += 1
-                if faults >= MOST_FAULTS or not context.ok():
+                errors += 1
+                if errors >= MAX_CONSECUTIVE_ERRORS or not context.ok():
                     raise
-                life.node.get_logger().error(f"a fault of ours, and on it goes:\n{traceback.format_exc()}")
+                runnable.node.get_logger().error(
+                    f"internal error (please report); continuing:\n{traceback.format_exc()}"
+                )
     finally:
-        executor.remove_node(life.node)
+        executor.remove_node(runnable.node)
         executor.shutdown()
 
 
-class Threads:
-    """Lives of one process, a thread each; the first failure ends all."""
+class NodeRunner:
+    """Runs the nodes of one process, with one thread each; the first failure ends all."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
@@ -164,7 +170,7 @@ class Threads:
         self._is_end_requested = False
         self._stop = threading.Event()
         self._ending = threading.Lock()
-        self._running: list[tuple[Life, threading.Thread]] = []
+        self._running: list[tuple[RunnableNode, threading.Thread]] = []
         self.failure: BaseException | None = None
         self.is_stuck = False
         """Whether a thread did not stop."""
@@ -174,25 +180,25 @@ class Threads:
         """Whether `request_end` was called."""
         return self._is_end_requested
 
-    def start(self, life: Life) -> None:
-        """Give the life a thread, which does not keep the process alive."""
-        thread = threading.Thread(target=self._drive, args=(life,), name=life.node.get_name(), daemon=True)
-        self._running.append((life, thread))
+    def start(self, runnable: RunnableNode) -> None:
+        """Run a node on a new daemon thread."""
+        thread = threading.Thread(target=self._run_node, args=(runnable,), name=runnable.node.get_name(), daemon=True)
+        self._running.append((runnable, thread))
         thread.start()
 
     def wait(self) -> None:
-        """Block until a life ends by itself or `request_end` is called."""
+        """Block until a node ends or `request_end` is called."""
         while not self._is_end_requested and not self._ended.wait(SPIN_SLICE_S):
             pass
 
     def request_end(self) -> None:
-        """Let `wait` return; safe in a signal handler, which may have interrupted a thread that holds a lock."""
+        """Make `wait` return. Safe in signal handlers: takes no lock that the interrupted thread might hold."""
         self._is_end_requested = True
 
-    def end(self) -> None:
-        """Stop all threads, then end the lives whose threads have stopped, last started first; once.
+    def stop(self) -> None:
+        """Stop all threads within `STOP_S`, then call `stop` of their nodes, last started first. Runs once.
 
-        It takes at most `STOP_S` for the threads. One that is stuck is reported, with the place where it is.
+        A stuck thread is logged with its stack trace, and its node is skipped.
         """
         with self._ending:
             if self._stop.is_set():
@@ -201,175 +207,184 @@ class Threads:
             deadline = time.monotonic() + STOP_S
             for _, thread in self._running:
                 thread.join(max(0.0, deadline - time.monotonic()))
-            stuck = [(life, thread) for life, thread in self._running if thread.is_alive()]
+            stuck = [(runnable, thread) for runnable, thread in self._running if thread.is_alive()]
             self.is_stuck = bool(stuck)
-            for life, thread in reversed(self._running):
+            for runnable, thread in reversed(self._running):
                 if not thread.is_alive():
-                    life.end()
-            for life, thread in stuck:
-                life.node.get_logger().fatal(f"{thread.name} did not stop within {STOP_S:g} s; {_place(thread)}")
+                    runnable.stop()
+            for runnable, thread in stuck:
+                runnable.node.get_logger().fatal(f"{thread.name} did not stop within {STOP_S:g} s; {_place(thread)}")
 
     def close(self) -> None:
-        """`end` them, then close them in the same order; not where a thread is stuck, which may use any of them."""
-        self.end()
+        """Call `stop`, then close all nodes in the same order, unless a thread is stuck: it may use any of them."""
+        self.stop()
         if self.is_stuck:
             return
-        for life, _ in reversed(self._running):
-            life.close()
+        for runnable, _ in reversed(self._running):
+            runnable.close()
         self._running.clear()
 
-    def _drive(self, life: Life) -> None:
+    def _run_node(self, runnable: RunnableNode) -> None:
         try:
-            drive(life, self._context, self._stop.is_set)
+            run_node(runnable, self._context, self._stop.is_set)
         except Exception as error:
             self.failure = error
-            life.node.get_logger().fatal(f"ended by {error!r}")
+            runnable.node.get_logger().fatal(f"ended by {error!r}")
             traceback.print_exc()
         finally:
             self._ended.set()
 
 
 def _place(thread: threading.Thread) -> str:
-    """Where a thread is now, as a traceback."""
+    """Return the current stack trace of a thread as text."""
     frame = sys._current_frames().get(thread.ident or 0)
     return "it has just ended" if frame is None else f"it is here:\n{''.join(traceback.format_stack(frame))}"
 
 
 def run_main(
-    build: Callable[[Context], Iterable[Life]],
+    build: Callable[[Context], Iterable[RunnableNode]],
     args: Sequence[str] | None = None,
     *,
     executable: str = "",
     on_ready: Callable[[], None] = lambda: None,
 ) -> int:
-    """Run the lives that `build` gives until SIGINT or SIGTERM; the exit code. `executable`: its name, with `args`.
+    """Run the nodes that `build` yields until SIGINT or SIGTERM and return the exit code.
 
-    Each life gets its thread as soon as it is built; `on_ready` is called when all run. A `StartError` is one
-    line on stderr and exit code 2, with nothing left running; arguments that are not of ROS likewise. `LEAVE_S` after
-    a signal the process ends in any case: with 0 where only DDS is slow to forget all endpoints, with 1 where a thread
-    does not stop.
+    Each node gets its thread as soon as it is built; `on_ready` is called when all are running. A `StartError` or a
+    non-ROS argument is reported in one line on stderr with exit code 2, and nothing is left running. `LEAVE_S` after a
+    signal the process ends in any case: with code 0 if only DDS is slow to remove endpoints, with 1 if a thread does
+    not stop.
+
+    Args:
+        build: Called with the context; a generator, so that the first nodes run while the next ones are built.
+        args: ROS arguments; None for those of the process.
+        executable: Name of the program, used with `args`.
+        on_ready: Called when all nodes run.
     """
     words = sys.argv if args is None else [executable, *args]
-    stray = _stray(words[1:])
-    if stray:
-        return _explain(Path(words[0]).name.removeprefix("thymio_"), stray)
+    extra = _extra_arguments(words[1:])
+    if extra:
+        return _report_usage(Path(words[0]).name.removeprefix("thymio_"), extra)
     log_directory.ensure()
     context = Context()
-    threads = Threads(context)
-    departure = _Departure(threads)
+    runner = NodeRunner(context)
+    watchdog = _ExitWatchdog(runner)
 
     def end(_number: int, _frame: FrameType | None) -> None:
-        threads.request_end()
-        departure.begin()
+        runner.request_end()
+        watchdog.start()
 
     sys.setswitchinterval(SWITCH_INTERVAL_S)
-    gc.set_threshold(YOUNG_OBJECTS, *gc.get_threshold()[1:])
+    gc.set_threshold(GC_THRESHOLD, *gc.get_threshold()[1:])
     signal.signal(signal.SIGINT, end)
     signal.signal(signal.SIGTERM, end)
-    remove_half_made_ports()
+    remove_incomplete_ports()
     code = 1
     try:
         _init(words[1:], context)
-        for life in build(context):
-            threads.start(life)
-            if threads.is_end_requested:
+        for runnable in build(context):
+            runner.start(runnable)
+            if runner.is_end_requested:
                 break
         else:
             on_ready()
-        threads.wait()
-        code = 1 if threads.failure else 0
+        runner.wait()
+        code = 1 if runner.failure else 0
     except StartError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)
         code = 2
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
-        departure.begin()
-        departure.code = code
-        threads.close()
-        if threads.is_stuck:
-            departure.leave()
+        watchdog.start()
+        watchdog.code = code
+        runner.close()
+        if runner.is_stuck:
+            watchdog.exit_now()
         context.try_shutdown()
-        departure.end()
+        watchdog.cancel()
     return code
 
 
 def _init(words: Sequence[str], context: Context) -> None:
-    """Begin with these arguments; StartError for one that ROS does not understand."""
+    """Initialize the context. Raises StartError for arguments that ROS does not understand."""
     try:
         rclpy.init(args=list(words), context=context, signal_handler_options=SignalHandlerOptions.NO)
     except UnknownROSArgsError as error:
-        raise StartError(f"no arguments of ROS: {error}") from error
+        raise StartError(f"not ROS arguments: {error}") from error
     except RCLError as error:
         reason = str(error).removeprefix("failed to initialize rcl: ").partition(". Error:")[0]
-        raise StartError(f"ROS does not begin: {reason}") from error
+        raise StartError(f"ROS cannot be initialized: {reason}") from error
 
 
-class _Departure:
-    """Ends the process `LEAVE_S` after the begin, whatever its threads do; `end` calls that off.
+class _ExitWatchdog:
+    """Ends the process `LEAVE_S` after `start`, whatever its threads do, unless `cancel` is called.
 
-    The thread that waits for it also ends the lives, if the main thread is still busy with building one.
+    If the main thread is still building a node after `STOP_S`, the waiting thread stops the running nodes.
     """
 
-    def __init__(self, threads: Threads) -> None:
-        self._threads = threads
-        self._is_begun = False
+    def __init__(self, runner: NodeRunner) -> None:
+        self._runner = runner
+        self._is_started = False
         self._is_over = threading.Event()
         self.code = 0
-        """That of the process, unless a thread is stuck."""
+        """Exit code of the process, unless a thread is stuck."""
 
-    def begin(self) -> None:
-        """Start to count, once; safe in a signal handler: no lock of Python's is taken here."""
-        if self._is_begun:
+    def start(self) -> None:
+        """Start the countdown, once. Safe in signal handlers: takes no Python lock."""
+        if self._is_started:
             return
-        self._is_begun = True
+        self._is_started = True
         self._nowhere = open(os.devnull, "w")  # noqa: SIM115  # as long as the process
         faulthandler.dump_traceback_later(LEAVE_S + LAST_RESORT_S, exit=True, file=self._nowhere)
         _thread.start_new_thread(self._wait, ())
 
-    def end(self) -> None:
-        """All has ended in order."""
-        if self._is_begun:
+    def cancel(self) -> None:
+        """Cancel the countdown: the process ends normally."""
+        if self._is_started:
             faulthandler.cancel_dump_traceback_later()
             self._nowhere.close()
         self._is_over.set()
 
-    def leave(self) -> None:
+    def exit_now(self) -> None:
         """End the process now."""
         with suppress(OSError, ValueError):
             sys.stdout.flush()
             sys.stderr.flush()
-        os._exit(STUCK if self._threads.is_stuck else self.code)
+        os._exit(STUCK if self._runner.is_stuck else self.code)
 
     def _wait(self) -> None:
         deadline = time.monotonic() + LEAVE_S
         if self._is_over.wait(min(STOP_S, LEAVE_S)):
             return
-        ender = threading.Thread(target=self._threads.end, daemon=True)
+        ender = threading.Thread(target=self._runner.stop, daemon=True)
         ender.start()
         if not self._is_over.wait(deadline - time.monotonic()):
-            self.leave()
+            self.exit_now()
 
 
-def _stray(words: Sequence[str]) -> list[str]:
-    """What stands outside of `--ros-args … --`; rclpy's own function also drops a forgotten `-p`'s `NAME:=VALUE`."""
-    stray, is_of_ros = [], False
+def _extra_arguments(words: Sequence[str]) -> list[str]:
+    """Return the arguments outside `--ros-args … --`.
+
+    rclpy's function is not used: it also drops `NAME:=VALUE` without `-p`, which is a common mistake.
+    """
+    extra, is_of_ros = [], False
     for word in words:
         if word == "--ros-args" or (word == "--" and is_of_ros):
             is_of_ros = word == "--ros-args"
-        elif not is_of_ros and not word.startswith("__"):  # __ns:=/anna, as it was once written
-            stray.append(word)
-    return stray
+        elif not is_of_ros and not word.startswith("__"):  # __ns:=/anna, the old syntax
+            extra.append(word)
+    return extra
 
 
-def _explain(executable: str, stray: Sequence[str]) -> int:
-    """How parameters are given: to who asks for it, and to who wrote something else; the exit code."""
+def _report_usage(executable: str, extra: Sequence[str]) -> int:
+    """Print the usage, for `--help` or as an error message, and return the exit code."""
     usage = (
         f"usage: ros2 run thymio_sim_ros {executable} --ros-args -p PARAMETER:=VALUE ...\n"
         "Its parameters while it runs: ros2 param list, ros2 param describe; all of them: docs/ros.md"
     )
-    if set(stray) & {"-h", "--help"}:
+    if set(extra) & {"-h", "--help"}:
         print(usage)
         return 0
-    print(f"thymio-sim: argument '{stray[0]}' found, expected none but those of ROS\n{usage}", file=sys.stderr)
+    print(f"thymio-sim: argument '{extra[0]}' found, expected ROS arguments only\n{usage}", file=sys.stderr)
     return 2

@@ -1,9 +1,9 @@
-"""A ROS node whose parameters survive `ros2 param dump` and `load`: what is loaded unchanged changes nothing.
+"""A ROS node whose parameters survive `ros2 param dump` and `load`: loading unchanged values changes nothing.
 
-`load` does not send what `dump` wrote: rclpy makes text of each value and guesses its type anew, so that 1e-05 arrives
-as text, an empty list as one of truth values, and the lines of a program as one. Two rules undo that: a value is taken
-as the declared type where it can be read as such, and what is, or is loaded from, the present value is accepted without
-being set, even where it is read-only.
+`load` does not send the values that `dump` wrote: rclpy converts each value to text and guesses its type, so 1e-05
+arrives as text, an empty list as a list of booleans, and the lines of a program joined into one. Two rules compensate:
+a value is converted to the declared type where possible, and a value that equals the current one, directly or after
+such a round trip, is accepted without being set, even if the parameter is read-only.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _ARRAYS = {
 
 
 class ParameterNode(Node):
-    """A node that only sets what differs; the callbacks of its parameters see nothing else."""
+    """A node that sets only values that differ; parameter callbacks see only those."""
 
     def __init__(
         self,
@@ -42,12 +42,12 @@ class ParameterNode(Node):
         names_file: Callable[[str], bool] = lambda _name: False,
         **options: Any,
     ) -> None:
-        """`names_file`: of which parameters the present value is passed on all the same, since its file may differ."""
+        """`names_file`: whether a parameter names a file; it is set even if unchanged, as the file may have changed."""
         self._names_file = names_file
         super().__init__(name, context=context, **options)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set those that differ from the present ones, all or none; this is what the services of rclpy call."""
+        """Set the values that differ, all or none; called by rclpy's parameter services."""
         wanted = [self._as_declared(one) for one in parameter_list]
         changed = [one for one in wanted if self._names_file(one.name) or not self._is_present(one)]
         if parameter_list and not changed:
@@ -55,7 +55,7 @@ class ParameterNode(Node):
         return super().set_parameters_atomically(changed)
 
     def _as_declared(self, wanted: Parameter) -> Parameter:
-        """The parameter with the type that it has now, where its value can be read so."""
+        """Convert the value to the current type of the parameter where possible."""
         if not self.has_parameter(wanted.name):
             return wanted
         kind = self.get_parameter(wanted.name).type_
@@ -73,7 +73,7 @@ class ParameterNode(Node):
         return wanted if value is None else Parameter(wanted.name, kind, value)
 
     def _is_present(self, wanted: Parameter) -> bool:
-        """Whether it is what it is wanted to be."""
+        """Whether the parameter has this value already."""
         if not self.has_parameter(wanted.name):
             return False
         return _are_equal(self.get_parameter(wanted.name), wanted) or _is_loaded_from(
@@ -82,7 +82,7 @@ class ParameterNode(Node):
 
 
 def parameter_node(name: str, *, context: Context, **options: Any) -> Node:
-    """Such a node, with rclpy's own type."""
+    """Create a ParameterNode, typed as rclpy's Node."""
     return ParameterNode(name, context=context, **options)
 
 
@@ -91,13 +91,13 @@ def _are_equal(one: Parameter, other: Parameter) -> bool:
 
 
 def _is_loaded_from(present: Parameter, wanted: Parameter) -> bool:
-    """Whether `ros2 param load` sends this for the present value."""
+    """Whether `ros2 param load` sends `wanted` for the present value."""
     value = parameters.plain(present.value)
     if isinstance(value, str) and isinstance(wanted.value, str) and wanted.value.split() != value.split():
-        return False  # of a text all but the space between words is still there; YAML takes long for programs
+        return False  # a round trip changes only white space; checked first, since parsing programs as YAML is slow
     try:
         sent = get_parameter_value(str(value))
-    except Exception:  # of YAML or of the message: then nothing can be sent
+    except Exception:  # raised by YAML or the message: no such value can be sent
         return False
     return _are_equal(Parameter.from_parameter_msg(ParameterMessage(name=wanted.name, value=sent)), wanted)
 
@@ -110,7 +110,7 @@ def _number(text: str) -> float | None:
 
 
 def _numbers(found: str | Sequence[str]) -> list[float] | None:
-    """Of a list as text, or of a list of texts."""
+    """Parse a list of numbers from JSON text or from a list of texts; None if that is not possible."""
     if isinstance(found, str):
         try:
             found = json.loads(found)

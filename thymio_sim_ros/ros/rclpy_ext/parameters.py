@@ -1,12 +1,12 @@
-"""A node's parameters as one frozen dataclass: declared, described and checked from the same fields.
+"""Declares the parameters of a node from one frozen dataclass, with descriptors and checks from the same fields.
 
     @dataclass(frozen=True)
     class Params:
         real_time_factor: float = param(1.0, "Simulated seconds per second", low=0.0, high=1000.0)
 
-`declare` declares them all and returns the values in force; descriptors (text, range, choices, read-only flag) come
-from the fields, so that `ros2 param describe`, the reference and the code cannot disagree. `updated` gives the values
-after a change; what no descriptor can refuse is refused by `refusal`.
+`declare` declares all fields and returns the current values. Descriptors (text, range, choices, read-only flag) come
+from the fields, so that `ros2 param describe`, docs/ros.md and the code agree. `updated` returns the values after a
+change; `refusal` checks constraints that a descriptor cannot express.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 T = TypeVar("T")
 
 _LIKE = 0.7
-"""How like a known name a name must be to be taken for a slip of the fingers, 0…1."""
+"""Similarity 0…1 from which an unknown name is treated as a typing error for a known one."""
 
 _OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
 
@@ -45,10 +45,17 @@ def param(
     size: int | None = None,
     array: Parameter.Type | None = None,
 ) -> Any:
-    """A field of a parameter dataclass; `name` where it has dots, `fixed`: read-only once the node runs.
+    """Return a field of a parameter dataclass.
 
-    `low` and `high` limit a number, or each of an array; `choices`: all texts it may be; `size`: an array's length;
-    `array`: the type of an array that may be empty.
+    Args:
+        default: The default value; its type is the type of the parameter.
+        text: The description.
+        name: The name of the parameter if it differs from the field, such as a name with dots.
+        low, high: Limits of a number, or of each number of an array.
+        fixed: Read-only once the node runs.
+        choices: All allowed texts.
+        size: Length of an array.
+        array: The type of an array that may be empty.
     """
     metadata: dict[str, Any] = {"text": text, "low": low, "high": high, "fixed": fixed, "array": array, "size": size}
     metadata["choices"] = tuple(choices)
@@ -60,13 +67,13 @@ def param(
 
 
 def group(default: Any, name: str) -> Any:
-    """A field that holds parameters of its own; their names begin with `name` and a dot."""
+    """Return a field with a nested parameter dataclass; the names of its parameters begin with `name` and a dot."""
     return field(default=default, metadata={"group": name})
 
 
 @dataclass(frozen=True)
 class Declared:
-    """One parameter: its full name, its field's path in the dataclass, its default and what its field says."""
+    """One parameter: full name, path of its field in the dataclass, default and metadata of the field."""
 
     name: str
     path: tuple[str, ...]
@@ -75,7 +82,7 @@ class Declared:
 
     @property
     def descriptor(self) -> ParameterDescriptor:
-        """What `ros2 param describe` tells."""
+        """The descriptor shown by `ros2 param describe`."""
         said = self.metadata
         expected = [f"one of: {', '.join(said['choices'])}"] if said["choices"] else []
         expected += [f"{said['size']} values"] if said["size"] is not None else []
@@ -96,7 +103,7 @@ class Declared:
         return descriptor
 
     def refusal(self, value: Any) -> str:
-        """Why this value is refused, or nothing; what a descriptor refuses is not asked here."""
+        """Return the reason why a value is invalid, or an empty text; constraints of the descriptor are not checked."""
         said = self.metadata
         if value is None:
             return f"{self.name}: nothing found, expected a value"
@@ -130,7 +137,7 @@ def _is_within(value: float, said: Mapping[str, Any]) -> bool:
 
 
 def declared(values: Any) -> Iterator[Declared]:
-    """Every parameter of a dataclass and its groups, in order; defaults are those of this object."""
+    """Yield every parameter of a dataclass and its groups, in order, with the values of this object as defaults."""
     return _declared(values, "", ())
 
 
@@ -148,9 +155,9 @@ def _name(item: Field[Any]) -> str:
 
 
 def declare(node: Node, defaults: T) -> T:
-    """Declare every field on the node; returns the dataclass with the values in force.
+    """Declare every field on the node and return the dataclass with the current values.
 
-    A value from the command line that a descriptor or a field refuses is a StartError.
+    Raises StartError for a value from the command line that violates a descriptor or a field.
     """
     values = defaults
     for one in declared(defaults):
@@ -172,48 +179,51 @@ def declare(node: Node, defaults: T) -> T:
 
 
 def undeclared(node: Node, name: str) -> str:
-    """The start value of a parameter that is never declared, so that it cannot be read from outside; or ""."""
-    given = node._parameter_overrides.get(name)  # rclpy has no public way to see them
+    """Return the start value of a parameter that is never declared, so that other nodes cannot read it; or ""."""
+    given = node._parameter_overrides.get(name)  # rclpy has no public accessor
     return "" if given is None or given.value is None else str(given.value)
 
 
 def warn_of_unknown(
     node: Node, page: str, is_known: Callable[[str], bool] | None = None, names: Iterable[str] = ()
 ) -> None:
-    """Tell which parameters a node was started with that it does not have: ROS ignores them without a word.
+    """Warn about start parameters that the node does not have; ROS ignores them silently.
 
-    `page` of docs/ lists those that it has; `is_known` tells them, else all are declared when this is called. The
-    nearest of these and of `names` is named.
+    Args:
+        node: The node, with all its parameters declared unless `is_known` is given.
+        page: The page of docs/ that lists the parameters.
+        is_known: Whether the node has a parameter.
+        names: Further names to suggest as corrections.
     """
     known = is_known or node.has_parameter
     for name in sorted(overrides(node)):
         if not known(name) and not name.startswith(_OF_RCL):
             near = meant(name, [one for one in (*node.get_parameters_by_prefix(""), *names) if known(one)])
             node.get_logger().warning(
-                f"parameter {name} is none of {node.get_name()} and does nothing{near}; see docs/{page}"
+                f"parameter {name} is not a parameter of {node.get_name()} and has no effect{near}; see docs/{page}"
             )
 
 
 def meant(name: str, names: Sequence[str]) -> str:
-    """A question whether another of these names was meant; nothing where none is like it."""
+    """Return " (did you mean …?)" with the most similar name, or an empty text."""
     near = difflib.get_close_matches(name, names, 1, _LIKE)
     return f" (did you mean {near[0]}?)" if near else ""
 
 
 def overrides(node: Node) -> dict[str, Any]:
-    """What a command line, a file or a constructor gave a node: name → value; None for an empty list."""
-    return {name: one.value for name, one in node._parameter_overrides.items()}  # rclpy has no public way
+    """Return the parameter overrides of a node, name → value; None for an empty list."""
+    return {name: one.value for name, one in node._parameter_overrides.items()}  # rclpy has no public accessor
 
 
 def refusal(values: Any, parameters: Iterable[Parameter]) -> str:
-    """Why a change is refused by what the fields say, or nothing."""
+    """Return the reason why a change violates a field, or an empty text."""
     known = {one.name: one for one in declared(values)}
     reasons = (known[one.name].refusal(plain(one.value)) for one in parameters if one.name in known)
     return next((reason for reason in reasons if reason), "")
 
 
 def updated(values: T, parameters: Iterable[Parameter]) -> T:
-    """The values after a change; parameters of others do not matter."""
+    """Return the values after a change; unknown parameters are ignored."""
     paths = {one.name: one.path for one in declared(values)}
     for parameter in parameters:
         if parameter.name in paths and parameter.value is not None:
@@ -222,9 +232,9 @@ def updated(values: T, parameters: Iterable[Parameter]) -> T:
 
 
 def declare_array(node: Node, name: str, kind: Parameter.Type, text: str, default: Sequence[Any] = ()) -> list[Any]:
-    """Declare a list that may be empty; the value in force.
+    """Declare a list parameter that may be empty and return its value. Raises StartError if it is not a list.
 
-    An empty list from a command line has the type of no element, so the type is checked by who uses the value.
+    An empty list from the command line has no element type, so the caller checks the types of elements.
     """
     node.declare_parameter(name, None, ParameterDescriptor(description=text, dynamic_typing=True))
     found = node.get_parameter(name).value
@@ -236,27 +246,27 @@ def declare_array(node: Node, name: str, kind: Parameter.Type, text: str, defaul
 
 
 def by_name(values: Any) -> dict[str, Any]:
-    """The values of a dataclass by the names of their parameters."""
+    """Return the values of a dataclass by parameter name."""
     return {one.name: one.default for one in declared(values)}
 
 
 def described(text: str) -> ParameterDescriptor:
-    """The descriptor of a parameter that has nothing but a meaning."""
+    """Return a descriptor with a description only."""
     return ParameterDescriptor(description=text)
 
 
 def changes(parameters: Iterable[Parameter]) -> dict[str, Any]:
-    """Parameter list of a callback as name → value."""
+    """Return the parameters of a callback as name → value."""
     return {parameter.name: parameter.value for parameter in parameters}
 
 
 def plain(value: Any) -> Any:
-    """Arrays of parameters as lists."""
+    """Return arrays as lists, and other values unchanged."""
     return value if isinstance(value, str | bytes | int | float | bool) or value is None else list(value)
 
 
 def _with(values: T, path: tuple[str, ...], value: Any) -> T:
-    """The same with one field, maybe of a group, set."""
+    """Return a copy with the field at `path` set."""
     first, *rest = path
     if rest:
         value = _with(getattr(values, first), tuple(rest), value)

@@ -1,6 +1,6 @@
-"""The short way past rclpy's publishers and subscriptions, for what is done hundreds of times a second.
+"""Fast paths around rclpy's publishers and subscriptions for messages with high rates.
 
-Where an rclpy has no such way, the usual one is taken.
+Falls back to rclpy's public methods where this rclpy has no such path.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ _COUNT_AT, _WORDS_AT = 12, 16
 
 
 def sender(publisher: Any) -> Callable[[bytes], None]:
-    """What sends serialised messages; `publish` first asks what it was given, which costs as much as to send it."""
+    """Return a function that publishes serialized messages without the expensive type check of `publish`."""
     send: Callable[[bytes], None] = getattr(publisher.handle, "publish_raw", publisher.publish)
     return send
 
 
 def counter(publisher: Any) -> Callable[[], int]:
-    """What tells how many subscriptions a publisher has; not to be called once it is destroyed."""
+    """Return a function that counts the subscriptions of a publisher; it must not be called on a destroyed one."""
     count: Callable[[], int] = getattr(publisher.handle, "get_subscription_count", publisher.get_subscription_count)
     return count
 
 
 def words_of(message: bytes) -> Sequence[int]:
-    """The numbers of a serialised Int16MultiArray; RuntimeError when it is none."""
+    """Return the data of a serialized Int16MultiArray. Raises RuntimeError if it cannot be deserialized."""
     if message.startswith(_LITTLE_ENDIAN_WITHOUT_LAYOUT) and len(message) >= _WORDS_AT:
         (count,) = struct.unpack_from("<I", message, _COUNT_AT)
         if len(message) >= _WORDS_AT + 2 * count:

@@ -1,4 +1,4 @@
-"""Warnings to a user, not too often: what goes wrong at 10 Hz is told every five seconds, whatever else goes wrong."""
+"""Log warnings throttled by subject, so that an error at 10 Hz is logged every five seconds only."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import time
 
 from rclpy.node import Node
 
-__all__ = ["WARN_EVERY_S", "Warner"]
+__all__ = ["WARN_EVERY_S", "ThrottledLog"]
 
 WARN_EVERY_S = 5.0
-"""Between two warnings about the same thing."""
-_MOST = 1000
-"""So many things are remembered; their names may come from strangers."""
+"""Shortest time between two warnings about one subject."""
+_MAX_KEYS = 1000
+"""Subjects that are remembered; limited, because their names may come from untrusted clients."""
 
 
-class Warner:
-    """Warns in a node's log, about each thing (a topic, an event) at most once in `WARN_EVERY_S`.
+class ThrottledLog:
+    """Logs warnings of a node, at most one per subject (a topic, an event) in `WARN_EVERY_S`.
 
-    rclpy's own throttle goes by the place in the code, so that one topic's warning would hide those of all others.
+    rclpy throttles by source location, so one topic's warning would suppress those of all others.
     """
 
     def __init__(self, node: Node) -> None:
@@ -26,11 +26,11 @@ class Warner:
         self._told_s: dict[str, float] = {}
 
     def __call__(self, about: str, text: str) -> None:
-        """Say `about text`."""
+        """Log the warning `about text`."""
         now_s = time.monotonic()
         if now_s - self._told_s.get(about, -math.inf) < WARN_EVERY_S:
             return
-        if len(self._told_s) >= _MOST:
+        if len(self._told_s) >= _MAX_KEYS:
             self._told_s.clear()
         self._told_s[about] = now_s
         self._node.get_logger().warning(f"{about} {text}")

@@ -1,7 +1,7 @@
-"""Publishers of a wrong type on topics that a node listens to: ROS connects neither, and says nothing.
+"""Detects publishers with the wrong type on topics that a node subscribes to; ROS silently does not connect them.
 
-The usual one is a TwistStamped on `cmd_vel`, which newer teleoperation and Nav2 send. Nodes are asked what they
-publish, since topics are many and other nodes few; how often follows from what it takes.
+The usual case is a TwistStamped on `cmd_vel`, as published by newer teleoperation nodes and Nav2. The graph is queried
+per node, because there are fewer nodes than topics; the period depends on the cost of the query.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node, NodeNameNonExistentError
 
-__all__ = ["InputTypes", "Mismatch", "type_name"]
+__all__ = ["Mismatch", "TypeMismatches", "type_name"]
 
 SHARE = 0.002
-"""Of one core, at most, that looking takes."""
-LOOK_EVERY_S = 1.0
-"""Wall time between two looks, at least."""
+"""Largest share of one core that polling may use."""
+POLL_PERIOD_S = 1.0
+"""Shortest wall time between two polls."""
 VELOCITY, STAMPED_PARAMETER = "cmd_vel", "stamped_cmd_vel"
 
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:
-    """A publisher whose messages never arrive: full names of topic and node, types as `package/msg/Name`."""
+    """A publisher whose messages never arrive: fully qualified topic and node, types as `package/msg/Name`."""
 
     topic: str
     node: str
@@ -40,8 +40,8 @@ class Mismatch:
         )
 
 
-class InputTypes:
-    """Looks for such publishers on the topics that a node subscribes to, and warns of each once while it is there."""
+class TypeMismatches:
+    """Finds mismatched publishers on the subscribed topics of a node, and warns once about each."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -49,10 +49,10 @@ class InputTypes:
         self._expected: dict[str, str] = {}
         self._next_s = 0.0
         self.mismatches: tuple[Mismatch, ...] = ()
-        """Those of the last look."""
+        """Result of the last poll."""
 
-    def look(self) -> None:
-        """Look again if it is time, and warn of what is new."""
+    def poll(self) -> None:
+        """Query the graph if it is time, and warn about new mismatches."""
         began_s = time.monotonic()
         if began_s < self._next_s:
             return
@@ -61,10 +61,10 @@ class InputTypes:
             if mismatch not in before:
                 self._node.get_logger().warning(str(mismatch))
         ended_s = time.monotonic()
-        self._next_s = ended_s + max(LOOK_EVERY_S, (ended_s - began_s) / SHARE)
+        self._next_s = ended_s + max(POLL_PERIOD_S, (ended_s - began_s) / SHARE)
 
     def status(self) -> DiagnosticStatus:
-        """For `/diagnostics`: WARN while there is such a publisher."""
+        """Return the entry for `/diagnostics`: WARN while there is a mismatch."""
         count = len(self.mismatches)
         return DiagnosticStatus(
             level=DiagnosticStatus.WARN if count else DiagnosticStatus.OK,
@@ -83,7 +83,7 @@ class InputTypes:
                 continue
             try:
                 published = self._node.get_publisher_names_and_types_by_node(name, namespace)
-            except NodeNameNonExistentError:  # it has just left
+            except NodeNameNonExistentError:  # the node has just ended
                 continue
             for topic, types in published:
                 wanted = expected.get(topic)
@@ -96,7 +96,7 @@ class InputTypes:
         return tuple(found.values())
 
     def _inputs(self) -> Mapping[str, str]:
-        """The types of all topics that the node is subscribed to now."""
+        """Return the types of all topics that the node is subscribed to."""
         subscriptions = list(self._node.subscriptions)
         if subscriptions != self._subscriptions:
             self._subscriptions = subscriptions
@@ -105,7 +105,7 @@ class InputTypes:
 
 
 def cure(topic: str, found: str, wanted: str, inputs: Mapping[str, str]) -> str:
-    """What to do about a publisher of `found` on a topic for `wanted`; `inputs`: types of topics that there are."""
+    """Return advice for a publisher of `found` on a topic of type `wanted`; `inputs`: types by subscribed topic."""
     space, _, word = topic.rpartition("/")
     family = VELOCITY if word.startswith(VELOCITY) else word
     others = [name for name, kind in inputs.items() if kind == found and name.startswith(f"{space}/{family}")]
@@ -116,6 +116,6 @@ def cure(topic: str, found: str, wanted: str, inputs: Mapping[str, str]) -> str:
 
 
 def type_name(kind: Any) -> str:
-    """`std_msgs/msg/Bool` of a message class."""
+    """Return the type name of a message class, such as `std_msgs/msg/Bool`."""
     package, form, *_ = kind.__module__.split(".")
     return f"{package}/{form}/{kind.__name__}"

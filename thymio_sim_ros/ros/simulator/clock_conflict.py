@@ -1,7 +1,7 @@
-"""Another simulator that publishes the same clock: time jumps between the two, and programs start again at each jump.
+"""Detects another simulator on the same clock topic: time would jump between the two and restart programs.
 
-A second publisher in the graph is no proof: discovery keeps one that was killed for some 20 s. So as long as there is
-one, the simulator subscribes to the clock; messages that it did not publish itself are the proof.
+A second publisher in the graph is no proof, because discovery keeps a killed one for some 20 s. So while there is one,
+the simulator subscribes to the clock; messages that it did not publish itself are the proof.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ from rosgraph_msgs.msg import Clock
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 
-__all__ = ["ClockRivals"]
+__all__ = ["ClockConflict"]
 
 PROOF = 2
-"""Messages of others within `REMEMBERED_S` that prove another simulator."""
+"""Number of foreign messages within `REMEMBERED_S` that prove another simulator."""
 REMEMBERED_S = 5.0
 """Wall time; a paused simulator publishes once a second."""
 _OWN = 512
-"""So many of its own messages are remembered: those of ten seconds."""
+"""Number of its own stamps that are remembered: those of ten seconds."""
 
 
-class ClockRivals:
-    """Finds other publishers of a simulator's clock, and warns once while there is one. Costs nothing without them."""
+class ClockConflict:
+    """Detects other publishers of a simulator's clock and warns once. Costs nothing while there is no other one."""
 
     def __init__(self, node: Node, topic: str, domain: int, now_s: Callable[[], float] = time.monotonic) -> None:
-        """`topic`: the resolved name of the clock."""
+        """`topic`: the resolved name of the clock; `domain`: ROS_DOMAIN_ID, for the warning."""
         self._node = node
         self._topic = topic
         self._domain = domain
@@ -42,20 +42,20 @@ class ClockRivals:
         self._order: deque[int] = deque()
         self._foreign_s: deque[float] = deque(maxlen=PROOF)
         self.is_found = False
-        """Whether another simulator publishes now."""
+        """Whether another simulator publishes the clock."""
 
-    def sent(self, now_ns: int) -> None:
-        """This simulator publishes this time."""
+    def record_published(self, now_ns: int) -> None:
+        """Record a stamp that this simulator publishes."""
         self._order.append(now_ns)
         self._own[now_ns] += 1
         if len(self._order) > _OWN:
             self._forget(self._order.popleft())
 
-    def look(self) -> None:
-        """Compare the graph and the messages since the last look; warn of what is new."""
+    def poll(self) -> None:
+        """Check the graph and the messages since the last poll, and warn about a new conflict."""
         if self._node.count_publishers(self._topic) > 1:
             if self._subscription is None:
-                self._subscription = self._node.create_subscription(Clock, self._topic, self._take, qos.CLOCK)
+                self._subscription = self._node.create_subscription(Clock, self._topic, self._on_clock, qos.CLOCK)
         elif self._subscription is not None:
             self._node.destroy_subscription(self._subscription)
             self._subscription = None
@@ -65,7 +65,7 @@ class ClockRivals:
             self._node.get_logger().warning(self._text())
 
     def status(self) -> DiagnosticStatus:
-        """For `/diagnostics`: ERROR while there is another simulator."""
+        """Return the entry for `/diagnostics`: ERROR while there is another simulator."""
         return DiagnosticStatus(
             level=DiagnosticStatus.ERROR if self.is_found else DiagnosticStatus.OK,
             name=f"{self._node.get_fully_qualified_name().removeprefix('/')}: clock",
@@ -77,7 +77,7 @@ class ClockRivals:
     def _is_proven(self) -> bool:
         return len(self._foreign_s) == PROOF and self._now_s() - self._foreign_s[0] < REMEMBERED_S
 
-    def _take(self, message: Clock) -> None:
+    def _on_clock(self, message: Clock) -> None:
         now_ns = message.clock.sec * SECOND_NS + message.clock.nanosec
         if self._own[now_ns] > 0:
             self._forget(now_ns)
@@ -91,7 +91,7 @@ class ClockRivals:
 
     def _text(self) -> str:
         return (
-            f"{self._topic}: another simulator publishes it in ROS_DOMAIN_ID {self._domain}, so that time jumps and "
-            "programs start again. End one of them, or give it a ROS_DOMAIN_ID of its own; for simulators with "
-            "namespaces in one domain remap the clock of each, as by -r /clock:=/lab1/clock"
+            f"{self._topic}: another simulator publishes it in ROS_DOMAIN_ID {self._domain}, so time jumps and "
+            "programs restart. Stop one of them, or give it its own ROS_DOMAIN_ID; for simulators with "
+            "namespaces in one domain remap each clock, for example with -r /clock:=/lab1/clock"
         )

@@ -1,8 +1,8 @@
-"""Values of a parameter that take long to load: loaded on a thread of their own while the node goes on.
+"""Loads slow values of a parameter on a separate thread while the node continues.
 
-rclpy sets parameters inside the callback of a service, and the events executor knows no callbacks that wait. So the
-callbacks of the two services are replaced: a request that sets the parameter is answered later, once its value has been
-loaded. The callback of rclpy then runs as always, on the thread of the executor, and finds what was loaded.
+rclpy sets parameters inside a service callback, and the events executor has no asynchronous callbacks. So the callbacks
+of the two services are replaced: a request that sets the parameter is answered later, once its value has been loaded.
+rclpy's own callback then runs as usual on the executor's thread and uses the loaded value.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from rclpy.service import Service
 
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
 
-__all__ = ["MOST_WAITING", "DeferredLoad"]
+__all__ = ["MAX_WAITING", "DeferredLoad"]
 
 T = TypeVar("T")
 
-MOST_WAITING = 4
-"""Requests that wait for their value, the one that is being loaded included; each may hold 32 MB of text."""
+MAX_WAITING = 4
+"""Pending requests, including the one that is being loaded; each may contain 32 MB of text."""
 _SERVICES = ("/set_parameters", "/set_parameters_atomically")
 
 
 @dataclass(slots=True)
 class _Request(Generic[T]):
-    """A request that is not answered yet; a service returns it in place of its response."""
+    """A pending request, returned by the service callback in place of a response."""
 
     value: str
     answer: Callable[[Any], None]
@@ -39,10 +39,10 @@ class _Request(Generic[T]):
 
 
 class DeferredLoad(Generic[T]):
-    """Loads the values of one string parameter. Invariant: only the executor's thread touches what was loaded."""
+    """Loads the values of one string parameter. Invariant: only the executor's thread uses loaded values."""
 
     def __init__(self, node: Node, parameter: str, load: Callable[[str], T]) -> None:
-        """`load` is called on another thread, too; it must not change what belongs to the node's thread."""
+        """`load` is also called on another thread; it must not change state of the node's thread."""
         self._parameter, self._load = parameter, load
         self._queue: SimpleQueue[_Request[T]] = SimpleQueue()
         self._thread: threading.Thread | None = None
@@ -55,7 +55,10 @@ class DeferredLoad(Generic[T]):
                 self._defer(service)
 
     def load(self, value: str) -> T:
-        """What `value` stands for: loaded already for the request that is being handled, or now."""
+        """Return the loaded value, from the pending request that is being answered or by loading it now.
+
+        Raises what the `load` function raises.
+        """
         if self._ready is None or self._ready.value != value or self._ready.loaded is None:
             return self._load(value)
         if isinstance(self._ready.loaded, Exception):
@@ -63,12 +66,12 @@ class DeferredLoad(Generic[T]):
         return self._ready.loaded
 
     def close(self) -> None:
-        """Load and answer nothing any more; a value that is being loaded now is dropped when it is there."""
+        """Stop loading and answering; a value that is being loaded is dropped."""
         self._is_closed = True
         self._mailbox.close()
 
     def _defer(self, service: Service) -> None:
-        """Let a service of rclpy answer later where a request sets the parameter."""
+        """Make a service of rclpy answer later if a request sets the parameter."""
         set_now, send_now = service.callback, service.send_response
 
         def on_request(request: Any, response: Any) -> Any:
@@ -81,7 +84,7 @@ class DeferredLoad(Generic[T]):
                 return set_now(request, response)
             if len(values) > 1:
                 return _refused(request, response, f"{self._parameter} is set {len(values)} times, expected once")
-            if self._waiting >= MOST_WAITING:
+            if self._waiting >= MAX_WAITING:
                 return _refused(request, response, f"{self._waiting} other values of {self._parameter} are loading")
             self._waiting += 1
             return _Request(values[0], lambda header: send_now(set_now(request, response), header))
@@ -99,7 +102,7 @@ class DeferredLoad(Generic[T]):
     def _begin(self, waiting: _Request[T]) -> None:
         self._queue.put(waiting)
         if self._thread is None:
-            # A daemon: who presses Ctrl-C does not wait for a playground.
+            # A daemon thread: Ctrl-C does not wait until a playground is loaded.
             self._thread = threading.Thread(target=self._run, name=f"load {self._parameter}", daemon=True)
             self._thread.start()
 
@@ -123,7 +126,7 @@ class DeferredLoad(Generic[T]):
 
 
 def _refused(request: Any, response: Any, reason: str) -> Any:
-    """The response with every parameter refused."""
+    """Return the response with a rejection for every parameter."""
     refusal = SetParametersResult(successful=False, reason=reason)
     if hasattr(response, "results"):
         response.results = [refusal] * len(request.parameters)

@@ -1,6 +1,6 @@
-"""The playground as visualization_msgs/MarkerArray in the frame `map`: solids, floors and paint.
+"""Converts a playground to a visualization_msgs/MarkerArray in the frame `map`: solids, floors and paint.
 
-Namespaces are the kinds of primitive, ids their order, so that both are stable; DELETEALL comes first
+Namespaces are the kinds of primitives, ids their order, so that both are stable; DELETEALL comes first
 (docs/spec/ros-interface.md section 5).
 """
 
@@ -24,19 +24,19 @@ from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Box, Color, Disc, Drawable, Floor, Paint, Print, Solid
 
 LAYER_M = 0.0002
-"""Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
+"""Vertical distance between successive layers of paint, so that viewers draw them in the right order."""
 
 
-MOST_TEXELS = 2048
-"""Side of the largest picture that is sent to be looked at; graphics hardware takes at least twice that."""
+MAX_TEXELS = 2048
+"""Side of the largest texture in texels; graphics hardware supports at least twice that."""
 
 
-MOST_TILES = 16_000
-"""Rectangles of the mosaics of all pictures together: each is six points, which take time to make and to send."""
+MAX_TILES = 16_000
+"""Total number of tiles of all images: each has six points, which take time to create and to send."""
 
 
 def playground_markers(primitives: Iterable[Drawable], frame: str = MAP_FRAME) -> MarkerArray:
-    """Markers of all primitives, in their order; neighbouring paint of one shape and color is one marker."""
+    """Return markers of all primitives in order; adjacent paint of one name and color becomes one marker."""
     primitives = list(primitives)
     prints = sum(isinstance(primitive, Print) for primitive in primitives)
     markers = [Marker(action=Marker.DELETEALL)]
@@ -48,7 +48,7 @@ def playground_markers(primitives: Iterable[Drawable], frame: str = MAP_FRAME) -
                 markers.append(_solid(primitive, len(markers)))
             elif isinstance(primitive, Print):
                 layer += 1
-                markers.append(_print(primitive, len(markers), layer * LAYER_M, MOST_TILES // prints))
+                markers.append(_print(primitive, len(markers), layer * LAYER_M, MAX_TILES // prints))
             else:
                 outlines.append(primitive.vertices)
         if not outlines:
@@ -94,7 +94,7 @@ def _patches(namespace: str, number: int, outlines: Sequence[Sequence[Point]], c
 
 
 def _print(printed: Print, number: int, height_m: float, tiles: int) -> Marker:
-    """The picture twice: as a texture (our page, RViz), and as a mosaic of plain colors for viewers without them."""
+    """Return a marker with the image as a texture (our page, RViz) and as colored tiles for other viewers."""
     marker = _marker(f"paint/{printed.name}", number, (1.0, 1.0, 1.0))
     marker.type = Marker.TRIANGLE_LIST
     marker.scale = Vector3(x=printed.size_x_m, y=printed.size_y_m, z=1.0)
@@ -108,7 +108,7 @@ def _print(printed: Print, number: int, height_m: float, tiles: int) -> Marker:
             marker.points.append(PointMsg(x=u - 0.5, y=v - 0.5))
             marker.uv_coordinates.append(UVCoordinate(u=u, v=v))
     marker.texture_resource = f"embedded://{printed.name}"
-    marker.texture = CompressedImage(format="png", data=image_io.encode_png(pixels, most=MOST_TEXELS))
+    marker.texture = CompressedImage(format="png", data=image_io.encode_png(pixels, most=MAX_TEXELS))
     return marker
 
 
@@ -122,13 +122,13 @@ def _marker(namespace: str, number: int, color: Color) -> Marker:
 
 
 def _fan(outline: Sequence[Point]) -> Iterator[Point]:
-    """Corners of the triangles of a convex polygon, three by three, counter-clockwise."""
+    """Yield the triangles of a convex polygon as a triangle fan: three corners each, counter-clockwise."""
     for second, third in itertools.pairwise(outline[1:]):
         yield from (outline[0], second, third)
 
 
 def _prism(outline: Sequence[Point], half_height_m: float) -> list[PointMsg]:
-    """Triangles of the sides and the top of an upright prism about height zero."""
+    """Return the triangles of the sides and the top of an upright prism centered at height zero."""
     points = [_point(corner, half_height_m) for corner in _fan(outline)]
     for index, end in enumerate(outline):
         begin = outline[index - 1]

@@ -1,4 +1,4 @@
-"""The playground as nav_msgs/OccupancyGrid for Nav2 (REP 2003)."""
+"""Converts a playground to a nav_msgs/OccupancyGrid for Nav2 (REP 2003)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FREE, OCCUPIED = 0, 100
 
 
 def occupancy(floors: Sequence[Floor], solids: Sequence[Solid], frame: str) -> OccupancyGrid:
-    """The grid of what stays where it is."""
+    """Return the grid of floors and fixed solids in the given frame."""
     found = grid(floors, solids)
     message = OccupancyGrid()
     message.header.frame_id = frame

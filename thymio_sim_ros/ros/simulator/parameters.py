@@ -17,7 +17,7 @@ from thymio_sim_ros.ros.interface.names import FrameNames, Naming
 from thymio_sim_ros.ros.interface.sensor_topics import JOINTS, TRUTH
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
-from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, PortOptions
+from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, EndpointOptions
 from thymio_sim_ros.ros.simulator.transforms import TransformOptions
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model import fields
@@ -39,9 +39,9 @@ ODOM_RATE = 20.0
 
 @dataclass(frozen=True)
 class RangeParams:
-    """The fields of one proximity sensor's Range."""
+    """Fields of the Range messages of one proximity sensor."""
 
-    range_min: float = param(PROXIMITY_MIN_M, "min_range in m: what is nearer is too close", low=0.0, high=0.14)
+    range_min: float = param(PROXIMITY_MIN_M, "min_range in m; nearer obstacles are too close", low=0.0, high=0.14)
     range_max: float = param(PROXIMITY_MAX_M, "max_range in m", low=0.0, high=0.14)
     fov: float = param(PROXIMITY_FOV_RAD, "field_of_view in rad", low=0.0, high=3.2)
 
@@ -51,7 +51,7 @@ _RANGE = RangeParams()
 
 @dataclass(frozen=True)
 class ProximityParams:
-    """The Range of each proximity sensor, in Thymio's order."""
+    """Range fields of each proximity sensor, in Thymio's order."""
 
     left: RangeParams = group(_RANGE, "left")
     center_left: RangeParams = group(_RANGE, "center_left")
@@ -63,7 +63,7 @@ class ProximityParams:
 
     @property
     def fields(self) -> tuple[RangeFields, ...]:
-        """In Thymio's order."""
+        """Range fields of the seven sensors in Thymio's order."""
         front = (self.left, self.center_left, self.center, self.center_right, self.right)
         every: Sequence[RangeParams] = (*front, self.rear_left, self.rear_right)
         return tuple(RangeFields(one.range_min, one.range_max, one.fov) for one in every)
@@ -75,86 +75,90 @@ class SimulatorParams:
 
     playground: str = param("line", "Playground: a shipped name, a file, or the JSON text itself")
     seed: int = param(
-        0, "Seed of all noise; the same seed gives the same run. A new one begins anew", low=0, high=2**31 - 1
+        0, "Seed of all noise; the same seed gives the same run. A new seed restarts the world", low=0, high=2**31 - 1
     )
     noise: bool = param(True, "Whether wheels and sensors are noisy as on the robot", fixed=True)
     motor_model: str = param(
         MOTOR_MODELS[0],
-        "How motors follow: ideal (at once) or firmware (the robot's control loop and its lag)",
+        "Motor model: ideal (no lag) or firmware (the robot's control loop and its lag)",
         fixed=True,
         choices=MOTOR_MODELS,
     )
     proximity_model: str = param(
-        PROXIMITY_MODELS[0], "How proximity sensors see: docs/robot.md", fixed=True, choices=PROXIMITY_MODELS
+        PROXIMITY_MODELS[0], "Proximity sensor model, see docs/robot.md", fixed=True, choices=PROXIMITY_MODELS
     )
     real_time_factor: float = param(1.0, "Simulated seconds per second; 0 is as fast as possible", low=0.0, high=1000.0)
-    start_paused: bool = param(False, "Whether the world waits for ~/pause or ~/step", fixed=True)
-    step_ticks: int = param(1, "Ticks of 10 ms that ~/step does", low=1, high=100_000)
+    start_paused: bool = param(False, "Whether the world starts paused, until ~/pause or ~/step", fixed=True)
+    step_ticks: int = param(1, "Ticks of 10 ms per ~/step", low=1, high=100_000)
     publish_clock: bool = param(True, "Whether /clock is published", fixed=True)
-    clock_rate: float = param(50.0, "Hz of wall time that /clock has at most", low=1.0, high=100.0, fixed=True)
-    log: str = param("", "File that a run log is written to, for thymio-sim replay; empty: none", fixed=True)
+    clock_rate: float = param(50.0, "Maximum rate of /clock in Hz of wall time", low=1.0, high=100.0, fixed=True)
+    log: str = param("", "File for the run log, for thymio-sim replay; empty: none", fixed=True)
 
     robot_names: list[str] = param(
-        [""], "Names, and thus namespaces, for the playground's robots in order; '' keeps the playground's", fixed=True
+        [""],
+        "Names (and namespaces) of the playground's robots, in order; '' keeps the name of the playground",
+        fixed=True,
     )
     namespaced_tf: bool = param(
-        False, "Whether frames have bare names on tf and tf_static in each robot's namespace", fixed=True
+        False, "Whether frames are published without prefix on tf and tf_static in each robot's namespace", fixed=True
     )
-    tf_prefix: str = param("", "What comes before the frames of all robots and their names", fixed=True)
-    odom_frame: str = param("odom", "Name of the odometry's frame", fixed=True)
-    robot_frame: str = param("base_link", "Name of the robot's frame", fixed=True)
-    map_frame: str = param("map", "Name of the world's frame", fixed=True)
+    tf_prefix: str = param("", "Prefix of the frames of all robots, before the robot's name", fixed=True)
+    odom_frame: str = param("odom", "Name of the odometry frame", fixed=True)
+    robot_frame: str = param("base_link", "Name of the robot frame", fixed=True)
+    map_frame: str = param("map", "Name of the world frame", fixed=True)
     left_wheel_joint: str = param("left_wheel_joint", "Name of the left wheel's joint", fixed=True)
     right_wheel_joint: str = param("right_wheel_joint", "Name of the right wheel's joint", fixed=True)
 
     odom_max_rate: float = param(
-        20.0, "Odometry and transforms, Hz; -1 is every tick", low=-1.0, high=100.0, fixed=True
+        20.0, "Rate of odometry and transforms in Hz; -1: every tick", low=-1.0, high=100.0, fixed=True
     )
     sensor_rate: float = param(
         0.0,
-        "Hz of all sensors that measure regularly, programs' too; 0: as on the robot",
+        "Rate of all periodic sensors in Hz, also for programs; 0: as on the robot",
         low=0.0,
         high=100.0,
         fixed=True,
     )
     out_of_range: str = param(
         "rep117",
-        "Range of nothing and too close: rep117 (+inf, -inf) or driver (-1, minimum)",
+        "Range without obstacle and too close: rep117 (+inf, -inf) or driver (-1, minimum)",
         choices=("rep117", "driver"),
     )
     ground_threshold: int = param(
-        200, "Ground counts below are «not reflecting»", name="ground.threshold", low=0, high=1023
+        200, "Ground counts below this value mean «not reflecting»", name="ground.threshold", low=0, high=1023
     )
     proximity: ProximityParams = group(ProximityParams(), "proximity")
     pose_covariance_diagonal: list[float] = param(
-        _POSE_VARIANCES, "Variances of the odometry's pose: x y z roll pitch yaw", low=0.0, size=6
+        _POSE_VARIANCES, "Variances of the odometry pose: x y z roll pitch yaw", low=0.0, size=6
     )
     twist_covariance_diagonal: list[float] = param(
-        _TWIST_VARIANCES, "Variances of the odometry's twist: x y z roll pitch yaw", low=0.0, size=6
+        _TWIST_VARIANCES, "Variances of the odometry twist: x y z roll pitch yaw", low=0.0, size=6
     )
 
-    cmd_vel_timeout: float = param(0.0, "Seconds after which a velocity command ends; 0 is never", low=0.0, high=3600.0)
+    cmd_vel_timeout: float = param(
+        0.0, "Seconds after which a velocity command expires; 0: never", low=0.0, high=3600.0
+    )
     stamped_cmd_vel: bool = param(
         False,
-        "Whether cmd_vel is TwistStamped and cmd_vel_unstamped Twist, instead of cmd_vel_stamped and cmd_vel",
+        "Whether cmd_vel is TwistStamped (and cmd_vel_unstamped Twist) instead of Twist (and cmd_vel_stamped stamped)",
         fixed=True,
     )
 
     driver_topics: bool = param(
         False,
-        "Whether topics of the Thymio's ROS driver with hidden names (docs/ros.md) have the driver's names too",
+        "Whether driver topics with hidden names (docs/ros.md) are also available under the driver's names",
         fixed=True,
     )
-    publish_map_tf: bool = param(True, "Whether map -> odom is published: perfect localisation", fixed=True)
+    publish_map_tf: bool = param(True, "Whether map -> odom is published: perfect localization", fixed=True)
     publish_static_tf: bool = param(True, "Whether the fixed frames are published on /tf_static", fixed=True)
-    publish_wheel_tf: bool = param(True, "Whether the wheels' frames are published on /tf", fixed=True)
+    publish_wheel_tf: bool = param(True, "Whether the wheel frames are published on /tf", fixed=True)
     publish_description: bool = param(True, "Whether robot_description is published", fixed=True)
     publish_ground_truth: bool = param(True, "Whether _ground_truth/odom is published", fixed=True)
     publish_map: bool = param(False, "Whether /map is published, for Nav2", fixed=True)
 
     @property
     def naming(self) -> Naming:
-        """How robots get their names."""
+        """ROS names of robots and frames."""
         frames = FrameNames(
             self.map_frame, self.odom_frame, self.robot_frame, self.left_wheel_joint, self.right_wheel_joint
         )
@@ -162,7 +166,7 @@ class SimulatorParams:
 
     @property
     def convert_options(self) -> ConvertOptions:
-        """What these say about the content of messages."""
+        """Options for the content of messages."""
         return ConvertOptions(
             driver_ranges=self.out_of_range == "driver",
             ground_threshold=self.ground_threshold,
@@ -173,10 +177,10 @@ class SimulatorParams:
         )
 
     @property
-    def port_options(self) -> PortOptions:
-        """What these say about the topics of all robots."""
+    def endpoint_options(self) -> EndpointOptions:
+        """Options for the topics of all robots."""
         left_out = {DESCRIPTION: not self.publish_description, TRUTH: not self.publish_ground_truth}
-        return PortOptions(
+        return EndpointOptions(
             stamped_cmd_vel=self.stamped_cmd_vel,
             left_out=frozenset(topic for topic, is_out in left_out.items() if is_out),
             every_ns={JOINTS: _period_ns(self.odom_max_rate)},
@@ -184,7 +188,7 @@ class SimulatorParams:
 
     @property
     def periods_ns(self) -> Mapping[str, int] | None:
-        """How often sensors measure; None: as on the robot."""
+        """Sensor periods by sensor name; None: as on the robot."""
         if self.sensor_rate == 0.0 and self.odom_max_rate == ODOM_RATE:
             return None
         periods = {sensor.name: sensor.period_ns for sensor in all_sensors()}
@@ -194,7 +198,7 @@ class SimulatorParams:
         return periods | {"pose": _period_ns(self.odom_max_rate)}
 
     def renamed(self, playground: Playground) -> Playground:
-        """Its robots with the wanted names; StartError when they cannot be called so."""
+        """Return the playground with robots renamed as in `robot_names`. Raises StartError for an invalid name."""
         wanted = [name for name in self.robot_names if name]
         names = [*wanted, *(robot.name for robot in playground.robots[len(wanted) :])][: len(playground.robots)]
         try:
@@ -206,15 +210,15 @@ class SimulatorParams:
             raise StartError(str(error)) from error
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise StartError(f"robot_names: two robots are called '{twice}'")
+            raise StartError(f"robot_names: found '{twice}' twice, expected unique names")
         return replace(playground, robots=robots) if wanted else playground
 
     @property
     def transform_options(self) -> TransformOptions:
-        """What these say about transforms."""
+        """Options for transforms."""
         return TransformOptions(self.publish_map_tf, self.publish_wheel_tf, self.publish_static_tf, self.namespaced_tf)
 
 
 def _period_ns(rate_hz: float) -> int:
-    """At least a tick; that also for rates that mean every tick."""
+    """Return the period in ns, at least one tick; rates of 0 and below mean every tick."""
     return TICK_NS if rate_hz <= 0.0 else max(TICK_NS, round(SECOND_NS / rate_hz))

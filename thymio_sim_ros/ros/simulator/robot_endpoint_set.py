@@ -1,65 +1,65 @@
-"""The ports of all robots of a world, while robots come and go."""
+"""The ROS endpoints of all robots of a world."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
 from thymio_sim_ros.ros.interface.names import Naming, RobotNames
-from thymio_sim_ros.ros.simulator.robot_endpoints import RobotPorts
+from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
 
-__all__ = ["Roster"]
+__all__ = ["RobotEndpointSet"]
 
 
-class Roster:
-    """Robots' ports by their name in the world. Invariant: who stays keeps topics and frames."""
+class RobotEndpointSet:
+    """Endpoints by name of the robot in the world. Invariant: a robot that stays keeps its topics and frames."""
 
-    def __init__(self, make: Callable[[str, RobotNames], RobotPorts], naming: Naming) -> None:
+    def __init__(self, make: Callable[[str, RobotNames], RobotEndpoints], naming: Naming) -> None:
         self._make, self._naming = make, naming
-        self._ports: dict[str, RobotPorts] = {}
+        self._endpoints: dict[str, RobotEndpoints] = {}
 
-    def __getitem__(self, robot: str) -> RobotPorts:
-        return self._ports[robot]
+    def __getitem__(self, robot: str) -> RobotEndpoints:
+        return self._endpoints[robot]
 
     @property
     def topics(self) -> int:
-        """How many topics of sensors there are."""
-        return sum(ports.topics for ports in self._ports.values())
+        """Total number of sensor topics."""
+        return sum(endpoints.topics for endpoints in self._endpoints.values())
 
-    def look(self) -> None:
-        """Find out which topics somebody hears now."""
-        for ports in self._ports.values():
-            ports.look()
+    def poll(self) -> None:
+        """Find out which topics have subscribers."""
+        for endpoints in self._endpoints.values():
+            endpoints.poll()
 
     @property
     def names(self) -> tuple[RobotNames, ...]:
-        """Of all robots, in the order of the world."""
-        return tuple(ports.names for ports in self._ports.values())
+        """ROS names of all robots, in the order of the world."""
+        return tuple(endpoints.names for endpoints in self._endpoints.values())
 
     @property
     def by_robot(self) -> dict[str, RobotNames]:
-        """The same by their names in the world."""
-        return {robot: ports.names for robot, ports in self._ports.items()}
+        """ROS names by name in the world."""
+        return {robot: endpoints.names for robot, endpoints in self._endpoints.items()}
 
-    def begin(self, robots: Iterable[str]) -> None:
-        """The robots of a playground: one alone has no name, of several each has its own."""
+    def reset(self, robots: Iterable[str]) -> None:
+        """Serve the robots of a new or reset playground: a single robot has an empty ROS name, several keep theirs."""
         self._change(self._naming.all(robots))
-        for ports in self._ports.values():
-            ports.forget()
+        for endpoints in self._endpoints.values():
+            endpoints.reset()
 
-    def follow(self, robots: Iterable[str]) -> bool:
-        """Whether robots have come or gone; who has come has topics and frames of its name."""
+    def update(self, robots: Iterable[str]) -> bool:
+        """Add endpoints of new robots, remove those of others, and return whether there was a change."""
         robots = list(robots)
-        if robots == list(self._ports):
+        if robots == list(self._endpoints):
             return False
-        known = self._ports
+        known = self._endpoints
         self._change({robot: known[robot].names if robot in known else self._naming.one(robot) for robot in robots})
         return True
 
     def _change(self, names: Mapping[str, RobotNames]) -> None:
-        kept: dict[str, RobotPorts] = {}
-        for robot, ports in self._ports.items():
-            if names.get(robot) == ports.names:
-                kept[robot] = ports
+        kept: dict[str, RobotEndpoints] = {}
+        for robot, endpoints in self._endpoints.items():
+            if names.get(robot) == endpoints.names:
+                kept[robot] = endpoints
             else:
-                ports.close()
-        self._ports = {robot: kept.get(robot) or self._make(robot, name) for robot, name in names.items()}
+                endpoints.close()
+        self._endpoints = {robot: kept.get(robot) or self._make(robot, name) for robot, name in names.items()}

@@ -1,7 +1,7 @@
-"""The topics and services of one robot: made with it, destroyed with it.
+"""The topics and services of one robot, created and destroyed with it.
 
-Publishing turns readings into messages by the rows of `sensor_topics`; subscribing turns messages into commands and
-posts them. Topics that nobody hears cost nothing but a look now and then.
+Readings are converted to messages by the rows of `sensor_topics`; messages are converted to commands and posted to the
+world. A topic without subscribers costs no more than being polled for them.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
 from thymio_sim_ros.ros.interface.names import HIDDEN, RobotNames, full_name
 from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
-from thymio_sim_ros.ros.simulator.robot_inputs import Moment, RobotInput, robot_inputs
-from thymio_sim_ros.ros.simulator.subscriber_demand import Audience, Heard
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
+from thymio_sim_ros.ros.simulator.robot_inputs import InputContext, RobotInput, robot_inputs
+from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.simulator.urdf import urdf
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
@@ -34,36 +34,36 @@ from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 from thymio_sim_ros.sim.playground.placement import PlacementError
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "PortOptions", "RobotPorts", "first_words"]
+__all__ = ["DESCRIPTION", "DESCRIPTION_TOPIC", "SERVICES", "EndpointOptions", "RobotEndpoints", "first_words"]
 
 Post = Callable[[Command], None]
 
 DESCRIPTION = "robot_description"
-DESCRIBED = (String, "the robot as URDF, made of primitives, with turning wheels")
+DESCRIPTION_TOPIC = (String, "the robot as URDF, made of primitives, with turning wheels")
 
 SERVICES: Mapping[str, tuple[type, str]] = {
-    "is_ready": (EmptyService, "answers when the robot is in the world"),
-    "reset_odometry": (Trigger, "the odometry starts again from zero: `odom -> base_link` jumps once"),
+    "is_ready": (EmptyService, "responds once the robot is in the world"),
+    "reset_odometry": (Trigger, "reset the odometry to zero: `odom -> base_link` jumps once"),
 }
-"""Type and meaning of every service of a robot."""
+"""Type and description of every service of a robot."""
 
 
 def first_words() -> frozenset[str]:
-    """First words of a robot's topics, where there is more than one, and of what a program adds.
+    """Return the first words of a robot's topics with several words, including those that a program adds.
 
-    Of hidden ones also without the `_`: the driver's names.
+    For hidden topics the word is included without `_` too, as in the driver's names.
     """
-    rows = (row.topic for sensor in all_sensors() for row in sensor_topics.select_rows(sensor))
+    rows = (row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor))
     topics = (*rows, *(one.topic for one in robot_inputs()), "aseba/")
     words = {topic.partition("/")[0] for topic in topics if "/" in topic}
     return frozenset(words | {word.removeprefix(HIDDEN) for word in words})
 
 
 @dataclass(frozen=True, slots=True)
-class PortOptions:
-    """What a user may choose about the topics of all robots, once; `every_ns`: of topics with a rate of their own.
+class EndpointOptions:
+    """Options for the topics of all robots, fixed at the start.
 
-    `extra`: what there is besides.
+    `left_out`: topics that are not created; `every_ns`: shortest period by topic; `extra`: additional topics.
     """
 
     stamped_cmd_vel: bool = False
@@ -73,25 +73,25 @@ class PortOptions:
 
 
 @dataclass(slots=True)
-class _Outlet:
-    """The publisher of a row, how the audience counts it, when it may send again; what it told last of what changes."""
+class _SensorPublisher:
+    """The publisher of a row with its demand, the time of the next message, and the last published value."""
 
     row: Row
-    heard: Heard
+    heard: TopicDemand
     next_ns: int
     publisher: Any = None
     send: Callable[[bytes], None] = lambda _data: None
-    """Sends a serialised message."""
+    """Publishes a serialized message."""
     count: Callable[[], int] = lambda: 0
-    """Tells how many listen."""
+    """Returns the number of subscriptions."""
     is_sent: bool = False
     last: Any = None
     is_stale: bool = False
-    """Whether it has told what a reset undoes without a word of the sensor."""
+    """Whether the retained message is outdated after a reset, although the sensor reports nothing."""
     template: Template | None = None
 
 
-class RobotPorts:
+class RobotEndpoints:
     """Publishers, subscriptions and services of one robot on the simulator's node."""
 
     def __init__(
@@ -101,38 +101,49 @@ class RobotPorts:
         post: Post,
         *,
         content: Callable[[], ConvertOptions],
-        moment: Callable[[], Moment],
-        options: PortOptions,
-        audience: Audience,
+        input_context: Callable[[], InputContext],
+        options: EndpointOptions,
+        demand: SubscriberDemand,
         on_refusal: Callable[[], None] = lambda: None,
         on_limit: Callable[[], None] = lambda: None,
     ) -> None:
-        """`content` and `moment` are asked with every message; `audience` is told which topics are sent.
+        """Create all endpoints.
 
-        `on_refusal` is called for each that is refused, `on_limit` for each with something beyond the robot's limits.
+        Args:
+            node: The node of the simulator.
+            names: ROS names of the robot.
+            post: Posts a command to the world.
+            content: Returns the current options for the content of messages.
+            input_context: Returns time, time-out and frames; called for each message.
+            options: Which topics to create.
+            demand: Counts the topics that are published.
+            on_refusal: Called for each rejected message.
+            on_limit: Called for each clamped message.
         """
         self.names = names
         self._node = node
         self._post = post
-        self._content, self._moment = content, moment
+        self._content, self._input_context = content, input_context
         self._on_refusal, self._on_limit = on_refusal, on_limit
         self._limited: set[str] = set()
-        self._warn = Warner(node)
-        self._audience = audience
-        self._outlets: dict[str, list[_Outlet]] = {sensor.name: [] for sensor in all_sensors()}
-        self._sent: dict[str, tuple[_Outlet, ...]] = {}
-        """By sensor, what somebody hears or what is always sent."""
+        self._warn = ThrottledLog(node)
+        self._demand = demand
+        self._publishers: dict[str, list[_SensorPublisher]] = {sensor.name: [] for sensor in all_sensors()}
+        self._sent: dict[str, tuple[_SensorPublisher, ...]] = {}
+        """Publishers with subscribers, and those that always publish, by sensor."""
         for sensor in all_sensors():
-            for row in (*sensor_topics.select_rows(sensor), *options.extra.rows.get(sensor.name, ())):
+            for row in (*sensor_topics.rows_of(sensor), *options.extra.rows.get(sensor.name, ())):
                 if row.topic not in options.left_out:
                     every_ns = options.every_ns.get(row.topic, row.every_ns)
-                    self._open(row, Heard(sensor.name, every_ns, sensor_topics.is_regular(sensor, row)))
+                    self._open(row, TopicDemand(sensor.name, every_ns, sensor_topics.is_periodic(sensor, row)))
         self._description: Any = None
         if DESCRIPTION not in options.left_out:
-            self._description = node.create_publisher(DESCRIBED[0], names.topic(DESCRIPTION), qos.LATCHED)
+            self._description = node.create_publisher(
+                DESCRIPTION_TOPIC[0], names.topic(DESCRIPTION), qos.TRANSIENT_LOCAL
+            )
             self._description.publish(String(data=urdf(names)))
         self._subscriptions = [
-            node.create_subscription(one.type, names.topic(one.topic), self._taker(one), one.profile)
+            node.create_subscription(one.type, names.topic(one.topic), self._handler(one), one.profile)
             for one in (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
         ]
         handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
@@ -141,117 +152,117 @@ class RobotPorts:
         ]
 
     def publish(self, sensor: str, reading: Reading) -> None:
-        """Send one reading on every topic made from it."""
+        """Publish one reading on all of its topics."""
         sent = self._sent.get(sensor)
         if not sent:
             return
         stamp_ns, content = reading.stamp_ns, self._content()
-        for outlet in sent:
-            every_ns = outlet.heard.every_ns
+        for target in sent:
+            every_ns = target.heard.every_ns
             if every_ns:
-                if stamp_ns < outlet.next_ns:
+                if stamp_ns < target.next_ns:
                     continue
-                outlet.next_ns = (stamp_ns // every_ns + 1) * every_ns
-            if outlet.template is not None and outlet.template.options is content:
-                outlet.send(outlet.template.fill(reading))
+                target.next_ns = (stamp_ns // every_ns + 1) * every_ns
+            if target.template is not None and target.template.options is content:
+                target.send(target.template.fill(reading))
                 continue
-            row = outlet.row
+            row = target.row
             if row.on_change is not None:
                 value = row.on_change(reading)
-                if outlet.last == value:
+                if target.last == value:
                     continue
-                outlet.last = value
+                target.last = value
             message = row.encode(reading, self.names, content)
             if message is None:
                 continue
             if row.patch is not None:
-                outlet.template = Template.checked(row.patch, message, reading, content)
-            outlet.is_stale = row.profile == qos.LATCHED
-            outlet.publisher.publish(message)
+                target.template = Template.checked(row.patch, message, reading, content)
+            target.is_stale = row.profile == qos.TRANSIENT_LOCAL
+            target.publisher.publish(message)
 
     @property
     def topics(self) -> int:
-        """How many topics of sensors it has."""
-        return sum(map(len, self._outlets.values()))
+        """Number of sensor topics."""
+        return sum(map(len, self._publishers.values()))
 
-    def look(self) -> None:
-        """Find out which topics somebody hears now.
+    def poll(self) -> None:
+        """Find out which topics have subscribers.
 
-        It is asked for, since rclpy's events executor dies of a publisher with callbacks that is destroyed while one of
-        them waits.
+        Matched-event callbacks are not used: rclpy's events executor crashes if a publisher is destroyed while one of
+        its callbacks is queued.
         """
-        for outlets in self._outlets.values():
-            for outlet in outlets:
-                if not outlet.row.always:
-                    self._send(outlet, wanted=outlet.count() > 0)
+        for publishers in self._publishers.values():
+            for target in publishers:
+                if not target.row.always:
+                    self._send(target, wanted=target.count() > 0)
 
-    def tell_place(self, now_ns: int, pose: Pose, tilt: Tilt) -> None:
-        """Say where the robot stands while time does, for those who come late."""
+    def publish_pose(self, now_ns: int, pose: Pose, tilt: Tilt) -> None:
+        """Publish the true pose of a paused robot for late subscribers."""
         still = Twist(0.0, 0.0)
         reading = PoseReading(now_ns, (), pose, still, pose, still, tilt)
-        for outlet in self._outlets["pose"]:
-            if outlet.row.topic == sensor_topics.TRUTH:
-                outlet.publisher.publish(outlet.row.encode(reading, self.names, self._content()))
+        for target in self._publishers["pose"]:
+            if target.row.topic == sensor_topics.TRUTH:
+                target.publisher.publish(target.row.encode(reading, self.names, self._content()))
 
-    def forget(self) -> None:
-        """Send the next reading of every kind, also an unchanged one: the world was reset. What is latched ends now."""
-        for sensor, outlets in self._outlets.items():
-            for outlet in outlets:
-                outlet.last, outlet.next_ns = None, outlet.heard.every_ns
-                if outlet.is_stale and sensor in sensor_topics.AT_START:
-                    outlet.is_stale = False
-                    message = outlet.row.encode(sensor_topics.AT_START[sensor], self.names, self._content())
-                    outlet.publisher.publish(message)
+    def reset(self) -> None:
+        """Publish the next reading of every sensor even if unchanged, and replace outdated retained messages."""
+        for sensor, publishers in self._publishers.items():
+            for target in publishers:
+                target.last, target.next_ns = None, target.heard.every_ns
+                if target.is_stale and sensor in sensor_topics.AT_START:
+                    target.is_stale = False
+                    message = target.row.encode(sensor_topics.AT_START[sensor], self.names, self._content())
+                    target.publisher.publish(message)
 
     def close(self) -> None:
-        """Take all topics and services of this robot out of the graph."""
+        """Destroy all topics and services of this robot."""
         for service in self._services:
             self._node.destroy_service(service)
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
-        for outlets in self._outlets.values():
-            for outlet in outlets:
-                self._send(outlet, wanted=False)
-                self._node.destroy_publisher(outlet.publisher)
+        for publishers in self._publishers.values():
+            for target in publishers:
+                self._send(target, wanted=False)
+                self._node.destroy_publisher(target.publisher)
         if self._description is not None:
             self._node.destroy_publisher(self._description)
 
-    def _open(self, row: Row, heard: Heard) -> None:
-        topic, outlet = self.names.topic(row.topic), _Outlet(row, heard, next_ns=heard.every_ns)
+    def _open(self, row: Row, heard: TopicDemand) -> None:
+        topic, target = self.names.topic(row.topic), _SensorPublisher(row, heard, next_ns=heard.every_ns)
         profile = qos.overridable(self._node, topic, row.profile)
-        outlet.publisher = self._node.create_publisher(row.type, topic, **profile)
-        outlet.send, outlet.count = raw_publisher.sender(outlet.publisher), raw_publisher.counter(outlet.publisher)
-        self._outlets[heard.sensor].append(outlet)
-        self._send(outlet, wanted=row.always)
+        target.publisher = self._node.create_publisher(row.type, topic, **profile)
+        target.send, target.count = raw_publisher.sender(target.publisher), raw_publisher.counter(target.publisher)
+        self._publishers[heard.sensor].append(target)
+        self._send(target, wanted=row.always)
 
-    def _send(self, outlet: _Outlet, *, wanted: bool) -> None:
-        if outlet.is_sent == wanted:
+    def _send(self, target: _SensorPublisher, *, wanted: bool) -> None:
+        if target.is_sent == wanted:
             return
-        outlet.is_sent = wanted
-        (self._audience.join if wanted else self._audience.leave)(outlet.heard)
-        sensor = outlet.heard.sensor
-        self._sent[sensor] = tuple(one for one in self._outlets[sensor] if one.is_sent)
+        target.is_sent = wanted
+        (self._demand.add if wanted else self._demand.remove)(target.heard)
+        sensor = target.heard.sensor
+        self._sent[sensor] = tuple(one for one in self._publishers[sensor] if one.is_sent)
 
-    def _taker(self, one: RobotInput) -> Callable[[Any], None]:
-        def take(message: Any) -> None:
+    def _handler(self, one: RobotInput) -> Callable[[Any], None]:
+        def handle(message: Any) -> None:
             try:
-                for command in one.commands(message, self._moment()):
+                for command in one.commands(message, self._input_context()):
                     self._post(command)
-                beyond = one.beyond(message)
-                if beyond:
-                    self._tell_limit(one, beyond)
+                limit_check = one.limit_check(message)
+                if limit_check:
+                    self._report_limit(one, limit_check)
             except (CommandError, PlacementError) as error:
                 self._on_refusal()
-                self._warn(self._full_name(one), f"refused: {error}")
+                self._warn(self._full_name(one), f"rejected: {error}")
 
-        return take
+        return handle
 
-    def _tell_limit(self, one: RobotInput, beyond: str) -> None:
-        """Once for each topic: who means full speed by a large number does not want to hear it again and again."""
+    def _report_limit(self, one: RobotInput, limit_check: str) -> None:
+        """Log a clamped message once per topic: programs use large numbers for full speed on purpose."""
         self._on_limit()
         if one.topic not in self._limited:
             self._limited.add(one.topic)
-            self._node.get_logger().warning(f"{self._full_name(one)} limited: {beyond}; told once")
+            self._node.get_logger().warning(f"{self._full_name(one)} clamped: {limit_check} (reported once per topic)")
 
     def _full_name(self, one: RobotInput) -> str:
         return full_name(self._node, self.names.topic(one.topic))
@@ -259,5 +270,5 @@ class RobotPorts:
     def _reset_odometry(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._post(commands.ResetOdometry())
         response.success = True
-        response.message = "odometry starts again from zero: odom -> base_link jumps once"
+        response.message = "odometry restarts at zero: odom -> base_link jumps once"
         return response

@@ -1,7 +1,7 @@
-"""Everything a robot of the simulator listens to, one value per topic.
+"""All topics that a simulated robot subscribes to.
 
-Most are rows of `command_topics`, `operator_topics` and `plugin_topics`; here are those that need more than the
-message, or make more than one command of it (docs/spec/ros-interface.md section 4.2).
+Most are rows of `command_topics`, `operator_topics` and `plugin_topics`. This module adds topics that need more than
+the message, or that produce several commands (docs/spec/ros-interface.md section 4.2).
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ from thymio_sim_ros.ros.interface import (
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.command_topics import CommandRow
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
-from thymio_sim_ros.ros.interface.saturation import Beyond
+from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 
-__all__ = ["Moment", "RobotInput", "robot_inputs"]
+__all__ = ["InputContext", "RobotInput", "robot_inputs"]
 
 
 WORLD = Pose(0.0, 0.0, 0.0)
-"""The world's frame in itself."""
+"""Pose of the world frame in the world."""
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
-    """When a message arrives: simulated time, and how long velocities hold (0: until the next one), in ns.
+class InputContext:
+    """The context in which a message is decoded: simulated time and time-out of velocities (0: none), in ns.
 
-    `frames` tells where the frames of a robot are in the world then.
+    `frames` returns the poses of the robot's frames in the world.
     """
 
     now_ns: int
@@ -55,30 +55,30 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class RobotInput:
-    """One topic: `commands` gives what a message says, or raises CommandError; `about` is for the reference.
+    """One topic. `commands` returns the commands of a message or raises CommandError; `about` is for docs/ros.md.
 
-    `beyond` says what of a message that was not refused is limited.
+    `limit_check` describes the part of an accepted message that is clamped, or returns an empty text.
     """
 
     topic: str
     type: type
-    commands: Callable[[Any, Moment], Sequence[Command]]
+    commands: Callable[[Any, InputContext], Sequence[Command]]
     about: str
     profile: QoSProfile
-    beyond: Beyond = saturation.nothing
+    limit_check: LimitCheck = saturation.nothing
 
 
 def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
-    """All of them; `stamped_cmd_vel`: `cmd_vel` is TwistStamped, as newer Nav2 has it."""
+    """Return all inputs of a robot; `stamped_cmd_vel`: `cmd_vel` is TwistStamped, as in newer versions of Nav2."""
     plain, stamped = ("cmd_vel_unstamped", "cmd_vel") if stamped_cmd_vel else ("cmd_vel", "cmd_vel_stamped")
-    speeds = "linear.x in m/s and angular.z in rad/s; scaled down together above the wheels' limit"
+    speeds = "linear.x in m/s and angular.z in rad/s; scaled down together above the limit of the wheels"
     return (
         RobotInput(plain, TwistMsg, _twist, speeds, qos.COMMAND, saturation.twist),
         RobotInput(
             stamped,
             TwistStamped,
             _stamped_twist,
-            f"{speeds}; refused when older than `cmd_vel_timeout`",
+            f"{speeds}; rejected if older than `cmd_vel_timeout`",
             qos.COMMAND,
             saturation.stamped_twist,
         ),
@@ -86,25 +86,25 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
             "_wheels/command", Float64MultiArray, _wheels, "left, right in rad/s", qos.COMMAND, saturation.wheels
         ),
         *map(_of_row, command_topics.ROWS),
-        RobotInput("_led/off", Empty, _leds_off, "all lights dark", qos.LEDS),
+        RobotInput("_led/off", Empty, _leds_off, "all lights off", qos.LEDS),
         RobotInput(
             "shutdown",
             Empty,
             _shutdown,
-            "wheels, lights, sound and alarm off, the program until `aseba/run` or a reset; later commands are obeyed",
+            "wheels, lights, sound and alarm off; the program stops until `aseba/run` or a reset; later commands work",
             qos.EVENTS,
         ),
         RobotInput(
             "initialpose",
             PoseWithCovarianceStamped,
             _pose,
-            "put the robot there, m in the header's frame: the world's (or none), `odom` or `base_link`; "
-            "its odometry does not notice. Refused where something stands",
+            "move the robot, m in the frame of the header: that of the world (or empty), `odom` or `base_link`; "
+            "odometry is unchanged. Rejected if the place is occupied",
             qos.COMMAND,
         ),
         *(
             RobotInput(
-                f"_press/{button}", Bool, partial(_press, button), "a finger on the button, or off it", qos.EVENTS
+                f"_press/{button}", Bool, partial(_press, button), "press (true) or release the button", qos.EVENTS
             )
             for button in commands.BUTTONS
         ),
@@ -114,38 +114,45 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
 
 def _of_row(row: CommandRow) -> RobotInput:
     return RobotInput(
-        row.topic, row.type, lambda message, _moment: (row.decode(message),), row.about, row.profile, row.beyond
+        row.topic,
+        row.type,
+        lambda message, _input_context: (row.decode(message),),
+        row.about,
+        row.profile,
+        row.limit_check,
     )
 
 
-def _twist(message: TwistMsg, moment: Moment) -> Sequence[Command]:
-    return (command_checks.body_twist(message, moment.timeout_ns),)
+def _twist(message: TwistMsg, input_context: InputContext) -> Sequence[Command]:
+    return (command_checks.body_twist(message, input_context.timeout_ns),)
 
 
-def _stamped_twist(message: TwistStamped, moment: Moment) -> Sequence[Command]:
+def _stamped_twist(message: TwistStamped, input_context: InputContext) -> Sequence[Command]:
     sent_ns = message.header.stamp.sec * SECOND_NS + message.header.stamp.nanosec
-    age_ns = moment.now_ns - sent_ns
-    if moment.timeout_ns and sent_ns and age_ns > moment.timeout_ns:
-        raise CommandError(f"stamp is {age_ns / 1e9:.3f} s old, expected at most {moment.timeout_ns / 1e9:.3f} s")
-    return (command_checks.body_twist(message.twist, moment.timeout_ns),)
+    age_ns = input_context.now_ns - sent_ns
+    if input_context.timeout_ns and sent_ns and age_ns > input_context.timeout_ns:
+        raise CommandError(
+            f"stamp: found an age of {age_ns / 1e9:.3f} s, expected at most {input_context.timeout_ns / 1e9:.3f} s"
+        )
+    return (command_checks.body_twist(message.twist, input_context.timeout_ns),)
 
 
-def _wheels(message: Float64MultiArray, moment: Moment) -> Sequence[Command]:
-    return (command_checks.wheel_velocities(message.data, moment.timeout_ns),)
+def _wheels(message: Float64MultiArray, input_context: InputContext) -> Sequence[Command]:
+    return (command_checks.wheel_velocities(message.data, input_context.timeout_ns),)
 
 
-def _leds_off(_message: Empty, _moment: Moment) -> Sequence[Command]:
+def _leds_off(_message: Empty, _input_context: InputContext) -> Sequence[Command]:
     return tuple(commands.SetLeds(group, (0,) * size) for group, size in commands.LED_GROUPS.items())
 
 
-def _shutdown(message: Empty, moment: Moment) -> Sequence[Command]:
+def _shutdown(message: Empty, input_context: InputContext) -> Sequence[Command]:
     quiet = (commands.SetAlarm(False), commands.StopSound())
-    return (commands.MotorTargets(0, 0), *quiet, *_leds_off(message, moment))
+    return (commands.MotorTargets(0, 0), *quiet, *_leds_off(message, input_context))
 
 
-def _pose(message: PoseWithCovarianceStamped, moment: Moment) -> Sequence[Command]:
-    """Tools of viewers send it in the frame that they show or follow."""
-    pose, frame, frames = message.pose.pose, message.header.frame_id, moment.frames()
+def _pose(message: PoseWithCovarianceStamped, input_context: InputContext) -> Sequence[Command]:
+    """Viewers send the pose in the frame that they display or follow."""
+    pose, frame, frames = message.pose.pose, message.header.frame_id, input_context.frames()
     if frame and frame not in frames:
         raise CommandError(f"frame '{frame}' found, expected {' or '.join(frames)}")
     origin = frames[frame] if frame else WORLD
@@ -156,5 +163,5 @@ def _pose(message: PoseWithCovarianceStamped, moment: Moment) -> Sequence[Comman
     return (commands.MoveRobot(x, y, wrap_angle(yaw)),)
 
 
-def _press(button: str, message: Bool, _moment: Moment) -> Sequence[Command]:
+def _press(button: str, message: Bool, _input_context: InputContext) -> Sequence[Command]:
     return (commands.PressButton(button, bool(message.data)),)

@@ -1,7 +1,7 @@
-"""/tf and /tf_static of all robots (docs/spec/ros-interface.md sections 4.1 and 8).
+"""Publishes /tf and /tf_static of all robots (docs/spec/ros-interface.md sections 4.1 and 8).
 
-`odom → base_link` is the wheels' odometry and how the robot leans; `map → odom` makes up for its drift, so that
-`map → base_link` is the truth (perfect localisation); the wheels turn by their angles. What nobody hears costs nothing.
+`odom → base_link` is the wheel odometry and the tilt of the robot; `map → odom` compensates the drift, so that
+`map → base_link` is the true pose (perfect localization). Topics without subscribers cost nothing.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from thymio_sim_ros.ros.compat.tf2_messages import Transform
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.cdr_fields import rotation, wheel_rotation
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, SIDES, RobotNames
-from thymio_sim_ros.ros.simulator.subscriber_demand import Audience, Heard
+from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 
-__all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "frames_of", "origin_of"]
+__all__ = ["POSE_SENSOR", "TransformOptions", "Transforms", "frames_of", "origin_of"]
 
 
 @dataclass(frozen=True, slots=True)
 class TransformOptions:
-    """What is published: `map → odom`, the wheels, the fixed frames; and whether in each robot's namespace."""
+    """Whether to publish `map → odom`, wheel frames and fixed frames, and whether in each robot's namespace."""
 
     publish_map: bool = True
     publish_wheels: bool = True
@@ -38,73 +38,73 @@ class TransformOptions:
     namespaced: bool = False
 
 
-TRANSFORMING = "pose"
-"""The sensor whose readings make transforms."""
+POSE_SENSOR = "pose"
+"""The sensor whose readings are the source of transforms."""
 
-MOVING = Heard(TRANSFORMING)
+MOVING_FRAMES = TopicDemand(POSE_SENSOR)
 
 
-class _Channel:
-    """Publishers of one transform topic, and for each the transforms of this tick."""
+class _TransformTopic:
+    """Publishers of `tf` or `tf_static`, one per namespace, with the transforms collected for the next message."""
 
-    def __init__(self, node: Node, word: str, profile: QoSProfile, audience: Audience | None = None) -> None:
-        """`audience` is told which topics are heard."""
+    def __init__(self, node: Node, word: str, profile: QoSProfile, demand: SubscriberDemand | None = None) -> None:
+        """`demand` counts the topics with subscribers."""
         self.word = word
-        self._node, self._profile, self._audience = node, profile, audience
+        self._node, self._profile, self._demand = node, profile, demand
         self._publishers: dict[str, Any] = {}
         self._heard: set[str] = set()
         self._waiting: dict[str, list[Transform]] = {}
 
     def open(self, topics: set[str]) -> None:
-        """Have publishers of these topics, and of no other."""
+        """Create publishers of these topics and destroy all others."""
         self._waiting.clear()
         for topic in self._publishers.keys() - topics:
-            self._hear(topic, 0)
+            self._set_demand(topic, 0)
             self._node.destroy_publisher(self._publishers.pop(topic))
         for topic in topics - self._publishers.keys():
             self._publishers[topic] = self._node.create_publisher(tf2_messages.TFMessage, topic, self._profile)
 
-    def look(self) -> None:
-        """Find out which topics somebody hears now."""
+    def poll(self) -> None:
+        """Find out which topics have subscribers."""
         for topic, publisher in self._publishers.items():
-            self._hear(topic, publisher.get_subscription_count())
+            self._set_demand(topic, publisher.get_subscription_count())
 
-    def is_heard(self, topic: str) -> bool:
-        """Whether anybody listens."""
+    def has_subscribers(self, topic: str) -> bool:
+        """Whether a topic has subscribers."""
         return topic in self._heard
 
     def add(self, topic: str, transforms: Sequence[Transform]) -> None:
-        """Send these with the next `flush`."""
+        """Add transforms to the next message."""
         self._waiting.setdefault(topic, []).extend(transforms)
 
     def flush(self) -> None:
-        """Send all that waits, one message for each topic."""
+        """Publish the collected transforms, one message per topic."""
         for topic, transforms in self._waiting.items():
             self._publishers[topic].publish(tf2_messages.encode(transforms))
         self._waiting.clear()
 
-    def _hear(self, topic: str, listeners: int) -> None:
-        if self._audience is None or (listeners > 0) == (topic in self._heard):
+    def _set_demand(self, topic: str, subscribers: int) -> None:
+        if self._demand is None or (subscribers > 0) == (topic in self._heard):
             return
-        if listeners:
+        if subscribers:
             self._heard.add(topic)
-            self._audience.join(MOVING)
+            self._demand.add(MOVING_FRAMES)
         else:
             self._heard.remove(topic)
-            self._audience.leave(MOVING)
+            self._demand.remove(MOVING_FRAMES)
 
 
 class Transforms:
-    """Publishes transforms from readings; silent where the type cannot be had (`tf_messages.available`)."""
+    """Publishes transforms from readings; does nothing if the type is not available (`tf2_messages.available`)."""
 
-    def __init__(self, node: Node, audience: Audience, options: TransformOptions | None = None) -> None:
+    def __init__(self, node: Node, demand: SubscriberDemand, options: TransformOptions | None = None) -> None:
         self._options = options or TransformOptions()
         self._is_on = tf2_messages.available()
-        self._moving = _Channel(node, "tf", qos.TRANSFORMS, audience)
-        self._static = _Channel(node, "tf_static", qos.LATCHED)
+        self._moving = _TransformTopic(node, "tf", qos.TRANSFORMS, demand)
+        self._static = _TransformTopic(node, "tf_static", qos.TRANSIENT_LOCAL)
 
-    def begin(self, robots: Sequence[RobotNames]) -> None:
-        """Latched frames of these robots, all in one message where the topic is common."""
+    def set_robots(self, robots: Sequence[RobotNames]) -> None:
+        """Publish the static frames of these robots, in one message per topic."""
         if not self._is_on:
             return
         self._moving.open({self._topic(names, self._moving) for names in robots})
@@ -120,21 +120,21 @@ class Transforms:
             self._static.add(self._topic(names, self._static), fixed)
         self._static.flush()
 
-    def take(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
-        """Send the robot's moving frames at the end of the tick: its pose, its wheels turned by these angles."""
+    def add_reading(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
+        """Add the moving frames of a robot from a pose reading and its wheel angles; `flush` publishes them."""
         topic = self._topic(names, self._moving)
-        if isinstance(reading, PoseReading) and self._moving.is_heard(topic):
+        if isinstance(reading, PoseReading) and self._moving.has_subscribers(topic):
             self._moving.add(topic, self._frames(names, reading, angles_rad))
 
-    def look(self) -> None:
-        """Find out which moving frames somebody hears now."""
-        self._moving.look()
+    def poll(self) -> None:
+        """Find out which moving frames have subscribers."""
+        self._moving.poll()
 
     def flush(self) -> None:
-        """The tick is over."""
+        """Publish the transforms of this tick."""
         self._moving.flush()
 
-    def _topic(self, names: RobotNames, channel: _Channel) -> str:
+    def _topic(self, names: RobotNames, channel: _TransformTopic) -> str:
         return names.topic(channel.word) if self._options.namespaced else f"/{channel.word}"
 
     def _frames(self, names: RobotNames, reading: PoseReading, angles_rad: tuple[float, float]) -> list[Transform]:
@@ -154,14 +154,14 @@ _WHEELS = tuple(map(wheel_position, SIDES))
 
 @cache
 def _moving_frames(names: RobotNames) -> tuple[str, ...]:
-    """The map's frame, the odometry's, the robot's and those of its wheels."""
+    """Return the frame names of map, odometry, robot and wheels."""
     return tuple(
         names.frame(usual) for usual in (MAP_FRAME, "odom", "base_link", *(f"{side}_wheel_link" for side in SIDES))
     )
 
 
 def origin_of(truth: Pose, odometry: Pose) -> Pose:
-    """Where odometry's origin lies in the world: truth · odometry⁻¹."""
+    """Return the pose of the odometry origin in the world: truth · odometry⁻¹."""
     yaw = truth.yaw_rad - odometry.yaw_rad
     cos, sin = math.cos(yaw), math.sin(yaw)
     return Pose(
@@ -170,7 +170,7 @@ def origin_of(truth: Pose, odometry: Pose) -> Pose:
 
 
 def frames_of(names: RobotNames, truth: Pose, odometry: Pose) -> dict[str, Pose]:
-    """Where the world's frame, the odometry's and the robot's are in the world."""
+    """Return the poses of the frames of world, odometry and robot in the world, by frame name."""
     places = {MAP_FRAME: Pose(0.0, 0.0, 0.0), "odom": origin_of(truth, odometry), "base_link": truth}
     return {names.frame(usual): place for usual, place in places.items()}
 

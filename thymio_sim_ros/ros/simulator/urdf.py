@@ -1,4 +1,4 @@
-"""The robot as URDF made of primitives, for RViz and Foxglove; and its fixed frames.
+"""The URDF of the robot, built from primitives for RViz and Foxglove, and its fixed frames.
 
 Source: docs/spec/ros-interface.md section 8.
 """
@@ -30,7 +30,7 @@ class FixedFrame:
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:
-        """x, y, z, w."""
+        """The rotation as x, y, z, w."""
         roll, pitch, yaw = (angle / 2 for angle in self.rotation)
         cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
         return (
@@ -42,7 +42,7 @@ class FixedFrame:
 
 
 def fixed_frames() -> tuple[FixedFrame, ...]:
-    """Sensor frames where the simulated sensors really sit, x along the view."""
+    """Return the frames of the simulated sensors, x along the viewing direction."""
     frames = [FixedFrame("base_footprint", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
     for name, (x_m, y_m, yaw_rad) in zip(PROXIMITY, robot_constants.PROXIMITY_POSES, strict=True):
         frames.append(
@@ -55,12 +55,12 @@ def fixed_frames() -> tuple[FixedFrame, ...]:
 
 
 def wheel_position(side: str) -> tuple[float, float, float]:
-    """Centre of a wheel in `base_link`, metres."""
+    """Return the center of a wheel in `base_link`, m."""
     return (0.0, WHEEL_SIDE[side] * robot_constants.WHEEL_TRACK_M / 2, robot_constants.WHEEL_RADIUS_M)
 
 
 def urdf(names: RobotNames) -> str:
-    """The description of one robot, link and joint names with its prefix."""
+    """Return the URDF of one robot, with its prefix on link and joint names."""
     height = robot_constants.BODY_HEIGHT_M
     parts = [
         '<?xml version="1.0"?>',
@@ -107,7 +107,7 @@ def _box(x: float, y: float, z: float) -> str:
 
 
 def _slabs() -> list[tuple[float, float, float]]:
-    """The hull as boxes across the robot: rear x, front x, width in m; the round front in steps."""
+    """Return the hull as boxes (rear x, front x, width in m); the round front is approximated in steps."""
     radius, half_width = robot_constants.HULL_RADIUS_M, robot_constants.HULL_WIDTH_M / 2
     corner = math.sqrt(radius**2 - half_width**2)
     edges = [corner + (radius - corner) * step / FRONT_STEPS for step in range(FRONT_STEPS + 1)]

@@ -1,4 +1,4 @@
-"""What the simulator says about the world as a whole: clock, state, playgrounds, markers, diagnostics."""
+"""Publishers for the world as a whole: clock, state, playgrounds, markers, diagnostics."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from thymio_sim_ros.ros.interface.cdr_templates import Patch, Template
 from thymio_sim_ros.ros.interface.headers import SECOND_NS, stamp
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, RobotNames
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
-from thymio_sim_ros.ros.simulator.clock_conflict import ClockRivals
+from thymio_sim_ros.ros.simulator.clock_conflict import ClockConflict
 from thymio_sim_ros.ros.simulator.markers import playground_markers
 from thymio_sim_ros.ros.simulator.occupancy_grid import occupancy
 from thymio_sim_ros.sim.playground import reader as playgrounds
@@ -32,21 +32,21 @@ from thymio_sim_ros.sim.playground.scene import ObjectSnapshot
 from thymio_sim_ros.sim.world import World
 
 CLOCK_GAP = 0.9
-"""Part of its period of wall time after which the clock may be told again: ticks come when they come."""
+"""Part of the clock's period after which it may be published again, since ticks do not divide the period evenly."""
 
 OBJECTS_GAP_NS = 50_000_000
-"""Shortest wall time between two messages of objects that move."""
+"""Shortest wall time between two messages about moving objects."""
 
 SLOW = 0.9
-"""Below this part of the wanted factor the diagnostics warn."""
+"""Part of the requested real-time factor below which the diagnostics warn."""
 
 
 @dataclass(frozen=True, slots=True)
 class WorldTopic:
-    """One topic of the world: how often it is sent, what it holds."""
+    """One topic of the world: type, rate, content, QoS and frame."""
 
     type: type
-    often: str
+    rate: str
     about: str
     profile: QoSProfile
     frame: str = ""
@@ -57,36 +57,40 @@ TOPICS: Mapping[str, WorldTopic] = {
     "~/_state": WorldTopic(
         String,
         "1, change",
-        "JSON: playground, paused, factors, seed, ns, robots and which of them fell, things that can be moved, the "
+        "JSON: playground, paused, factors, seed, ns, robots and which of them fell, movable objects, the "
         "topic `~/_raw`",
-        qos.LATCHED,
+        qos.TRANSIENT_LOCAL,
     ),
     "~/_raw": WorldTopic(
         Int16MultiArray,
         "≤ 100",
-        "Aseba's integers of all robots: a dimension `robot/sensor` for each reading",
+        "integer readings of all robots: one dimension `robot/sensor` per reading",
         qos.EVENTS,
     ),
-    "~/_playgrounds": WorldTopic(String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.LATCHED),
-    "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
-    "_markers/objects": WorldTopic(
-        MarkerArray, "≤ 20, change", "movable things and doors as they stand", qos.LATCHED, "map"
+    "~/_playgrounds": WorldTopic(
+        String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.TRANSIENT_LOCAL
     ),
-    "map": WorldTopic(OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.LATCHED, "map"),
+    "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.TRANSIENT_LOCAL, "map"),
+    "_markers/objects": WorldTopic(
+        MarkerArray, "≤ 20, change", "objects and doors at their current poses", qos.TRANSIENT_LOCAL, "map"
+    ),
+    "map": WorldTopic(
+        OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.TRANSIENT_LOCAL, "map"
+    ),
     "/diagnostics": WorldTopic(
         DiagnosticArray,
         "1",
-        "real-time factor wanted and achieved, late and dropped ticks, refused and limited messages, robots; "
-        "publishers of a wrong type; another simulator with the same clock",
+        "real-time factor requested and achieved, late and dropped ticks, rejected and clamped messages, robots; "
+        "publishers with the wrong type; another simulator on the same clock",
         qos.SENSOR,
     ),
 }
-"""Every topic that the simulator publishes for the world as a whole, but for transforms."""
+"""All topics of the world as a whole except transforms."""
 
 
 @dataclass(frozen=True, slots=True)
 class WorldState:
-    """What `~/_state` tells: times in ns of simulated time, factors in simulated seconds per second."""
+    """Content of `~/_state`: times in ns of simulated time, factors in simulated seconds per second."""
 
     playground: str
     title: str
@@ -99,12 +103,12 @@ class WorldState:
     robots: Mapping[str, RobotNames]
     movables: tuple[str, ...] = ()
     raw: str = ""
-    """Where the integers of all robots are told."""
+    """Topic with the integer readings of all robots."""
     fallen: frozenset[str] = frozenset()
-    """Names in the world of the robots that fell off an edge."""
+    """Names (in the world) of the robots that fell off an edge."""
 
     def as_json(self) -> str:
-        """The text of `~/_state`."""
+        """Return the message text of `~/_state`."""
         robots = [
             {
                 "name": names.name,
@@ -119,11 +123,8 @@ class WorldState:
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
-    """Since the start or the last change of pace: ticks that came late, or never.
-
-    Since the start: messages that were refused, and those with something beyond the robot's limits.
-    """
+class PaceCounters:
+    """Late and dropped ticks since the last change of pace, and rejected and clamped messages since the start."""
 
     late_ticks: int
     dropped_ticks: int
@@ -133,21 +134,21 @@ class Pace:
 
 @dataclass(frozen=True, slots=True)
 class SceneMessages:
-    """Everything in a playground that stays where it is, as messages; a pure function of the playground."""
+    """Messages for the fixed parts of a playground; a pure function of the playground."""
 
     markers: MarkerArray
     map: OccupancyGrid | None
 
     @classmethod
     def of(cls, playground: Playground, frame: str, *, with_map: bool) -> SceneMessages:
-        """The messages; making them takes a second for large pictures."""
+        """Create the messages; takes up to a second for large images."""
         fixed = [solid for solid in playground.solids if solid.is_fixed]
         markers = playground_markers((*playground.floors, *playground.paints, *fixed), frame)
         return cls(markers, occupancy(playground.floors, fixed, frame) if with_map else None)
 
 
-class WorldPorts:
-    """Publishers of the simulator that belong to no robot."""
+class WorldEndpoints:
+    """Publishers of the simulator for the world as a whole."""
 
     def __init__(
         self,
@@ -158,7 +159,7 @@ class WorldPorts:
         publish_map: bool = False,
         map_frame: str = MAP_FRAME,
     ) -> None:
-        """`clock_rate_hz`: of wall time, at most."""
+        """`clock_rate_hz`: largest rate of the clock in Hz of wall time."""
         self._name = node.get_fully_qualified_name().removeprefix("/")
         left_out = {"/clock": not publish_clock, "map": not publish_map}
         self._publishers = {
@@ -167,14 +168,14 @@ class WorldPorts:
             if not left_out.get(name)
         }
         self._clock_gap_ns = round(CLOCK_GAP * SECOND_NS / clock_rate_hz)
-        self._is_clock_heard = False
+        self._has_clock_subscribers = False
         self._clock = Template(Patch(()), Clock(), None)
         clock = self._publishers.get("/clock")
         self._send_clock = raw_publisher.sender(clock) if clock is not None else None
         self._count_clock = raw_publisher.counter(clock) if clock is not None else None
-        self._rivals = None
+        self._clock_conflict = None
         if clock is not None:
-            self._rivals = ClockRivals(node, clock.topic_name, node.context.get_domain_id())
+            self._clock_conflict = ClockConflict(node, clock.topic_name, node.context.get_domain_id())
         self._map_frame = map_frame
         self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
@@ -182,43 +183,43 @@ class WorldPorts:
 
     @property
     def raw(self) -> Any:
-        """The publisher of all robots' integers."""
+        """The publisher of the integer readings of all robots."""
         return self._publishers["~/_raw"]
 
     @property
     def clock_due_ns(self) -> int | None:
-        """The wall time from which the clock may be told again; None when nobody hears it."""
-        return self._last_clock_ns + self._clock_gap_ns if self._is_clock_heard else None
+        """The wall time in ns from which the clock may be published again; None without subscribers."""
+        return self._last_clock_ns + self._clock_gap_ns if self._has_clock_subscribers else None
 
     def publish_clock(self, now_ns: int, *, last: bool) -> None:
-        """Simulated time; limited by its rate of wall time unless it is the `last` one for a while."""
+        """Publish simulated time, rate limited unless `last`: no other clock message is expected soon."""
         wall_ns = time.monotonic_ns()
         due_ns = self.clock_due_ns
         if self._send_clock is None or not (last or (due_ns is not None and wall_ns >= due_ns)):
             return
         self._last_clock_ns = wall_ns
         self._send_clock(self._clock.at(now_ns))
-        if self._rivals is not None:
-            self._rivals.sent(now_ns)
+        if self._clock_conflict is not None:
+            self._clock_conflict.record_published(now_ns)
 
-    def look(self) -> None:
-        """Find out whether somebody hears the clock now."""
-        self._is_clock_heard = self._count_clock is not None and self._count_clock() > 0
+    def poll(self) -> None:
+        """Find out whether the clock has subscribers."""
+        self._has_clock_subscribers = self._count_clock is not None and self._count_clock() > 0
 
     def publish_state(self, state: WorldState) -> None:
-        """Latched state as JSON."""
+        """Publish the retained state as JSON."""
         self._publishers["~/_state"].publish(String(data=state.as_json()))
 
     def publish_scene(self, scene: SceneMessages) -> None:
-        """Latched markers of all in the playground that stays where it is."""
+        """Publish the retained markers, and the map, of the fixed parts of the playground."""
         self._publishers["_markers"].publish(scene.markers)
         if scene.map is not None:
             self._publishers["map"].publish(scene.map)
 
     def publish_objects(self, world: World, *, last: bool) -> None:
-        """Latched markers of movable things and doors, when they have moved.
+        """Publish retained markers of objects and doors if they have moved.
 
-        They are looked at at most 20 times a second of wall time, unless it is the `last` time for a while.
+        Checked at most 20 times per second of wall time, unless `last`: no other check is expected soon.
         """
         wall_ns = time.monotonic_ns()
         if not (last or wall_ns - self._last_objects_ns >= OBJECTS_GAP_NS):
@@ -232,14 +233,14 @@ class WorldPorts:
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
         self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
 
-    def publish_diagnostics(self, state: WorldState, pace: Pace, inputs: DiagnosticStatus) -> None:
-        """Pace of the simulation, its inputs, and whether another simulator publishes its clock."""
+    def publish_diagnostics(self, state: WorldState, pace: PaceCounters, inputs: DiagnosticStatus) -> None:
+        """Publish diagnostics: pace of the simulation, types of inputs, clock conflicts."""
         slow = not state.paused and 0 < state.achieved < SLOW * state.real_time_factor
         status = DiagnosticStatus(
             level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
             name=f"{self._name}: pace",
             hardware_id="thymio_sim_ros",
-            message="paused" if state.paused else "slower than wanted" if slow else "running",
+            message="paused" if state.paused else "slower than requested" if slow else "running",
             values=[
                 KeyValue(key="real-time factor wanted", value=f"{state.real_time_factor:g}"),
                 KeyValue(key="real-time factor achieved", value=f"{state.achieved:.3f}"),
@@ -252,22 +253,22 @@ class WorldPorts:
             ],
         )
         statuses = [status, inputs]
-        if self._rivals is not None:
-            self._rivals.look()
-            statuses.append(self._rivals.status())
+        if self._clock_conflict is not None:
+            self._clock_conflict.poll()
+            statuses.append(self._clock_conflict.status())
         message = DiagnosticArray(status=statuses)
         message.header.stamp = stamp(state.now_ns)
         self._publishers["/diagnostics"].publish(message)
 
 
 def shipped_playgrounds() -> list[dict[str, object]]:
-    """Name, title, description and their translations of every shipped playground."""
+    """Return name, title, description and translations of every shipped playground."""
     listed: list[dict[str, object]] = []
     for name, path in resources.playgrounds().items():
         try:
             shown = playgrounds.headline(path)
         except PlaygroundError as error:
-            logging.getLogger(__name__).warning("playground left out: %s", error)
+            logging.getLogger(__name__).warning("playground skipped: %s", error)
             continue
         translations = {
             language: {"title": text.title, "description": text.description} for language, text in shown.translations

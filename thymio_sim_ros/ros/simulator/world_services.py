@@ -1,7 +1,7 @@
-"""Control of time and world: services and topics of the simulator that belong to no robot (docs/ros.md).
+"""Services and topics that control time and world (docs/ros.md).
 
-Robots come, go and are put somewhere by services of `rcl_interfaces`, since only those among the standard ones carry
-names and values and answer each with a reason. What is dragged in a viewer moves by a topic.
+Robots are added, removed and moved by services of `rcl_interfaces`: among the standard types only these carry names
+with values and return a reason for each. A topic moves what a viewer drags.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from std_srvs.srv import SetBool, Trigger
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
@@ -28,95 +28,95 @@ from thymio_sim_ros.sim.playground import writer
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["PLACE", "PLACED", "SERVICES", "Controlled", "WorldServices", "presently"]
+__all__ = ["PLACE_MEANING", "PLACE_TOPIC", "SERVICES", "SimulatorControl", "WorldServices", "at_current_tick"]
 
 
 @dataclass(frozen=True, slots=True)
 class Service:
-    """One service: its type and what it does."""
+    """Type and description of a service."""
 
     type: type
     about: str
 
 
 SERVICES: Mapping[str, Service] = {
-    "~/pause": Service(SetBool, "true: time stands still, false: it goes on"),
-    "~/step": Service(Trigger, "`step_ticks` ticks of 10 ms; refused unless paused"),
-    "~/reset": Service(Trigger, "world, time and noise as at the start; `/clock` goes back to 0"),
-    "~/spawn": Service(SetParameters, "add robots: name → [x, y, yaw] in m and rad, yaw may be left out"),
-    "~/remove": Service(SetParameters, "take robots away: names, values do not matter"),
-    "~/set_poses": Service(SetParameters, "put robots and movable things somewhere: name → [x, y, yaw]"),
+    "~/pause": Service(SetBool, "true: pause, false: resume"),
+    "~/step": Service(Trigger, "execute `step_ticks` ticks of 10 ms; rejected unless paused"),
+    "~/reset": Service(Trigger, "reset world, time and noise to the start; `/clock` goes back to 0"),
+    "~/spawn": Service(SetParameters, "add robots: name → [x, y, yaw] in m and rad, yaw is optional"),
+    "~/remove": Service(SetParameters, "remove robots: names; values are ignored"),
+    "~/set_poses": Service(SetParameters, "move robots and objects: name → [x, y, yaw]"),
     "~/get_poses": Service(
-        GetParameters, "where robots, movable things and doors are: names → [x, y, yaw]; NOT_SET: nowhere"
+        GetParameters, "poses of robots, objects and doors: names → [x, y, yaw]; NOT_SET for unknown names"
     ),
-    "~/get_playground": Service(Trigger, "`message` is the playground as JSON of our format, with its pictures"),
+    "~/get_playground": Service(Trigger, "`message` is the playground as JSON, with its images"),
 }
-"""Every service of the simulator that belongs to no robot."""
+"""All services of the simulator for the world as a whole."""
 
-PLACE = "~/_place"
-"""The topic that does what `~/set_poses` does, for what a viewer drags."""
+PLACE_TOPIC = "~/_place"
+"""The topic with the effect of `~/set_poses`, for viewers that drag."""
 
-STOPPED_BY_ITSELF = "the world stopped by a fault of ours: see the simulator's log"
-PLACED = "put a robot or a movable thing there: its name, or a robot's frame, is `child_frame_id`"
+WORLD_STOPPED = "the world stopped with an internal error (please report): see the log of the simulator"
+PLACE_MEANING = "move a robot or an object: `child_frame_id` is its name, or the frame of a robot"
 
 
-class Controlled(Protocol):
-    """What is controlled: the simulator."""
+class SimulatorControl(Protocol):
+    """The methods of the simulator that services use."""
 
     @property
     def world(self) -> World:
-        """The world of now."""
+        """The current world."""
 
     @property
     def names(self) -> Mapping[str, RobotNames]:
-        """The names in ROS of the robots, by those in the world."""
+        """ROS names of the robots by their name in the world."""
 
     @property
     def paused(self) -> bool:
-        """Whether time stands still."""
+        """Whether the simulation is paused."""
 
     def pause(self, paused: bool) -> None:
-        """Let time stand still or go on."""
+        """Pause or resume the simulation."""
 
     @property
     def map_frame(self) -> str:
-        """Name of the world's frame."""
+        """Name of the world frame."""
 
     @property
     def playground(self) -> str:
-        """The playground as it was given: name, path or text."""
+        """The playground as given: name, path or text."""
 
     @property
     def playground_name(self) -> str:
-        """Its name."""
+        """Name of the playground."""
 
     def step(self, ticks: int | None = None) -> bool:
-        """Let so many ticks pass, or those of one step; whether the world could go so far."""
+        """Execute `ticks`, by default those of one step; False if the world stopped with an internal error."""
 
     def spawn(self, start: RobotStart) -> None:
-        """Add a robot; ValueError as of the world, and for a name that topics of a nameless robot begin with."""
+        """Add a robot. Raises ValueError for an invalid or taken name or place."""
 
     def reset(self) -> None:
-        """World, time and noise as at the start."""
+        """Reset world, time and noise to the start."""
 
     def load(self, playground: str) -> str:
-        """Another playground by name, path or text; the reason if it is refused."""
+        """Load a playground by name, path or text; return the reason if it is rejected."""
 
     def catch_up(self) -> None:
-        """Be at the present tick, and tell early what the next one brings."""
+        """Execute deferred ticks, and defer none until the next tick."""
 
-    def follow(self) -> None:
-        """Robots have come or gone."""
+    def update_robots(self) -> None:
+        """Create or destroy endpoints if robots were added or removed."""
 
     def count_refusal(self) -> None:
-        """A message was refused."""
+        """Count a rejected message."""
 
 
 Handler = Callable[[Any, Any], Any]
 
 
-def presently(simulator: Controlled, handler: Handler) -> Handler:
-    """The same handler of a service, which finds the world at the present tick."""
+def at_current_tick(simulator: SimulatorControl, handler: Handler) -> Handler:
+    """Wrap a service handler so that deferred ticks are executed first."""
 
     def handle(request: Any, response: Any) -> Any:
         simulator.catch_up()
@@ -126,10 +126,10 @@ def presently(simulator: Controlled, handler: Handler) -> Handler:
 
 
 class WorldServices:
-    """The services of a simulator, on its node."""
+    """The world services on the node of the simulator."""
 
-    def __init__(self, node: Node, simulator: Controlled) -> None:
-        self._simulator, self._warn = simulator, Warner(node)
+    def __init__(self, node: Node, simulator: SimulatorControl) -> None:
+        self._simulator, self._warn = simulator, ThrottledLog(node)
         handlers: dict[str, Handler] = {
             "~/pause": self._pause,
             "~/step": self._step,
@@ -141,10 +141,10 @@ class WorldServices:
             "~/get_playground": self._get_playground,
         }
         self._services = [
-            node.create_service(service.type, name, presently(simulator, handlers[name]))
+            node.create_service(service.type, name, at_current_tick(simulator, handlers[name]))
             for name, service in SERVICES.items()
         ]
-        self._subscription = node.create_subscription(TransformStamped, PLACE, self._place, qos.COMMAND)
+        self._subscription = node.create_subscription(TransformStamped, PLACE_TOPIC, self._place, qos.COMMAND)
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self._simulator.pause(bool(request.data))
@@ -153,39 +153,39 @@ class WorldServices:
 
     def _step(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         if not self._simulator.paused:
-            response.success, response.message = False, "the world is running: pause it first"
+            response.success, response.message = False, "the simulation is running: pause it first"
             return response
         response.success = self._simulator.step()
         now = f"now {self._simulator.world.now_ns / SECOND_NS:.3f} s"
-        response.message = now if response.success else f"{now}, where {STOPPED_BY_ITSELF}"
+        response.message = now if response.success else f"{now}: {WORLD_STOPPED}"
         return response
 
     def _reset(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._simulator.reset()
-        response.success, response.message = True, "world, time and noise are as at the start"
+        response.success, response.message = True, "world, time and noise were reset"
         return response
 
     def _each(self, act: Callable[[str, ParameterValue], None]) -> Callable[[Any, Any], Any]:
-        """A service that does one thing for each name, or says why not."""
+        """Return a service handler that applies `act` to each name and returns a reason where it fails."""
 
         def answer(request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
-            response.results = [self._tried(act, one.name, one.value) for one in request.parameters]
-            self._simulator.follow()
+            response.results = [self._attempt(act, one.name, one.value) for one in request.parameters]
+            self._simulator.update_robots()
             return response
 
         return answer
 
-    def _tried(self, act: Callable[[str, ParameterValue], None], name: str, value: Any) -> SetParametersResult:
+    def _attempt(self, act: Callable[[str, ParameterValue], None], name: str, value: Any) -> SetParametersResult:
         try:
             act(name, value)
         except (FieldError, ValueError) as error:
             return SetParametersResult(successful=False, reason=str(error))
-        except RuntimeError:  # of parameter_value_to_python
-            return SetParametersResult(successful=False, reason=f"{name}: a value of unknown type {value.type} found")
+        except RuntimeError:  # raised by parameter_value_to_python
+            return SetParametersResult(successful=False, reason=f"{name}: found a value of unknown type {value.type}")
         return SetParametersResult(successful=True)
 
     def _spawn(self, name: str, value: ParameterValue) -> None:
-        x, y, yaw = _place_of(name, value)
+        x, y, yaw = _pose_of(name, value)
         start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
         self._simulator.spawn(start)
 
@@ -196,7 +196,7 @@ class WorldServices:
         world.remove(name)
 
     def _set_pose(self, name: str, value: ParameterValue) -> None:
-        self._move(name, *_place_of(name, value))
+        self._move(name, *_pose_of(name, value))
 
     def _move(self, name: str, x: float, y: float, yaw: float) -> None:
         world = self._simulator.world
@@ -227,23 +227,23 @@ class WorldServices:
     def _place(self, message: TransformStamped) -> None:
         self._simulator.catch_up()
         try:
-            self._put(message)
+            self._place_frame(message)
         except ValueError as error:
             self._simulator.count_refusal()
-            self._warn(PLACE, f"refused: {error}")
+            self._warn(PLACE_TOPIC, f"rejected: {error}")
 
-    def _put(self, message: TransformStamped) -> None:
-        """`child_frame_id` is a thing, a robot, or a robot's frame."""
+    def _place_frame(self, message: TransformStamped) -> None:
+        """Move an object or robot; `child_frame_id` is its name or a robot's frame."""
         of_frame = {names.frame("base_link"): robot for robot, names in self._simulator.names.items()}
         maps = {"", *(names.frame("map") for names in self._simulator.names.values())}
         if message.header.frame_id not in maps:
-            raise ValueError(f"frame '{message.header.frame_id}' found, expected '{max(maps)}'")
+            raise ValueError(f"found frame '{message.header.frame_id}', expected '{max(maps)}'")
         name, transform = message.child_frame_id, message.transform
         yaw = convert_readings.yaw_of(transform.rotation)
         self._move(of_frame.get(name, name), transform.translation.x, transform.translation.y, yaw)
 
 
-def _place_of(name: str, value: ParameterValue) -> tuple[float, float, float]:
+def _pose_of(name: str, value: ParameterValue) -> tuple[float, float, float]:
     found = parameter_value_to_python(value)
     numbers = [] if found is None or isinstance(found, str | bytes | bool | int | float) else list(found)
     if len(numbers) not in (2, 3) or not all(isinstance(number, int | float) for number in numbers):
@@ -254,4 +254,4 @@ def _place_of(name: str, value: ParameterValue) -> tuple[float, float, float]:
 
 
 def _unknown(name: str, known: Sequence[str]) -> str:
-    return f"nothing here is called '{name}', expected {fields.nearest(name, known)}"
+    return f"found unknown name '{name}', expected {fields.nearest(name, known)}"

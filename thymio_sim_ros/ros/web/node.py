@@ -20,7 +20,7 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.banner import places
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.ros.rclpy_ext import parameters
-from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
 from thymio_sim_ros.ros.web import tokens as node_tokens
@@ -91,32 +91,32 @@ class WebPage:
             ) from error
 
     @property
-    def greeting(self) -> str:
+    def startup_message(self) -> str:
         """Where to look, for a person."""
         return f"Page: {places('http', self.params.address, self.port, '/')}"
 
     @property
-    def invitation(self) -> str:
+    def access_urls(self) -> str:
         """Where to look with which token, for standard output; never for the log, which clients may read."""
         if not self.tokens.is_required:
             return ""
         place = "http", self.params.address, self.port, "/"
         return f"Page      {places(*place, self.tokens.full)}\nRead only {places(*place, self.tokens.read_only)}"
 
-    def turn(self, executor: Executor) -> None:
+    def run_once(self, executor: Executor) -> None:
         """Nothing but parameters to answer."""
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Close the port, end the thread."""
         self._server.close()
 
     def close(self) -> None:
         """The same, and destroy the node."""
-        self.end()
+        self.stop()
         self.node.destroy_node()
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `web_ui`."""
-    return run_main(lambda context: greeted([WebPage(context)]), args)
+    return run_main(lambda context: announce([WebPage(context)]), args)

@@ -9,7 +9,7 @@ import socket
 from collections.abc import Iterator
 
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.ros.compat.shm_cleanup import remove_half_made_ports
+from thymio_sim_ros.ros.compat.shm_cleanup import remove_incomplete_ports
 
 __all__ = ["NoDomainError", "reserved"]
 
@@ -55,7 +55,7 @@ def reserved() -> Iterator[int]:
                 continue
             if _is_spoken_in(domain):
                 continue
-            remove_half_made_ports()
+            remove_incomplete_ports()
             with _environment(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST"):
                 yield domain
             return

@@ -10,7 +10,7 @@ from typing import Any
 from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
-from thymio_sim_ros.ros.aseba.device_endpoints import DevicePorts
+from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import full_name
@@ -142,7 +142,7 @@ class Simulation:
 
     # --- programs ---
 
-    def machine(self, robot: str) -> DevicePorts | None:
+    def machine(self, robot: str) -> DeviceEndpoints | None:
         """The machine of a robot, if a runtime node of this test has one for it."""
         names = self.simulator.names
         wanted = names[robot].name if robot in names else robot

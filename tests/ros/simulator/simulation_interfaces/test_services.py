@@ -132,7 +132,7 @@ def test_steps_are_done_while_the_world_is_paused(room):
     assert room.told("step_simulation", steps=5) == (OK, "")
     assert room.simulator.world.now_ns == 60_000_000
     room.simulator.pause(False)
-    assert room.told("step_simulation") == (FAILED, "the world is running: pause it first")
+    assert room.told("step_simulation") == (FAILED, "the simulation is running: pause it first")
     room.simulator.pause(True)
     assert room.told("step_simulation", steps=100_001)[0] == FAILED
     assert room.simulator.world.now_ns == 60_000_000
@@ -163,7 +163,7 @@ def test_entities_are_listed_by_name_and_category(room):
 def test_an_entity_has_a_category(room):
     assert room("get_entity_info", entity="crate").info.category.category == DYNAMIC_OBJECT
     code, reason = room.told("get_entity_info", entity="crat")
-    assert (code, reason) == (NOT_FOUND, "nothing here is called 'crat', expected 'crate' (one of thymio, crate)")
+    assert (code, reason) == (NOT_FOUND, "found unknown name 'crat', expected 'crate' (one of thymio, crate)")
 
 
 def test_a_state_is_the_truth_in_the_world_s_frame(room):
@@ -189,11 +189,11 @@ def _forward():
 @pytest.mark.parametrize(
     ("entity", "wanted", "code", "reason"),
     [
-        ("nobody", state(), NOT_FOUND, "nothing here is called 'nobody'"),
+        ("nobody", state(), NOT_FOUND, "found unknown name 'nobody'"),
         ("crate", state(0.0, 0.5), 101, "'crate' cannot stand at 0.000, 0.500 m: 'post' is in its way"),
         ("crate", state(math.nan), 101, "the pose has a value that is not finite"),
-        ("crate", state(frame="odom"), UNSUPPORTED, "frame 'odom' found, expected 'map'"),
-        ("thymio", state(twist=Twist(linear=Vector3(x=1.0))), UNSUPPORTED, "speeds found"),
+        ("crate", state(frame="odom"), UNSUPPORTED, "found frame 'odom', expected 'map'"),
+        ("thymio", state(twist=Twist(linear=Vector3(x=1.0))), UNSUPPORTED, "found velocities"),
     ],
 )
 def test_a_state_that_cannot_be_is_refused(room, entity, wanted, code, reason):

@@ -1,7 +1,7 @@
-"""How services of the package simulation_interfaces answer: a code, and a sentence where it is not OK.
+"""Responses of simulation_interfaces services: a result code, and a message where it is not OK.
 
-The package is optional (docs/spec/ros-interface.md sections 5 and 7), so its types are asked for by name: one that an
-older version lacks is not offered.
+The package is optional (docs/spec/ros-interface.md sections 5 and 7), so its types are looked up by name; a service
+whose type is missing in an older version is not offered.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ __all__ = [
 ]
 
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)
-"""Result codes of all services (docs/spec/ros-interface.md section 7); those of single services begin at 101."""
+"""Result codes of all services (docs/spec/ros-interface.md section 7); codes of individual services begin at 101."""
 
 WORLD_FRAMES = ("", "world", MAP_FRAME)
-"""What a pose in the world's frame may call it, besides the name that the user gave it."""
+"""Names of the world frame that are accepted in addition to the configured one."""
 
 Act = Callable[[Any, Any], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """One service below `~/`: its type's name, the features that it is, what it does and how."""
+    """One service below `~/`: name, type, features that it provides, description."""
 
     name: str
     type: str
@@ -45,7 +45,7 @@ class Offer:
 
 
 class RefusedError(ThymioSimError):
-    """A request that is not done: the code and the reason."""
+    """A rejected request, with result code and reason."""
 
     def __init__(self, code: int, reason: str) -> None:
         super().__init__(reason)
@@ -53,7 +53,7 @@ class RefusedError(ThymioSimError):
 
 
 def answering(act: Act) -> Callable[[Any, Any], Any]:
-    """A service's callback: `act` fills the response or raises RefusedError."""
+    """Return a service callback; `act` fills the response or raises RefusedError."""
 
     def answer(request: Any, response: Any) -> Any:
         response.result.result = OK
@@ -67,6 +67,6 @@ def answering(act: Act) -> Callable[[Any, Any], Any]:
 
 
 def resource(request: Any, field: str) -> tuple[str, str]:
-    """URI and text of a request; from version 2 on they are in a field of their own."""
+    """Return URI and text of a request; from version 2 on they are in a separate field."""
     holder = getattr(request, field, request)
     return holder.uri, holder.resource_string

@@ -1,4 +1,4 @@
-"""Robots, movable things and doors by the services of simulation_interfaces: listed, placed, spawned, deleted."""
+"""Entity services of simulation_interfaces: list, place, spawn and delete robots, objects and doors."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     RefusedError,
     resource,
 )
-from thymio_sim_ros.ros.simulator.world_services import Controlled
+from thymio_sim_ros.ros.simulator.world_services import SimulatorControl
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
@@ -29,22 +29,22 @@ from thymio_sim_ros.sim.playground.reader import RobotStart
 __all__ = ["SPAWNABLE", "Entities"]
 
 SPAWNABLE = "thymio"
-"""The one kind of robot that there is, as a URI."""
+"""URI of the only kind of robot."""
 ROBOT, DYNAMIC_OBJECT = 1, 4
-"""EntityCategory: what drives, and what is moved."""
+"""Values of EntityCategory."""
 NAME_NOT_UNIQUE, NAME_INVALID, UNSUPPORTED_FORMAT, NO_RESOURCE, NAMESPACE_INVALID = range(101, 106)
 SPAWN_POSE_INVALID, STATE_POSE_INVALID, SOME_FAILED = 109, 101, 150
 
 
 class Entities:
-    """What acts on entities; `messages` is the module `simulation_interfaces.msg`."""
+    """The services on entities; `messages` is the module `simulation_interfaces.msg`."""
 
-    def __init__(self, simulator: Controlled, messages: Any) -> None:
+    def __init__(self, simulator: SimulatorControl, messages: Any) -> None:
         self._simulator, self._messages = simulator, messages
 
     @property
     def acts(self) -> Mapping[str, Act]:
-        """What each service does."""
+        """Handlers by service name."""
         return {
             "get_entities": self._list,
             "get_entity_info": self._describe,
@@ -58,7 +58,7 @@ class Entities:
         }
 
     def _categories(self) -> dict[str, int]:
-        """All entities by name: robots, then things."""
+        """Return the category of all entities by name: robots, then objects and doors."""
         world = self._simulator.world
         return dict.fromkeys(world.robots, ROBOT) | {thing.name: DYNAMIC_OBJECT for thing in world.objects}
 
@@ -66,14 +66,14 @@ class Entities:
         categories = self._categories()
         if name not in categories:
             expected = fields.nearest(name, tuple(categories))
-            raise RefusedError(NOT_FOUND, f"nothing here is called '{name}', expected {expected}")
+            raise RefusedError(NOT_FOUND, f"found unknown name '{name}', expected {expected}")
         return categories[name]
 
     def _matching(self, filters: Any) -> Iterator[str]:
         if filters.tags.tags:
-            raise RefusedError(UNSUPPORTED, "tags found: entities have none here")
+            raise RefusedError(UNSUPPORTED, "found tags: entities have no tags here")
         if filters.bounds.type:
-            raise RefusedError(UNSUPPORTED, "bounds found: entities are not filtered by place here")
+            raise RefusedError(UNSUPPORTED, "found bounds: filtering by position is not supported")
         try:
             pattern = re.compile(filters.filter)
         except re.error as error:
@@ -88,7 +88,7 @@ class Entities:
 
     def _describe(self, request: Any, response: Any) -> None:
         response.info.category.category = category = self._known(request.entity)
-        response.info.description = "a Thymio II" if category == ROBOT else "a thing that moves or is moved"
+        response.info.description = "a Thymio II" if category == ROBOT else "an object or a door"
 
     def _get_state(self, request: Any, response: Any) -> None:
         self._known(request.entity)
@@ -99,7 +99,7 @@ class Entities:
         response.states = [self._state(name) for name in response.entities]
 
     def _state(self, name: str) -> Any:
-        """Truth in the world's frame; speeds of things are not known."""
+        """Return the true state in the world frame; velocities of objects are not available."""
         world, state = self._simulator.world, self._messages.EntityState()
         state.header.stamp, state.header.frame_id = stamp(world.now_ns), self._simulator.map_frame
         robot = world.robots.get(name)
@@ -116,9 +116,9 @@ class Entities:
         return state
 
     def _place(self, header: Any, pose: Any, code: int) -> tuple[float, float, float]:
-        """x, y and yaw of a pose in the world's frame; a refusal with `code` for one that is none."""
+        """Return x, y and yaw of a pose in the world frame. Raises RefusedError, with `code` for non-finite values."""
         if header.frame_id not in (*WORLD_FRAMES, self._simulator.map_frame):
-            raise RefusedError(UNSUPPORTED, f"frame '{header.frame_id}' found, expected '{self._simulator.map_frame}'")
+            raise RefusedError(UNSUPPORTED, f"found frame '{header.frame_id}', expected '{self._simulator.map_frame}'")
         place = (pose.position.x, pose.position.y, convert_readings.yaw_of(pose.orientation))
         if not all(map(math.isfinite, place)):
             raise RefusedError(code, "the pose has a value that is not finite")
@@ -129,12 +129,12 @@ class Entities:
         category = self._known(name)
         speeds = [state.twist.linear, state.twist.angular, state.acceleration.linear, state.acceleration.angular]
         if any(value for vector in speeds for value in (vector.x, vector.y, vector.z)):
-            raise RefusedError(UNSUPPORTED, "speeds found: only poses can be set, wheels do the rest")
+            raise RefusedError(UNSUPPORTED, "found velocities: only poses can be set")
         if not getattr(request, "set_pose", True):
             return
         place = self._place(state.header, state.pose, STATE_POSE_INVALID)
         if category != ROBOT and name not in world.movables:
-            raise RefusedError(FAILED, f"'{name}' is a door: it opens by its own rules")
+            raise RefusedError(FAILED, f"'{name}' is a door: it cannot be moved")
         try:
             world.post(name, MoveRobot(*place) if category == ROBOT else MoveObject(*place))
         except PlacementError as error:
@@ -148,14 +148,15 @@ class Entities:
     def _spawn(self, request: Any, response: Any) -> None:
         uri, text = resource(request, "entity_resource")
         if not uri:
-            given = (UNSUPPORTED_FORMAT, "a text found") if text else (NO_RESOURCE, "no resource found")
+            given = (UNSUPPORTED_FORMAT, "found a text") if text else (NO_RESOURCE, "found no resource")
             raise RefusedError(given[0], f"{given[1]}, expected the URI '{SPAWNABLE}'")
         if uri != SPAWNABLE:
-            raise RefusedError(UNSUPPORTED_FORMAT, f"'{uri}' found, expected the URI '{SPAWNABLE}'")
+            raise RefusedError(UNSUPPORTED_FORMAT, f"found '{uri}', expected the URI '{SPAWNABLE}'")
         name = self._name(request.name, request.allow_renaming)
         if request.entity_namespace.strip("/") not in ("", name):
             raise RefusedError(
-                NAMESPACE_INVALID, f"'{request.entity_namespace}' found: a robot's namespace is its name"
+                NAMESPACE_INVALID,
+                f"found namespace '{request.entity_namespace}', expected none or the name of the robot",
             )
         header, pose = request.initial_pose.header, request.initial_pose.pose
         x, y, yaw = self._place(header, pose, SPAWN_POSE_INVALID)
@@ -169,13 +170,13 @@ class Entities:
         except ValueError as error:
             raise RefusedError(NAME_NOT_UNIQUE, str(error)) from error
         response.entity_name = name
-        self._simulator.follow()
+        self._simulator.update_robots()
 
     def _name(self, wanted: str, allow_renaming: bool) -> str:
-        """The name wanted, or, where another is allowed, the first with a number behind it that is free."""
+        """Return the requested name or, if renaming is allowed and it is taken, the first free one with a number."""
         taken = self._categories()
         if not wanted and not allow_renaming:
-            raise RefusedError(NAME_INVALID, "no name found, and renaming is not allowed")
+            raise RefusedError(NAME_INVALID, "found no name, and renaming is not allowed")
         if wanted and (wanted not in taken or not allow_renaming):
             return wanted
         numbers = range(1 if not wanted else 2, len(taken) + 3)
@@ -198,4 +199,4 @@ class Entities:
         if self._known(request.entity) != ROBOT:
             raise RefusedError(FAILED, f"'{request.entity}' belongs to the playground: only robots can be deleted")
         self._simulator.world.remove(request.entity)
-        self._simulator.follow()
+        self._simulator.update_robots()

@@ -1,8 +1,7 @@
-"""The services of the package simulation_interfaces on the simulator's node, where that package is installed.
+"""The services of the package simulation_interfaces on the node of the simulator, if that package is installed.
 
-They are those that other simulators of ROS have, too (docs/spec/ros-interface.md sections 5 and 7): tools that know
-them pause, step, reset, spawn and load here as there. What they do, `~/pause` and the others do as well, with standard
-types.
+Other ROS simulators offer them too (docs/spec/ros-interface.md sections 5 and 7), so their tools can pause, step,
+reset, spawn and load here as well. `~/pause` and the other world services do the same with standard types.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     resource,
 )
 from thymio_sim_ros.ros.simulator.simulation_interfaces.entities import SPAWNABLE, Entities
-from thymio_sim_ros.ros.simulator.world_services import STOPPED_BY_ITSELF, Controlled, presently
+from thymio_sim_ros.ros.simulator.world_services import WORLD_STOPPED, SimulatorControl, at_current_tick
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
@@ -38,25 +37,25 @@ OFFERS = (
         "set_simulation_state",
         "SetSimulationState",
         ("SIMULATION_STATE_SETTING", "SIMULATION_STATE_PAUSE"),
-        "playing, paused, or stopped, which resets; quitting is refused",
+        "playing, paused, or stopped, which resets; quitting is rejected",
     ),
     Offer(
         "step_simulation",
         "StepSimulation",
         ("STEP_SIMULATION_SINGLE", "STEP_SIMULATION_MULTIPLE"),
-        "ticks of 10 ms, at most 100000; refused unless paused",
+        "execute ticks of 10 ms, at most 100000; rejected unless paused",
     ),
     Offer(
         "reset_simulation",
         "ResetSimulation",
         ("SIMULATION_RESET", "SIMULATION_RESET_TIME", "SIMULATION_RESET_STATE", "SIMULATION_RESET_SPAWNED"),
-        "everything as at the start; scopes only all together",
+        "reset everything; scopes cannot be reset separately",
     ),
-    Offer("get_entities", "GetEntities", ("ENTITY_CATEGORIES",), "robots, movable things, doors; by name and category"),
+    Offer("get_entities", "GetEntities", ("ENTITY_CATEGORIES",), "robots, objects, doors; by name and category"),
     Offer("get_entity_info", "GetEntityInfo", ("ENTITY_INFO_GETTING",), "robot or object"),
-    Offer("get_entity_state", "GetEntityState", ("ENTITY_STATE_GETTING",), "true pose and speed in the world's frame"),
-    Offer("get_entities_states", "GetEntitiesStates", (), "the same of several"),
-    Offer("set_entity_state", "SetEntityState", ("ENTITY_STATE_SETTING",), "its pose; speeds are refused"),
+    Offer("get_entity_state", "GetEntityState", ("ENTITY_STATE_GETTING",), "true pose and velocity in the world frame"),
+    Offer("get_entities_states", "GetEntitiesStates", (), "states of several entities"),
+    Offer("set_entity_state", "SetEntityState", ("ENTITY_STATE_SETTING",), "set the pose; velocities are rejected"),
     Offer("get_spawnables", "GetSpawnables", ("SPAWNABLES",), f"`{SPAWNABLE}`"),
     Offer("spawn_entity", "SpawnEntity", ("SPAWNING",), f"a robot; its URI is `{SPAWNABLE}`, its namespace its name"),
     Offer("spawn_entities", "SpawnEntities", ("SPAWNING_ENTITIES",), "several, each with a result"),
@@ -66,28 +65,28 @@ OFFERS = (
         "load_world",
         "LoadWorld",
         ("WORLD_LOADING", "WORLD_RESOURCE_STRING"),
-        "a playground by name, path or text; stopped then",
+        "load a playground by name, path or text; stopped afterwards",
     ),
-    Offer("get_current_world", "GetCurrentWorld", ("WORLD_INFO_GETTING",), "the playground"),
+    Offer("get_current_world", "GetCurrentWorld", ("WORLD_INFO_GETTING",), "the current playground"),
 )
-"""Every service; one whose type an older version of the package lacks is left out."""
+"""All services; those whose type is missing in an older version of the package are not offered."""
 
-STEPS = Offer("simulate_steps", "SimulateSteps", ("STEP_SIMULATION_ACTION",), "an action: ticks with feedback on each")
+STEPS = Offer("simulate_steps", "SimulateSteps", ("STEP_SIMULATION_ACTION",), "action: ticks, with feedback after each")
 
 STOPPED, PLAYING, PAUSED = range(3)
 """SimulationState (docs/spec/ros-interface.md section 7)."""
 _STATES = ("stopped", "playing", "paused")
 ALREADY, INCORRECT_TRANSITION = 101, 103
-MOST_STEPS = 100_000
+MAX_STEPS = 100_000
 EVERYTHING = (0, 7, 255)
-"""Scopes of a reset: none named, each named, all."""
+"""Accepted scopes of a reset: none, all flags, all."""
 NO_RESOURCE, PARSE_ERROR = 102, 103
 
 
 class SimInterfaces:
-    """The services; `interfaces` has the package's modules `msg` and `srv`, and `action` if actions are wanted."""
+    """The services; `interfaces` has the modules `msg`, `srv` and optionally `action` of the package."""
 
-    def __init__(self, node: Node, simulator: Controlled, interfaces: Any) -> None:
+    def __init__(self, node: Node, simulator: SimulatorControl, interfaces: Any) -> None:
         self._node, self._simulator, self._messages = node, simulator, interfaces.msg
         acts = {**self._acts, **Entities(simulator, interfaces.msg).acts}
         offers = [offer for offer in OFFERS if hasattr(interfaces.srv, offer.type)]
@@ -95,17 +94,19 @@ class SimInterfaces:
         for offer in offers:
             answer = self._get_features if offer.name == "get_simulator_features" else answering(acts[offer.name])
             kind = getattr(interfaces.srv, offer.type)
-            node.create_service(kind, f"~/{offer.name}", presently(simulator, answer))
+            node.create_service(kind, f"~/{offer.name}", at_current_tick(simulator, answer))
         self._close: Callable[[], None] = lambda: None
         actions = getattr(interfaces, "action", None)
         if actions is not None:
-            from thymio_sim_ros.ros.simulator.simulation_interfaces.steps import StepsAction  # loads what actions need
+            from thymio_sim_ros.ros.simulator.simulation_interfaces.steps import (
+                StepsAction,
+            )  # imports the action support of rclpy
 
             self._features += STEPS.features
             self._close = StepsAction(node, simulator, actions.SimulateSteps).close
 
     def close(self) -> None:
-        """End what the node does not end by itself."""
+        """Close the action server, which the node does not destroy itself."""
         self._close()
 
     @property
@@ -141,7 +142,7 @@ class SimInterfaces:
     def _set_state(self, request: Any, _response: Any) -> None:
         wanted, now = request.state.state, self._state
         if wanted not in (STOPPED, PLAYING, PAUSED):
-            raise RefusedError(UNSUPPORTED, f"state {wanted} found, expected stopped, playing or paused")
+            raise RefusedError(UNSUPPORTED, f"found state {wanted}, expected stopped, playing or paused")
         if wanted == now:
             raise RefusedError(ALREADY, f"the simulation is {_STATES[now]} already")
         if (now, wanted) == (STOPPED, PAUSED):
@@ -154,18 +155,18 @@ class SimInterfaces:
 
     def _step(self, request: Any, _response: Any) -> None:
         if not self._simulator.paused:
-            raise RefusedError(FAILED, "the world is running: pause it first")
-        if request.steps > MOST_STEPS:
+            raise RefusedError(FAILED, "the simulation is running: pause it first")
+        if request.steps > MAX_STEPS:
             raise RefusedError(
-                FAILED, f"{request.steps} steps found, expected at most {MOST_STEPS}; more by the action"
+                FAILED, f"found {request.steps} steps, expected at most {MAX_STEPS}; use the action for more"
             )
         if not self._simulator.step(request.steps):
-            raise RefusedError(FAILED, STOPPED_BY_ITSELF)
+            raise RefusedError(FAILED, WORLD_STOPPED)
 
     def _reset(self, request: Any, _response: Any) -> None:
         if request.scope not in EVERYTHING:
             raise RefusedError(
-                UNSUPPORTED, f"scope {request.scope} found, expected 0 or 255: time, state and robots at once"
+                UNSUPPORTED, f"found scope {request.scope}, expected 0 or 255: time, state and robots together"
             )
         self._simulator.reset()
 
@@ -178,11 +179,11 @@ class SimInterfaces:
 
     def _list_worlds(self, request: Any, response: Any) -> None:
         if request.filter.tags:
-            raise RefusedError(UNSUPPORTED, "tags found: worlds have none here")
+            raise RefusedError(UNSUPPORTED, "found tags: worlds have no tags here")
         for name, path in resources.playgrounds().items():
             try:
                 about = playgrounds.headline(path).description
-            except PlaygroundError:  # the simulator has told it in its log at the start
+            except PlaygroundError:  # already logged at the start
                 continue
             response.worlds.append(self._world(name, name, about=about))
         if request.additional_sources:
@@ -191,7 +192,7 @@ class SimInterfaces:
     def _load_world(self, request: Any, response: Any) -> None:
         uri, text = resource(request, "world_resource")
         if not uri and not text:
-            raise RefusedError(NO_RESOURCE, "no resource found, expected the name, path or text of a playground")
+            raise RefusedError(NO_RESOURCE, "found no resource, expected the name, path or text of a playground")
         reason = self._simulator.load(uri or text)
         if reason:
             raise RefusedError(PARSE_ERROR, reason)
@@ -204,17 +205,17 @@ class SimInterfaces:
         response.world = self._world(name, value if is_name else "", "" if is_name else value)
 
 
-def offered(node: Node, simulator: Controlled) -> SimInterfaces | None:
-    """The services, where the package is installed; one that cannot be loaded is told once."""
+def offered(node: Node, simulator: SimulatorControl) -> SimInterfaces | None:
+    """Create the services if the package is installed; a package that cannot be imported is logged."""
     try:
         import simulation_interfaces.action
         import simulation_interfaces.msg
         import simulation_interfaces.srv
     except ModuleNotFoundError as error:
         if error.name != PACKAGE:
-            node.get_logger().warning(f"{PACKAGE} is left out: {error}")
+            node.get_logger().warning(f"{PACKAGE} cannot be used: {error}")
         return None
     except ImportError as error:
-        node.get_logger().warning(f"{PACKAGE} is left out: {error}")
+        node.get_logger().warning(f"{PACKAGE} cannot be used: {error}")
         return None
     return SimInterfaces(node, simulator, simulation_interfaces)
