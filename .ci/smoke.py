@@ -89,7 +89,7 @@ async def see_it_move(port: int) -> None:
 
 
 def position_x(cdr: bytes) -> float:
-    """pose.pose.position.x of a serialised nav_msgs/Odometry."""
+    """pose.pose.position.x of a serialized nav_msgs/Odometry."""
     offset = 4 + 8
     for _ in range(2):
         offset += -(offset - 4) % 4

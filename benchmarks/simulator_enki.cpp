@@ -21,9 +21,9 @@ int main() {
     std::cin >> side >> size;
     std::vector<uint32_t> texels(size * size);
     for (auto& texel : texels) {
-        unsigned grey;
-        std::cin >> grey;
-        texel = 0xFF000000u | grey << 16 | grey << 8 | grey;
+        unsigned gray;
+        std::cin >> gray;
+        texel = 0xFF000000u | gray << 16 | gray << 8 | gray;
     }
     Enki::World world(side, side, Enki::Color::gray, Enki::World::GroundTexture(size, size, texels.data()));
     world.setRandomSeed(1);

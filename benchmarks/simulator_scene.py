@@ -1,6 +1,6 @@
 """The scene on which simulators are compared: a crowd in a walled square, boxes, lines on the ground, commands.
 
-0.36 m² for each robot, a box for every second one, half of them movable, black lines on a grey ground. New targets
+0.36 m² for each robot, a box for every second one, half of them movable, black lines on a gray ground. New targets
 between -100 and 500 come from a generator that the driver of Enki has too.
 """
 

@@ -62,7 +62,7 @@ def is_silent(runner: Runner) -> bool:
 
 
 def gap(runner: Runner, one: str, other: str) -> float:
-    """Metres between the middles of two robots."""
+    """Meters between the middles of two robots."""
     a, b = (runner.world.robots[name].pose for name in (one, other))
     return math.hypot(a.x_m - b.x_m, a.y_m - b.y_m)
 
@@ -290,12 +290,12 @@ def test_two_friendly_robots_find_each_other_and_dance() -> None:
     playground = hall({"anna": (-0.2, 0.0, 0.0), "bert": (0.2, 0.0, math.pi)})
     runner = Runner(playground, behaviour="friendly")
     assert runner.until(lambda: runner.devices["anna"].get_variable("friend")[0] > 0, 10.0)
-    colours = {(top(runner, "anna"), top(runner, "bert"))}
+    colors = {(top(runner, "anna"), top(runner, "bert"))}
     for _ in range(500):
         runner.step()
-        colours.add((top(runner, "anna"), top(runner, "bert")))
-    assert any(red and green for (red, green, _), _ in colours)
-    assert any(green and blue for _, (_, green, blue) in colours)
+        colors.add((top(runner, "anna"), top(runner, "bert")))
+    assert any(red and green for (red, green, _), _ in colors)
+    assert any(green and blue for _, (_, green, blue) in colors)
     assert gap(runner, "anna", "bert") < 0.25
     assert runner.devices["anna"].get_variable("prox.comm.tx") == (2,)
 
@@ -346,8 +346,8 @@ def test_attentive_counts_claps() -> None:
         clap(runner, claps)
         seen.append(targets(runner))
     assert seen == [(80, 80), (80, -80), (80, 80), (0, 0), (80, 0)]
-    colours = {top(runner) for _ in range(120) if runner.step()}
-    assert any(red > 0 for red, _, _ in colours)
+    colors = {top(runner) for _ in range(120) if runner.step()}
+    assert any(red > 0 for red, _, _ in colors)
     runner.run(2.0)
     assert all(red == green == 0 for red, green, _ in (top(runner) for _ in range(100) if runner.step()))
 
@@ -383,8 +383,8 @@ def test_fearful_cries_and_blinks_while_it_falls() -> None:
     runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
     runner.post(ROBOT, MoveRobot(5.0, 5.0, 0.0))
     assert runner.until(lambda: runner.devices[ROBOT].get_variable("falling") == (1,), 0.3)
-    colours = {top(runner) for _ in range(20) if runner.step()}
-    assert colours >= {(0, 0, 0), (32, 0, 0)}
+    colors = {top(runner) for _ in range(20) if runner.step()}
+    assert colors >= {(0, 0, 0), (32, 0, 0)}
     assert not is_silent(runner)
     assert runner.until(lambda: runner.devices[ROBOT].get_variable("falling") == (0,), 1.0)
     assert runner.until(lambda: is_silent(runner), 0.5)

@@ -142,16 +142,16 @@ def test_the_soft_line_gets_steadily_brighter_to_both_sides() -> None:
     assert [type(mark) for mark in world.paints] == [Print]
     ground = Ground(world.floors, world.paints)
     for side in (1, -1):
-        greys = [ground.sample(0.0, -0.38 + side * step * 0.005).reflectance for step in range(2, 13)]
-        assert greys == sorted(greys)
-        assert (greys[0] < 0.2, greys[-1] > 0.95) == (True, True)
+        grays = [ground.sample(0.0, -0.38 + side * step * 0.005).reflectance for step in range(2, 13)]
+        assert grays == sorted(grays)
+        assert (grays[0] < 0.2, grays[-1] > 0.95) == (True, True)
 
 
 def test_calibration_has_eleven_greys_in_equal_steps() -> None:
     world = loaded("calibration")
     ground = Ground(world.floors, world.paints)
-    greys = [ground.sample(-0.5 + 0.1 * step, 0.25).reflectance for step in range(11)]
-    assert greys == pytest.approx([step / 10 for step in range(11)], abs=0.002)
+    grays = [ground.sample(-0.5 + 0.1 * step, 0.25).reflectance for step in range(11)]
+    assert grays == pytest.approx([step / 10 for step in range(11)], abs=0.002)
 
 
 def test_calibration_has_six_colors_and_stripes_of_known_width() -> None:

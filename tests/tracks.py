@@ -9,7 +9,7 @@ from thymio_sim_ros.testing.line_following import SENSOR_CENTER, TrackLine
 
 
 def distance_to(points: list[Point], point: Point) -> float:
-    """Distance in metres from a closed line through these points."""
+    """Distance in meters from a closed line through these points."""
     return TrackLine(points, closed=True).distance(point)
 
 

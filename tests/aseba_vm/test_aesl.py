@@ -198,12 +198,12 @@ KEPT = """<?xml version="1.0"?>
 <!-- before --><network version='2'>
 <?other tool?>
 <unknown a="b"><event size="1" name="no"/></unknown> text
-<event name = 'ping' colour="red" size='01'></event><!-- ping -->
+<event name = 'ping' color="red" size='01'></event><!-- ping -->
 \t<event size="2" name="pong"/>
 
 <constant name="A&#x42;" value=" 7 "/>
 <keywords flag="true" />
-<node name="thymio-II" nodeId="1" colour='blue'><![CDATA[a < b]]><!-- c --> &#38; d
+<node name="thymio-II" nodeId="1" color='blue'><![CDATA[a < b]]><!-- c --> &#38; d
 <mystery/><toolsPlugins version="3">
 <ThymioBlockly >
 <xml a='1'>  </xml></ThymioBlockly></toolsPlugins>

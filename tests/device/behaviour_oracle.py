@@ -80,7 +80,7 @@ class Pulse:
 
 
 class Rainbow:
-    """Section 1: three colours of the body."""
+    """Section 1: three colors of the body."""
 
     def __init__(self) -> None:
         self.index = 0
@@ -189,7 +189,7 @@ class Friendly(Cruising):
             self.drive(self.speed, self.speed)
         else:
             self.drive(0, 0)
-        self.colours()
+        self.colors()
         self.ground_safety(senses)
         self.friend = max(0, self.friend - 1)
 
@@ -214,7 +214,7 @@ class Friendly(Cruising):
             if rx in (1, 2, 3) and k == 2:
                 self.friend = 6
 
-    def colours(self) -> None:
+    def colors(self) -> None:
         level = self.pulse.next()
         self.s += self.s_step
         if self.s in (0, 31):

@@ -195,8 +195,8 @@ def test_a_program_reads_every_variable_that_is_there_to_be_read():
     for name, value in expected.items():
         seen[name], words = words[: len(value)], words[len(value) :]
     assert seen == expected
-    _, left, centre, right, *_ = seen["prox.comm.rx._intensities"]
-    assert centre > left > right >= 1400  # the robot has begun to turn right
+    _, left, center, right, *_ = seen["prox.comm.rx._intensities"]
+    assert center > left > right >= 1400  # the robot has begun to turn right
 
 
 def test_what_stays_the_same_is_read_again_after_a_reset():

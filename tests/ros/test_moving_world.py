@@ -16,17 +16,17 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.sim.commands import MoveObject
 from thymio_sim_ros.sim.playground.reader import RobotStart
 
-GREY = "#808080"
+GRAY = "#808080"
 PUSHING = json.dumps(
     {
         "format": 1,
         "title": "Pushing",
         "shapes": [
             {"kind": "rectangle", "name": "ground", "size_x_m": 2.0, "size_y_m": 2.0, "color": "#ffffff"},
-            {"kind": "cylinder", "name": "can", "x_m": 0.15, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "color": GREY,
+            {"kind": "cylinder", "name": "can", "x_m": 0.15, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "color": GRAY,
              "mass_kg": 0.1},
             {"kind": "cylinder", "name": "post", "x_m": 0, "y_m": 0.5, "radius_m": 0.03, "height_m": 0.1,
-             "color": GREY},
+             "color": GRAY},
         ],
         "robots": [{"name": "thymio", "x_m": 0.0, "y_m": 0.0}],
     }

@@ -18,7 +18,7 @@ from thymio_sim_ros.sim.world import StepResult, World
 REPOSITORY = Path(__file__).parents[2]
 PLAYGROUNDS = REPOSITORY / "playgrounds"
 
-GREY = "#808080"
+GRAY = "#808080"
 FLOOR = {"kind": "rectangle", "name": "floor", "size_x_m": 4.0, "size_y_m": 4.0, "color": "#ffffff"}
 ROBOT = {"name": "thymio", "x_m": 0.0, "y_m": 0.0}
 
@@ -51,10 +51,10 @@ def readings(steps: Sequence[StepResult], sensor: str) -> list[Any]:
 def box(
     x_m: float, y_m: float, size_x_m: float, size_y_m: float, *, yaw_rad: float = 0.0, height_m: float = 0.1
 ) -> dict[str, Any]:
-    """A grey box."""
+    """A gray box."""
     return {
         "kind": "box", "x_m": x_m, "y_m": y_m, "yaw_rad": yaw_rad,
-        "size_x_m": size_x_m, "size_y_m": size_y_m, "height_m": height_m, "color": GREY,
+        "size_x_m": size_x_m, "size_y_m": size_y_m, "height_m": height_m, "color": GRAY,
     }  # fmt: skip
 
 

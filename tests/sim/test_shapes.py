@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import GREY, make
+from tests.sim.builders import GRAY, make
 from tests.sim.images import BLACK, WHITE, png_uri
 from thymio_sim_ros.sim.model.geometry import Point, Pose, is_convex
 from thymio_sim_ros.sim.model.primitives import Box, Disc, Load, Print, Slide, Solid
@@ -15,19 +15,19 @@ from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.shapes import all_shapes
 
 WALLS = {"height_m": 0.12, "thickness_m": 0.02}
-DOOR = {"closed_x_m": 0, "closed_y_m": 0, "opened_x_m": 0.3, "opened_y_m": 0, "move_s": 2, "color": GREY}
+DOOR = {"closed_x_m": 0, "closed_y_m": 0, "opened_x_m": 0.3, "opened_y_m": 0, "move_s": 2, "color": GRAY}
 BLOCK = {"size_x_m": 0.2, "size_y_m": 0.02}
 KINDS: dict[str, dict[str, Any]] = {
     "activation": {"x_m": 1, "y_m": 2, "door": "gate", "area_m": [[0, 0], [0.2, 0], [0, 0.2]], "yaw_rad": 0.5} | BLOCK,
-    "box": {"x_m": 1, "y_m": 2, "size_x_m": 0.3, "size_y_m": 0.2, "height_m": 0.1, "color": GREY, "yaw_rad": 0.5},
-    "cylinder": {"x_m": 1, "y_m": 2, "radius_m": 0.1, "height_m": 0.1, "color": GREY},
+    "box": {"x_m": 1, "y_m": 2, "size_x_m": 0.3, "size_y_m": 0.2, "height_m": 0.1, "color": GRAY, "yaw_rad": 0.5},
+    "cylinder": {"x_m": 1, "y_m": 2, "radius_m": 0.1, "height_m": 0.1, "color": GRAY},
     "door": {**DOOR, **BLOCK, "height_m": 0.1, "yaw_rad": 0.5},
-    "octagon": {"side_m": 1.0, "color": GREY, "walls": WALLS},
+    "octagon": {"side_m": 1.0, "color": GRAY, "walls": WALLS},
     "picture": {"image": png_uri([[WHITE, BLACK], [BLACK, WHITE]]), "size_x_m": 0.4, "x_m": 1.0, "yaw_rad": 0.5},
-    "rectangle": {"size_x_m": 1.0, "size_y_m": 0.5, "color": GREY, "walls": WALLS},
-    "track": {"points_m": [[0, 0], [1, 0], [1, 1]], "width_m": 0.04, "color": GREY, "corner_radius_m": 0.2},
-    "u_figure": {"unit_m": 0.06, "height_m": 0.12, "color": GREY},
-    "wall": {"start_x_m": 0, "start_y_m": 0, "end_x_m": 1, "end_y_m": 1, "color": GREY},
+    "rectangle": {"size_x_m": 1.0, "size_y_m": 0.5, "color": GRAY, "walls": WALLS},
+    "track": {"points_m": [[0, 0], [1, 0], [1, 1]], "width_m": 0.04, "color": GRAY, "corner_radius_m": 0.2},
+    "u_figure": {"unit_m": 0.06, "height_m": 0.12, "color": GRAY},
+    "wall": {"start_x_m": 0, "start_y_m": 0, "end_x_m": 1, "end_y_m": 1, "color": GRAY},
 }
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, readings, run, send, shipped
+from tests.sim.builders import FLOOR, GRAY, ROBOT, box, make, readings, run, send, shipped
 from thymio_sim_ros.sim.commands import (
     BodyTwist,
     Clap,
@@ -69,7 +69,7 @@ def pushing(seed: int) -> str:
     """Hash of 30 s in which robots push things, open a door, fall, are put back, come and go."""
     gate = {"closed_x_m": 0.0, "closed_y_m": 1.0, "opened_x_m": 0.5, "opened_y_m": 1.0, "move_s": 1.5}
     things = [
-        {"kind": "door", "name": "gate", **gate, "size_x_m": 0.4, "size_y_m": 0.02, "height_m": 0.1, "color": GREY},
+        {"kind": "door", "name": "gate", **gate, "size_x_m": 0.4, "size_y_m": 0.02, "height_m": 0.1, "color": GRAY},
         {"kind": "activation", "x_m": 0.0, "y_m": -1.0, "size_x_m": 0.1, "size_y_m": 0.1, "door": "gate",
          "area_m": [[-1, 0], [1, 0], [1, 2], [-1, 2]]},
         *({**box(-0.6 + 0.3 * index, 0.5, 0.06, 0.06), "name": f"crate_{index}", "mass_kg": 0.05 * (index + 1)}

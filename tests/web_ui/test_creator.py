@@ -362,9 +362,9 @@ def test_a_copy_of_a_shipped_playground_is_edited(suite, page):
 
 def test_a_running_aseba_playground_is_edited(suite, page, tmp_path):
     foreign = tmp_path / "arena.playground"
-    wall = '<wall x="20" y="80" l1="20" l2="4" h="10" color="grey"/>'
+    wall = '<wall x="20" y="80" l1="20" l2="4" h="10" color="gray"/>'
     foreign.write_text(
-        '<aseba-playground><color name="grey" r="0.5" g="0.5" b="0.5"/><world w="100" h="100" color="grey"/>'
+        '<aseba-playground><color name="gray" r="0.5" g="0.5" b="0.5"/><world w="100" h="100" color="gray"/>'
         f'{wall}<robot x="50" y="50"/></aseba-playground>'
     )
     open_page(page, suite("--playground", str(foreign), "--program", "none"))

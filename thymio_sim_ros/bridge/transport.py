@@ -31,8 +31,8 @@ _PIECE = 1 << 13
 class SharedTransport(asyncio.Transport):
     """A transport of the event loop; `try_write`, `write`, `abort` and `get_write_buffer_size` are open to all threads.
 
-    Invariant: bytes leave in the order of the calls. What the kernel does not take waits here; whoever writes next, or
-    the loop when there is room, tries again. With TLS what waits goes to the loop's transport.
+    Invariant: bytes are sent in the order of the calls. Bytes that the kernel does not accept wait here until the next
+    write, or until the loop finds room. With TLS, waiting bytes go to the loop's transport.
     """
 
     def __init__(self, inner: asyncio.Transport, loop: asyncio.AbstractEventLoop) -> None:

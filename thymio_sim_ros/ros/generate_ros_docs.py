@@ -38,7 +38,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """One topic in a table; neighbours that differ in the last word of their name alone become one."""
+    """One topic in a table; neighbors that differ in the last word of their name alone become one."""
 
     topic: str
     type: str
@@ -54,7 +54,7 @@ class _Line:
 
     @property
     def sort(self) -> tuple[str, ...]:
-        """What neighbours share."""
+        """What neighbors share."""
         word = self.topic.rpartition("/")[2]
         frame = self.frame.replace(f"_{word}_", "_…_")
         return (self.place, self.type, self.rate, frame, self.profile, self.about)
@@ -111,10 +111,14 @@ def own_sensors() -> tuple[Sensor, ...]:
     return tuple(sensor for sensor in all_sensors() if sensor.name in ours)
 
 
+CELL_BAR = "\\|"
+"""A bar inside a cell of a Markdown table."""
+
+
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A table of Markdown, and an empty line."""
     lines = [heads, ["---"] * len(heads), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    return "".join(f"| {' | '.join(cell.replace('|', CELL_BAR) for cell in line)} |\n" for line in lines)
 
 
 def _published() -> Iterator[_Line]:

@@ -211,7 +211,7 @@ class Thymio:
         self.post(MoveRobot(x_m, y_m, yaw_rad))
 
     def draw(self, color: str = "#000000", width_m: float = 0.003) -> None:
-        """Put a pen of a colour '#rrggbb' into it: from now on it draws where it goes."""
+        """Put a pen of a color '#rrggbb' into it: from now on it draws where it goes."""
         self.post(SetPen(down=True, color=as_color(color), width_m=width_m, erase=False))
 
     def lift_pen(self) -> None:

@@ -275,7 +275,7 @@ def test_the_listing_shows_lines_names_and_use(file, capsys):
 
 
 def test_formatting_changes_nothing_else_in_a_file(file):
-    text = AESL.format(code="1").replace("<event", "<!-- kept -->\r\n<event colour='red'").replace("\n", "\r\n")
+    text = AESL.format(code="1").replace("<event", "<!-- kept -->\r\n<event color='red'").replace("\n", "\r\n")
     path = pathlib.Path(file("", "robot.aesl"))
     path.write_bytes(codecs.BOM_UTF8 + text.encode())
     assert main(["fmt", "--write", str(path)]) == 0

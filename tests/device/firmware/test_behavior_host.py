@@ -14,7 +14,7 @@ from thymio_sim_ros.device.programs.program import ProgramError, load_program
 
 OWN = load_program("motor.left.target = 100\nonevent button.center\ncall leds.top(1, 2, 3)", "own.aesl")
 
-COLOURS = {
+COLORS = {
     "friendly": (0, 32, 0),
     "explorer": (32, 32, 0),
     "fearful": (32, 0, 0),
@@ -37,30 +37,30 @@ def test_right_and_forward_lead_round_through_all_entries(arrow):
         robot.touch(arrow)
         shown.append(robot.top)
     order = ["friendly", "explorer", "fearful", "attentive", "investigator", "obedient", "friendly"]
-    assert shown == [COLOURS[name] for name in order]
+    assert shown == [COLORS[name] for name in order]
 
 
 @pytest.mark.parametrize("arrow", ["left", "backward"])
 def test_left_and_backward_lead_the_other_way(arrow):
     robot = HandheldRobot.switched_on(MENU)
     robot.touch(arrow)
-    assert robot.top == COLOURS["obedient"]
+    assert robot.top == COLORS["obedient"]
 
 
 def test_a_held_arrow_moves_on_once():
     robot = HandheldRobot.switched_on(MENU)
     robot.touch("right", ticks=60)
-    assert robot.top == COLOURS["explorer"]
+    assert robot.top == COLORS["explorer"]
 
 
 def test_a_user_s_program_is_the_first_entry_and_black():
     robot = HandheldRobot.switched_on(MENU, OWN)
-    assert robot.top == COLOURS["program"]
+    assert robot.top == COLORS["program"]
     robot.touch("right")
-    assert robot.top == COLOURS["friendly"]
+    assert robot.top == COLORS["friendly"]
     robot.touch("left")
     robot.touch("left")
-    assert robot.top == COLOURS["obedient"]
+    assert robot.top == COLORS["obedient"]
 
 
 def test_the_centre_button_is_not_heard_for_two_seconds():
@@ -86,7 +86,7 @@ def test_the_centre_button_starts_a_behaviour_and_ends_it_again(steps, behaviour
     assert robot.running == behaviour
     robot.touch("center", ticks=30)
     assert robot.running == MENU
-    assert robot.top == COLOURS[behaviour]
+    assert robot.top == COLORS[behaviour]
     assert robot.targets == (0, 0)
     robot.touch("center")
     assert robot.running == behaviour
@@ -119,7 +119,7 @@ def test_a_menu_that_begins_anew_still_has_the_user_s_program(how):
     robot = HandheldRobot.switched_on(MENU, OWN)
     robot.touch("right")
     begun_anew(robot, how)
-    assert robot.top == COLOURS["program"]
+    assert robot.top == COLORS["program"]
     robot.touch("center")
     assert robot.running == "own"
 
@@ -132,7 +132,7 @@ def test_a_robot_that_was_switched_off_in_a_behaviour_is_switched_on_as_at_first
         robot.touch("right")
     robot.touch("center")
     begun_anew(robot, "switched on")
-    assert (robot.running, robot.top) == (MENU, COLOURS["program"])
+    assert (robot.running, robot.top) == (MENU, COLORS["program"])
 
 
 def test_a_robot_with_a_program_from_a_computer_is_switched_on_with_that():
@@ -178,7 +178,7 @@ def test_an_own_program_may_open_the_menu_and_is_shown_there():
     robot.tick()
     robot.touch("left")
     assert robot.running == MENU
-    assert robot.top == COLOURS["program"]
+    assert robot.top == COLORS["program"]
     robot.touch("center")
     assert robot.running == "mine"
 

@@ -51,14 +51,14 @@ def _message(transform: Transform) -> TransformStamped:
 
 
 names = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=20)
-metres = st.floats(allow_nan=False, width=64)
+meters = st.floats(allow_nan=False, width=64)
 transforms = st.builds(
     Transform,
     st.integers(0, 2**31 * 10**9 - 1),
     names,
     names,
-    st.tuples(metres, metres, metres),
-    st.tuples(metres, metres, metres, metres),
+    st.tuples(meters, meters, meters),
+    st.tuples(meters, meters, meters, meters),
 )
 
 

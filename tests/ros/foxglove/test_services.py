@@ -24,7 +24,7 @@ def flip(request, response):
 @pytest.mark.parametrize(
     ("encoding", "request_bytes"),
     [(CDR, serialize_message(SetBool.Request(data=True))), (JSON, b'{"data": true}')],
-    ids=["cdr", "json"],  # the padding of serialised bytes differs from run to run
+    ids=["cdr", "json"],  # the padding of serialized bytes differs from run to run
 )
 def test_a_service_answers(ros, studio, encoding, request_bytes):
     ros.node.create_service(SetBool, "/flip", flip)

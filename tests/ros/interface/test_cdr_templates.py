@@ -19,10 +19,7 @@ from thymio_sim_ros.sim.model import readings
 from thymio_sim_ros.sim.model.geometry import Pose, Tilt, Twist
 
 PATCHED = [
-    (sensor, row)
-    for sensor in generate_ros_docs.own_sensors()
-    for row in sensor_topics.rows_of(sensor)
-    if row.patch
+    (sensor, row) for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.rows_of(sensor) if row.patch
 ]
 
 

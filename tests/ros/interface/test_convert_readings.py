@@ -71,13 +71,13 @@ def test_the_ground_reflects_or_not(count, expected, driver):
     assert encode("ground/right", reading).range == -math.inf
 
 
-@pytest.mark.parametrize(("grey", "side"), [(0.0, "left"), (0.3, "right"), (1.0, "left")])
-def test_the_grey_of_the_ground_is_that_over_which_the_sensor_counts_so(grey, side):
-    count = round(units.ground_response(grey))
+@pytest.mark.parametrize(("gray", "side"), [(0.0, "left"), (0.3, "right"), (1.0, "left")])
+def test_the_grey_of_the_ground_is_that_over_which_the_sensor_counts_so(gray, side):
+    count = round(units.ground_response(gray))
     reading = readings.GroundReading(0, (200, 200, count + 200, count + 200, count, count), (0.9, 0.1))
     message = encode(f"ground/{side}/reflectance", reading)
     assert isinstance(message, Float32)
-    assert message.data == pytest.approx(grey, abs=0.01)
+    assert message.data == pytest.approx(gray, abs=0.01)
 
 
 @pytest.mark.parametrize("count", [-20, 0, 60, 944, 1023])

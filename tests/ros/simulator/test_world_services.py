@@ -15,7 +15,7 @@ from std_srvs.srv import Trigger
 
 from thymio_sim_ros.sim.playground import reader as playgrounds
 
-GREY = "#808080"
+GRAY = "#808080"
 ROOM = json.dumps(
     {
         "format": 1,
@@ -23,9 +23,9 @@ ROOM = json.dumps(
         "shapes": [
             {"kind": "rectangle", "name": "ground", "size_x_m": 2.0, "size_y_m": 2.0, "color": "#ffffff"},
             {"kind": "box", "name": "crate", "x_m": 0.5, "y_m": 0, "size_x_m": 0.1, "size_y_m": 0.1, "height_m": 0.1,
-             "color": GREY, "mass_kg": 0.1},
+             "color": GRAY, "mass_kg": 0.1},
             {"kind": "cylinder", "name": "post", "x_m": 0, "y_m": 0.5, "radius_m": 0.03, "height_m": 0.1,
-             "color": GREY},
+             "color": GRAY},
         ],
         "robots": [{"name": "thymio", "x_m": 0.0, "y_m": 0.0}],
     }

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tests.sim.builders import GREY, make
+from tests.sim.builders import GRAY, make
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.primitives import Disc, Polygon, Solid
@@ -47,7 +47,7 @@ def world_of(scene: Mapping[str, Any], **options: Any) -> World:
     if scene["world"]["kind"] == "square":
         width, height = scene["world"]["width"], scene["world"]["height"]
         place = {"x_m": width / 2, "y_m": height / 2, "size_x_m": width + 0.02, "size_y_m": height + 0.02}
-        shapes.append({"kind": "rectangle", **place, "color": GREY, "walls": {"height_m": 1.0}})
+        shapes.append({"kind": "rectangle", **place, "color": GRAY, "walls": {"height_m": 1.0}})
     shapes += [_thing(thing, f"thing{index}") for index, thing in enumerate(scene["objects"])]
     built = make(shapes, [])
     starts = [
@@ -100,7 +100,7 @@ def _values(world: World) -> Iterator[float]:
 
 def _thing(thing: Mapping[str, Any], name: str) -> dict[str, Any]:
     """A thing of a scene. The reference takes g as 9.81 cm/s² and multiplies elasticities, 0.9 being the robot's."""
-    shape = {"kind": thing["kind"], "name": name, "x_m": thing["x"], "y_m": thing["y"], "color": GREY}
+    shape = {"kind": thing["kind"], "name": name, "x_m": thing["x"], "y_m": thing["y"], "color": GRAY}
     shape["height_m"] = thing["height"]
     if thing["kind"] == "box":
         shape |= {"yaw_rad": thing["theta"], "size_x_m": thing["size_x"], "size_y_m": thing["size_y"]}

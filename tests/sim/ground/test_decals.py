@@ -15,7 +15,7 @@ from thymio_sim_ros.sim.ground.raster import Picture
 from thymio_sim_ros.sim.model.geometry import Point, Pose
 from thymio_sim_ros.sim.model.primitives import Color, Floor, Paint, Print
 
-GREY = (128 / 255,) * 3
+GRAY = (128 / 255,) * 3
 
 
 def area(side: float) -> tuple[Point, ...]:
@@ -23,8 +23,8 @@ def area(side: float) -> tuple[Point, ...]:
 
 
 def ground(*marks: Print | Paint, side: float = 0.5) -> Picture:
-    """A grey square of a metre about the origin with marks on it."""
-    return Picture([Floor("floor", area(side), GREY)], marks)
+    """A gray square of a meter about the origin with marks on it."""
+    return Picture([Floor("floor", area(side), GRAY)], marks)
 
 
 def seen(picture: Picture, *places: Point) -> list[Color | None]:
@@ -52,7 +52,7 @@ def test_it_ends_where_its_size_says() -> None:
 def test_the_ground_shows_through_what_is_clear_and_partly_through_what_is_half_clear() -> None:
     picture = ground(printed([[CLEAR, (255, 255, 255, 128)]], 0.4, 0.2))
     clear, half = seen(picture, (-0.1, 0.0), (0.1, 0.0))
-    assert clear == GREY
+    assert clear == GRAY
     assert half == pytest.approx((192 / 255,) * 3, abs=0.003)
 
 
@@ -68,7 +68,7 @@ def test_later_marks_cover_earlier_ones() -> None:
 
 
 def rastered(mark: Print) -> npt.NDArray[np.uint8]:
-    """Red, green, blue, opacity of two rows of a hundred pixels of a millimetre about the origin."""
+    """Red, green, blue, opacity of two rows of a hundred pixels of a millimeter about the origin."""
     return np.concatenate([words for _, words in bands(mark, 0.001, (-50, -1), (2, 100))])[..., None].view(np.uint8)
 
 
@@ -84,7 +84,7 @@ def test_averaging_does_not_mix_in_what_is_clear() -> None:
 
 
 def test_beside_the_ground_nothing_is_printed() -> None:
-    assert seen(ground(printed([[BLACK]], 0.1, 0.1, Pose(9.0, 9.0, 0.0))), (0.0, 0.0)) == [GREY]
+    assert seen(ground(printed([[BLACK]], 0.1, 0.1, Pose(9.0, 9.0, 0.0))), (0.0, 0.0)) == [GRAY]
 
 
 def codes(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:

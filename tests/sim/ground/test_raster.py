@@ -19,7 +19,7 @@ def area(left: float, bottom: float, right: float, top: float) -> tuple[Point, .
 
 
 def sheet() -> Picture:
-    """A white sheet of one square metre with a black square of 20 cm at its corner."""
+    """A white sheet of one square meter with a black square of 20 cm at its corner."""
     floor = Floor("sheet", area(0.0, 0.0, 1.0, 1.0), WHITE)
     return Picture([floor], [Paint("square", area(0.0, 0.0, 0.2, 0.2), BLACK)])
 

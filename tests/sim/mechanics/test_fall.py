@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, measure_one, readings, run, send
+from tests.sim.builders import FLOOR, GRAY, ROBOT, box, make, measure_one, readings, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.mechanics.fall import FALL_NS, Fall
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
@@ -132,7 +132,7 @@ def test_nobody_falls_where_there_is_no_floor_at_all() -> None:
 
 def test_a_thing_pushed_over_the_edge_is_gone() -> None:
     place = {"x_m": EDGE_M - 0.1, "y_m": 0.0, "radius_m": 0.03, "height_m": 0.1}
-    can = {"kind": "cylinder", "name": "can", **place, "color": GREY, "mass_kg": 0.05}
+    can = {"kind": "cylinder", "name": "can", **place, "color": GRAY, "mass_kg": 0.05}
     world = World(make([FLOOR, can], ({**ROBOT, "x_m": EDGE_M - 0.25},)), noise=False)
     send(world, MotorTargets(300, 300))
     while not world.snapshot().objects[0].is_fallen:

@@ -12,9 +12,9 @@ from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Load, Solid
 from thymio_sim_ros.sim.physics import Physics, RobotBody
 
-GREY = (0.5, 0.5, 0.5)
-WALL = Solid("wall", Pose(0.4, 0.0, 0.0), Box(0.02, 2.0), 0.1, GREY)
-CRATE = Solid("crate", Pose(-0.2, 0.02, 0.3), Box(0.06, 0.06), 0.1, GREY, Load(0.05, 0.3, 0.02))
+GRAY = (0.5, 0.5, 0.5)
+WALL = Solid("wall", Pose(0.4, 0.0, 0.0), Box(0.02, 2.0), 0.1, GRAY)
+CRATE = Solid("crate", Pose(-0.2, 0.02, 0.3), Box(0.06, 0.06), 0.1, GRAY, Load(0.05, 0.3, 0.02))
 STARTS = [Pose(0.0, 0.0, 0.1), Pose(0.0, 0.25, 3.0), Pose(0.25, 0.3, -1.5), Pose(-0.4, 0.0, 0.0)]
 
 

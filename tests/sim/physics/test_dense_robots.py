@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, box, make
+from tests.sim.builders import FLOOR, GRAY, box, make
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
@@ -36,7 +36,7 @@ def crowded(dice: random.Random, robots: int) -> World:
                 shape = box(x, y, dice.uniform(0.02, 0.1), dice.uniform(0.02, 0.1), yaw_rad=yaw)
             if dice.random() < 0.8:
                 shape["mass_kg"] = 10 ** dice.uniform(-2, 0.7)
-            shape = {**shape, "color": GREY, **place}
+            shape = {**shape, "color": GRAY, **place}
             footprint = footprint_of(make([shape], []).solids[0])
         if occupied.blocker(footprint) is not None:
             continue

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, make, measure_one, run, send
+from tests.sim.builders import FLOOR, GRAY, ROBOT, make, measure_one, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.playground import reader
@@ -18,9 +18,9 @@ from thymio_sim_ros.sim.world import World
 
 GATE = {
     "kind": "door", "name": "gate", "closed_x_m": 0.5, "closed_y_m": 0.0, "opened_x_m": 0.5, "opened_y_m": 0.6,
-    "size_x_m": 0.02, "size_y_m": 0.6, "height_m": 0.1, "move_s": 2.0, "color": GREY,
+    "size_x_m": 0.02, "size_y_m": 0.6, "height_m": 0.1, "move_s": 2.0, "color": GRAY,
 }  # fmt: skip
-BOX = {"height_m": 0.1, "color": GREY}
+BOX = {"height_m": 0.1, "color": GRAY}
 PLATE = {
     "kind": "activation", "name": "plate", "x_m": -0.5, "y_m": 0.5, "size_x_m": 0.1, "size_y_m": 0.1, "door": "gate",
     "area_m": [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]],
@@ -130,7 +130,7 @@ def test_one_of_several_areas_is_enough() -> None:
 
 @pytest.mark.parametrize("shapes", [[PLATE], [{**GATE, "kind": "wall"}, PLATE]], ids=["none", "a wall"])
 def test_an_activation_of_what_is_no_door_is_refused(shapes: list[dict[str, Any]]) -> None:
-    wall = {"kind": "wall", "name": "gate", "start_x_m": 0, "start_y_m": 1, "end_x_m": 1, "end_y_m": 1, "color": GREY}
+    wall = {"kind": "wall", "name": "gate", "start_x_m": 0, "start_y_m": 1, "end_x_m": 1, "end_y_m": 1, "color": GRAY}
     shapes = [wall if shape["kind"] == "wall" else shape for shape in shapes]
     text = json.dumps({"format": 1, "title": "test", "shapes": shapes, "robots": []})
     with pytest.raises(PlaygroundError, match=r"\.door: found 'gate', expected the name of a door; there is none"):
@@ -149,7 +149,7 @@ def test_a_closing_door_pushes_a_thing_at_rest() -> None:
 
 
 def test_a_robot_between_a_door_and_a_wall_is_squeezed_and_not_thrown() -> None:
-    wall = {"kind": "wall", "start_x_m": 0.3, "start_y_m": -0.42, "end_x_m": 0.7, "end_y_m": -0.42, "color": GREY}
+    wall = {"kind": "wall", "start_x_m": 0.3, "start_y_m": -0.42, "end_x_m": 0.7, "end_y_m": -0.42, "color": GRAY}
     world = build(GATE, PLATE, wall)
     enter(world)
     run(world, 2.5)
@@ -165,7 +165,7 @@ def test_a_robot_between_a_door_and_a_wall_is_squeezed_and_not_thrown() -> None:
 
 
 SILL_Y_M = -0.36
-SILL = {"kind": "wall", "start_x_m": 0.3, "start_y_m": SILL_Y_M, "end_x_m": 0.7, "end_y_m": SILL_Y_M, "color": GREY}
+SILL = {"kind": "wall", "start_x_m": 0.3, "start_y_m": SILL_Y_M, "end_x_m": 0.7, "end_y_m": SILL_Y_M, "color": GRAY}
 """A wall so near to the end of the closed gate that no robot has room between them."""
 
 

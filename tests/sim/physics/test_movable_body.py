@@ -8,7 +8,7 @@ from typing import Any
 import pymunk
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, measure_one, run, send
+from tests.sim.builders import FLOOR, GRAY, ROBOT, box, make, measure_one, run, send
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.physics import MovableBody
@@ -24,7 +24,7 @@ def crate(x_m: float, y_m: float = 0.0, mass_kg: float = 0.1, **fields: Any) -> 
 
 def can(x_m: float, y_m: float = 0.0, mass_kg: float = 0.1, **fields: Any) -> dict[str, Any]:
     """A movable cylinder of 3 cm radius."""
-    place = {"x_m": x_m, "y_m": y_m, "radius_m": 0.03, "height_m": 0.1, "color": GREY}
+    place = {"x_m": x_m, "y_m": y_m, "radius_m": 0.03, "height_m": 0.1, "color": GRAY}
     return {"kind": "cylinder", "name": "can", **place, "mass_kg": mass_kg, **fields}
 
 

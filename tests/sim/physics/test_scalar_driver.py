@@ -1,4 +1,4 @@
-"""Robots of which some glide while others are moved by the engine; a fleet or none, the rules are the same."""
+"""Some robots move analytically, others in the space; the rules are the same for single robots and for batches."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Load, Slide, Solid, Trigger
 from thymio_sim_ros.sim.physics import Physics, RobotBody
 
-GREY = (0.5, 0.5, 0.5)
-WALL = Solid("wall", Pose(0.3, 0.0, 0.0), Box(0.02, 1.0), 0.1, GREY)
+GRAY = (0.5, 0.5, 0.5)
+WALL = Solid("wall", Pose(0.3, 0.0, 0.0), Box(0.02, 1.0), 0.1, GRAY)
 FAST_M_S = 0.16
 together = pytest.mark.parametrize("is_fleet", [False, True])
 
@@ -80,7 +80,7 @@ def test_a_robot_put_before_another_is_met(is_fleet: bool) -> None:
 
 @together
 def test_a_thing_put_before_a_gliding_robot_is_pushed(is_fleet: bool) -> None:
-    crate = Solid("crate", Pose(3.0, 0.0, 0.0), Box(0.06, 0.06), 0.1, GREY, Load(0.05, 0.3, 0.02))
+    crate = Solid("crate", Pose(3.0, 0.0, 0.0), Box(0.06, 0.06), 0.1, GRAY, Load(0.05, 0.3, 0.02))
     driver = Driver(is_fleet, [crate], [], Pose(0.0, 0.0, 0.0))
     driver.speeds = [(FAST_M_S, FAST_M_S)]
     driver.step()
@@ -94,7 +94,7 @@ def test_a_thing_put_before_a_gliding_robot_is_pushed(is_fleet: bool) -> None:
 @together
 def test_while_a_door_moves_everybody_is_engaged(is_fleet: bool) -> None:
     closed, opened = Pose(2.0, 0.0, 0.0), Pose(2.0, 0.5, 0.0)
-    door = Solid("door", closed, Box(0.02, 0.4), 0.1, GREY, slide=Slide(opened, 0.5))
+    door = Solid("door", closed, Box(0.02, 0.4), 0.1, GRAY, slide=Slide(opened, 0.5))
     area = Trigger("area", ((-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)), "door")
     driver = Driver(is_fleet, [door], [area], Pose(0.0, 0.0, 0.0), Pose(0.0, 1.0, 0.0))
     seen = []
@@ -107,7 +107,7 @@ def test_while_a_door_moves_everybody_is_engaged(is_fleet: bool) -> None:
 
 @together
 def test_a_fast_thing_does_not_pass_through_a_robot_that_was_gliding(is_fleet: bool) -> None:
-    ball = Solid("ball", Pose(-1.0, 0.0, 0.0), Box(0.04, 0.04), 0.1, GREY, Load(0.05, 0.01, 0.02))
+    ball = Solid("ball", Pose(-1.0, 0.0, 0.0), Box(0.04, 0.04), 0.1, GRAY, Load(0.05, 0.01, 0.02))
     driver = Driver(is_fleet, [ball], [], Pose(0.0, 0.0, 0.0))
     driver.step()
     assert driver.engaged() == [False]

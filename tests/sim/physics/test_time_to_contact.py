@@ -15,7 +15,7 @@ from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M, SAFE
 from thymio_sim_ros.sim.raycast.broadphase import Broadphase, Mover
 from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 
-GREY = (0.5, 0.5, 0.5)
+GRAY = (0.5, 0.5, 0.5)
 ROBOT = RobotBody("robot", Pose(0.0, 0.0, 1.0))
 REACH_M = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M
 
@@ -29,11 +29,11 @@ def ticks(
 
 
 def wall(away_m: float) -> Solid:
-    return Solid("wall", Pose(REACH_M + away_m + 0.01, 0.0, 0.0), Box(0.02, 1.0), 0.1, GREY)
+    return Solid("wall", Pose(REACH_M + away_m + 0.01, 0.0, 0.0), Box(0.02, 1.0), 0.1, GRAY)
 
 
 def thing(away_m: float) -> MovableBody:
-    solid = Solid("thing", Pose(REACH_M + away_m + 0.03, 0.0, 0.0), Disc(0.03), 0.1, GREY, Load(0.1, 0.3, 0.02))
+    solid = Solid("thing", Pose(REACH_M + away_m + 0.03, 0.0, 0.0), Disc(0.03), 0.1, GRAY, Load(0.1, 0.3, 0.02))
     return MovableBody(solid, pymunk.Body(body_type=pymunk.Body.STATIC), set())
 
 

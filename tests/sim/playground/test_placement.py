@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, pose_close, readings, run, send
+from tests.sim.builders import FLOOR, GRAY, ROBOT, box, make, pose_close, readings, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.playground.placement import Footprint, Occupied, PlacementError
@@ -17,7 +17,7 @@ from thymio_sim_ros.sim.world import World
 
 WALL = {**box(0.5, 0.0, 0.02, 1.0), "name": "wall"}
 CRATE = {**box(-0.5, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}
-POST = {"kind": "cylinder", "name": "post", "x_m": 0.0, "y_m": 0.5, "radius_m": 0.05, "height_m": 0.1, "color": GREY}
+POST = {"kind": "cylinder", "name": "post", "x_m": 0.0, "y_m": 0.5, "radius_m": 0.05, "height_m": 0.1, "color": GRAY}
 
 
 def build(**options: Any) -> World:
@@ -217,7 +217,7 @@ def test_nor_is_one_where_what_has_fallen_is_going_to_stand(name: str) -> None:
 
 @pytest.mark.parametrize("place", [(math.nan, 0.0, 0.0), (0.0, math.inf, 0.0), (0.0, 0.0, math.nan)])
 def test_a_place_that_is_no_number_is_refused(place: tuple[float, float, float]) -> None:
-    world = World(make([{"kind": "rectangle", "size_x_m": 4, "size_y_m": 4, "color": GREY}, CRATE]))
+    world = World(make([{"kind": "rectangle", "size_x_m": 4, "size_y_m": 4, "color": GRAY}, CRATE]))
     with pytest.raises(ValueError, match="expected finite numbers"):
         send(world, MoveRobot(*place))
     with pytest.raises(ValueError, match="expected finite numbers"):

@@ -44,7 +44,7 @@ def facing(gap_m: float) -> list[dict[str, Any]]:
 
 
 def expected(gap_m: float) -> float:
-    """Intensity of the centre sensor, from the three front emitters of the other.
+    """Intensity of the center sensor, from the three front emitters of the other.
 
     Source: docs/spec/thymio-robot.md section 7.5.
     """

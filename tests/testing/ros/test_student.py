@@ -70,9 +70,9 @@ def test_a_module_is_named_with_dots(ros, handed_in, monkeypatch):
 
 
 def test_a_file_may_import_its_neighbours(ros, handed_in):
-    handed_in("NAME = 'neighbour'\n", "my_names.py")
+    handed_in("NAME = 'neighbor'\n", "my_names.py")
     text = GREETER.replace('"greeter"', "NAME").replace(HEAD, HEAD + "from my_names import NAME\n")
-    assert ros.start(handed_in(text)).get_name() == "neighbour"
+    assert ros.start(handed_in(text)).get_name() == "neighbor"
     assert "my_names" not in sys.modules
 
 

@@ -7,7 +7,7 @@ here. One asks for another by an event that stays inside the robot, so that neit
 - `menu.back`: open the menu, which shows the entry that was running.
 
 A program that declares `menu.open` is a menu. It is told [entry to show, 1 if the user has a program, ticks of 20 ms
-during which the centre button is not to be heard].
+during which the center button is not to be heard].
 """
 
 from __future__ import annotations

@@ -90,7 +90,7 @@ def _lowest(right: int, forward: int) -> int:
 
 
 class _Buttons:
-    """A touched button lights up step by step; the centre lights all four."""
+    """A touched button lights up step by step; the center lights all four."""
 
     variables = ("button.forward", "button.right", "button.backward", "button.left", "button.center")
 

@@ -32,7 +32,7 @@ Feed = Callable[[str, Sequence[int]], None]
 
 FULL_SOUND = 255
 COMM_SENSORS = 7
-_REFLECTING, _DARK = (round(units.ground_response(grey)) for grey in (1.0, 0.0))
+_REFLECTING, _DARK = (round(units.ground_response(gray)) for gray in (1.0, 0.0))
 
 
 class _ReadingAssembler:

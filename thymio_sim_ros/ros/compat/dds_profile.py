@@ -21,7 +21,7 @@ VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 """Where Fast DDS 2 looks for profiles, once, when the process makes its first participant."""
 
 _OTHERS = ("FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML")
-"""Whoever sets these has profiles of their own."""
+"""Users who set these have their own profiles."""
 
 _USERS_FILE = "DEFAULT_FASTRTPS_PROFILES.xml"
 """In the working folder it is read without being named."""

@@ -75,7 +75,7 @@ class TypeHash(ctypes.Structure):
 
 
 class Callbacks(ctypes.Structure):
-    """message_type_support_callbacks_t of rosidl_typesupport_fastrtps_cpp; the C flavour shares it."""
+    """message_type_support_callbacks_t of rosidl_typesupport_fastrtps_cpp; the C flavor shares it."""
 
     _fields_ = (
         ("message_namespace", ctypes.c_char_p),

@@ -1,10 +1,10 @@
-"""Files in shared memory that others leave behind.
+"""Removal of files that libraries leave in shared memory.
 
-rcl's tracing library, LTTng, makes two at its first load on a machine and leaves them: whoever made them tidies up,
-unless another process uses them by then; LTTng makes them again when it needs them.
+rcl's tracing library, LTTng, creates two files when it is first loaded on a machine and never removes them. The process
+that created them removes them, unless another process uses them by then; LTTng creates them again when needed.
 
-Fast DDS makes one for each port at which a participant listens. A process killed while it does so leaves one half made,
-and every later participant that comes to this port waits for ever for the rest (seen with 2.14).
+Fast DDS creates one file for each port on which a participant listens. A process that is killed while doing so leaves
+an incomplete file, and every later participant on this port waits for it for ever (seen with 2.14).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ SHARED_MEMORY = Path("/dev/shm")
 PATTERN = "lttng-ust-wait-*"
 PORTS = "fastrtps_port*"
 INCOMPLETE = {b"", bytes(4), b"\x01\x00\x00\x00"}
-"""How a segment of Boost.Interprocess begins until it is initialised: the first word counts 0, 1, then 2."""
+"""How a segment of Boost.Interprocess begins until it is initialized: the first word counts 0, 1, then 2."""
 MAKING_S = 10.0
 """Making a port takes microseconds."""
 

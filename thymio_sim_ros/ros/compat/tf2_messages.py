@@ -1,4 +1,4 @@
-"""Transforms as serialised tf2_msgs/msg/TFMessage, also where tf2_msgs is not installed (the ROS wheels lack it).
+"""Transforms as serialized tf2_msgs/msg/TFMessage, also where tf2_msgs is not installed (the ROS wheels lack it).
 
 `TFMessage` is the class to give to `create_publisher` and, with `raw=True`, to `create_subscription`: the real one
 where `import tf2_msgs` works, else one made by `typesupport` under the same name and hash. Both carry `encode`d bytes.
@@ -43,7 +43,7 @@ _HEADER = struct.Struct("<4sI")  # encapsulation, number of transforms
 
 
 class Transform(NamedTuple):
-    """Pose of frame `child` in `frame` at `stamp_ns`: metres and a unit quaternion x, y, z, w."""
+    """Pose of frame `child` in `frame` at `stamp_ns`: meters and a unit quaternion x, y, z, w."""
 
     stamp_ns: int
     frame: str
@@ -60,7 +60,7 @@ class _Metaclass(type):
     """What rclpy looks for in a message class: type support, loaded on first use, and four non-None conversions."""
 
     _TYPE_SUPPORT: Any = None
-    _CREATE_ROS_MESSAGE = _CONVERT_FROM_PY = _CONVERT_TO_PY = _DESTROY_ROS_MESSAGE = "serialised messages only"
+    _CREATE_ROS_MESSAGE = _CONVERT_FROM_PY = _CONVERT_TO_PY = _DESTROY_ROS_MESSAGE = "serialized messages only"
 
     @classmethod
     def __import_type_support__(cls) -> None:
@@ -123,7 +123,7 @@ def _named(alignment: int, frame: str, child: str) -> tuple[struct.Struct, int, 
 
 
 def decode(data: bytes) -> tuple[Transform, ...]:
-    """Transforms of a serialised TFMessage, little-endian as everybody sends it; raises TransformDataError."""
+    """Transforms of a serialized TFMessage, little-endian as everybody sends it; raises TransformDataError."""
     try:
         encapsulation, count = _HEADER.unpack_from(data)
         if encapsulation[:2] != _LITTLE_ENDIAN_CDR[:2]:

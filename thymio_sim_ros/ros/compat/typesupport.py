@@ -4,7 +4,7 @@ rmw_fastrtps asks a type for four things: Fast DDS callbacks (for raw traffic on
 introspection table from which it makes the DDS type object, the type hash, and the type's description with its sources.
 For a message whose only field is an unbounded sequence of an installed type all four follow from that type, so ctypes
 structures can stand in for the generated library (docs/spec/ros-packaging.md section 1.3). Such a type carries
-serialised messages only: `publisher.publish(bytes)` and subscriptions with `raw=True`.
+serialized messages only: `publisher.publish(bytes)` and subscriptions with `raw=True`.
 
 Nobody tells us when the middleware stops using a structure, therefore everything built here lives as long as the
 process. Alternative not taken: building tf2_msgs with the user's compiler, a minute and an ABI per Python version.

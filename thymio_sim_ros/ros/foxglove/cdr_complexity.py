@@ -46,7 +46,7 @@ class TooManyPartsError(ThymioSimError, ValueError):
 
 
 class _Walk:
-    """A place in a serialised message, and how many parts were passed."""
+    """A place in a serialized message, and how many parts were passed."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
@@ -74,7 +74,7 @@ _Step = Callable[[_Walk], None]
 
 
 def check_parts(data: bytes, message_type: Any) -> None:
-    """Raise TooManyPartsError where reading a serialised message would take too long.
+    """Raise TooManyPartsError where reading a serialized message would take too long.
 
     Bytes that are no such message pass: it takes no time to find that out.
     """

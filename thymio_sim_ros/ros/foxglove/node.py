@@ -2,7 +2,7 @@
 
 Two threads. The executor's owns everything of ROS and this file; the event loop's owns sockets (`bridge`). Commands go
 there by `ServerThread.post`, events come here by `Mailbox`; nothing else is shared. Topics, services and parameters
-each have a module; what they have in common is that the graph is polled and messages are never deserialised.
+each have a module; what they have in common is that the graph is polled and messages are never deserialized.
 """
 
 from __future__ import annotations

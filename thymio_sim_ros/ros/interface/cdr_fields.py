@@ -24,7 +24,7 @@ __all__ = [
     "RAYS",
     "TEMPERATURE",
     "TRUTH",
-    "grey",
+    "gray",
     "ground_patch",
     "ground_range_m",
     "laser_m",
@@ -82,8 +82,8 @@ def ground_range_m(reading: readings.GroundReading, options: Any, index: int) ->
     return not_reflecting if dark else reflecting
 
 
-def grey(reading: readings.GroundReading, index: int) -> float:
-    """The grey 0…1 over which a ground sensor gives its count, light from elsewhere taken away."""
+def gray(reading: readings.GroundReading, index: int) -> float:
+    """The gray 0…1 over which a ground sensor gives its count, light from elsewhere taken away."""
     return units.ground_reflectance(reading.words[4 + index])
 
 
@@ -195,8 +195,8 @@ def ground_patch(index: int) -> Patch:
 
 
 def reflectance_patch(index: int) -> Patch:
-    """Of one ground sensor's grey."""
-    return Patch((Span(struct.Struct("<f"), lambda reading, _options: (grey(reading, index),)),), has_stamp=False)
+    """Of one ground sensor's gray."""
+    return Patch((Span(struct.Struct("<f"), lambda reading, _options: (gray(reading, index),)),), has_stamp=False)
 
 
 ODOMETRY = _odometry_patch(

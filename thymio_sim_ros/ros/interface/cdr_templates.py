@@ -1,4 +1,4 @@
-"""Serialised messages that are made once and patched with each reading: a third of the cost of building them anew.
+"""Serialized messages that are made once and patched with each reading: a third of the cost of building them anew.
 
 CDR keeps what does not change its size in place: the stamp of a header is at the beginning, numbers of fixed size are
 so many bytes before the end. A row of `sensor_topics` says by a `Patch` which; a template is checked against the

@@ -130,7 +130,7 @@ def ground_reflectance(
     reading: readings.GroundReading, _names: RobotNames, _options: ConvertOptions, *, index: int
 ) -> Float32:
     """A ground sensor: how much light the floor reflects, 0 (black) to 1 (white)."""
-    return Float32(data=cdr_fields.grey(reading, index))
+    return Float32(data=cdr_fields.gray(reading, index))
 
 
 def button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:
@@ -185,7 +185,7 @@ def _odometry_message(pose: Pose, twist: Twist) -> Odometry:
 
 
 def leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOptions) -> Float32MultiArray:
-    """Every light, a labelled dimension for each group."""
+    """Every light, a labeled dimension for each group."""
     return Float32MultiArray(
         layout=layout((group, len(levels)) for group, levels in reading.groups),
         data=cdr_fields.led_levels(reading),
@@ -233,7 +233,7 @@ def words(reading: Any, _names: RobotNames, _options: ConvertOptions) -> Int16Mu
 
 
 def layout(dimensions: Iterable[tuple[str, int]]) -> MultiArrayLayout:
-    """Labelled parts of one flat array, one after the other."""
+    """Labeled parts of one flat array, one after the other."""
     return MultiArrayLayout(
         dim=[MultiArrayDimension(label=label, size=size, stride=size) for label, size in dimensions]
     )

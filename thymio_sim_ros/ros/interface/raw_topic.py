@@ -35,7 +35,7 @@ _MAX_KNOWN = 500
 
 
 def encode(readings: Iterable[SensorWords]) -> bytes:
-    """The message of these readings, serialised."""
+    """The message of these readings, serialized."""
     heads: list[bytes] = []
     words: list[int] = []
     for robot, sensor, integers in readings:
@@ -54,7 +54,7 @@ class RawDecoder:
         self._count = 0
 
     def decode(self, data: bytes) -> Iterator[SensorWords]:
-        """The readings of a serialised message; RuntimeError when it is none, ValueError when words are missing."""
+        """The readings of a serialized message; RuntimeError when it is none, ValueError when words are missing."""
         for head, parts in self._known.get(len(data), ()):
             if data.startswith(head):
                 words = struct.unpack_from(f"<{parts[-1][3] if parts else 0}h", data, len(head))
@@ -115,7 +115,7 @@ class RawTopic:
 
 @lru_cache(maxsize=8192)
 def _dimension(robot: str, sensor: str, size: int) -> bytes:
-    """A serialised MultiArrayDimension, which begins and ends at a multiple of four bytes."""
+    """A serialized MultiArrayDimension, which begins and ends at a multiple of four bytes."""
     label = f"{robot}/{sensor}".lstrip("/").encode() + b"\0"
     return _COUNT.pack(len(label)) + label + bytes(-len(label) % 4) + _TWO.pack(size, size)
 

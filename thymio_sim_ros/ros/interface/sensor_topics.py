@@ -63,7 +63,7 @@ class Row:
     is_event: bool = False
     """Whether `encode` gives nothing for most readings."""
     patch: Patch | None = None
-    """What a reading changes in the serialised message, for topics with much traffic."""
+    """What a reading changes in the serialized message, for topics with much traffic."""
 
 
 ROWS: dict[str, tuple[Row, ...]] = {
@@ -167,7 +167,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "_led/state",
             Float32MultiArray,
             convert_readings.leds,
-            "brightness 0…1 of every light, a labelled dimension for each group",
+            "brightness 0…1 of every light, a labeled dimension for each group",
             profile=qos.TRANSIENT_LOCAL,
             always=True,
             patch=cdr_fields.LEDS,

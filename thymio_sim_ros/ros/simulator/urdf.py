@@ -66,7 +66,7 @@ def urdf(names: RobotNames) -> str:
         '<?xml version="1.0"?>',
         f'<robot name="{names.name or "thymio"}">',
         '<material name="white"><color rgba="0.95 0.95 0.95 1"/></material>',
-        '<material name="grey"><color rgba="0.25 0.25 0.27 1"/></material>',
+        '<material name="gray"><color rgba="0.25 0.25 0.27 1"/></material>',
         f'<link name="{names.frame("base_link")}">',
         *(
             _visual(
@@ -75,7 +75,7 @@ def urdf(names: RobotNames) -> str:
             )
             for rear, front, width in _slabs()
         ),
-        _visual((BUTTONS_X_M, 0, height), _box(0.045, 0.045, 0.004), "grey"),
+        _visual((BUTTONS_X_M, 0, height), _box(0.045, 0.045, 0.004), "gray"),
         "</link>",
     ]
     for side in SIDES:
@@ -84,7 +84,7 @@ def urdf(names: RobotNames) -> str:
         radius, thickness = robot_constants.WHEEL_RADIUS_M, robot_constants.WHEEL_WIDTH_M
         parts += [
             f'<link name="{link}">',
-            _visual((0, 0, 0), f'<cylinder radius="{radius}" length="{thickness}"/>', "grey", roll=math.pi / 2),
+            _visual((0, 0, 0), f'<cylinder radius="{radius}" length="{thickness}"/>', "gray", roll=math.pi / 2),
             _visual((0, 0, 0), _box(radius * 1.7, thickness * 1.05, radius * 0.3)),
             "</link>",
             f'<joint name="{joint}" type="continuous"><parent link="{names.frame("base_link")}"/>',

@@ -181,7 +181,7 @@ def _check_size(columns: int, rows: int, key: str, budget: Budget) -> None:
         raise FieldError(key, size, f"at most {MAX_SIDE} a side and {MAX_PIXELS} in all")
     if columns * rows > budget.pixels:
         found = f"{size}, where {budget.pixels} of the playground's {MAX_PIXELS_IN_ALL} are left for pictures"
-        raise FieldError(key, found, "fewer or smaller pictures; one pixel for each millimetre is enough")
+        raise FieldError(key, found, "fewer or smaller pictures; one pixel for each millimeter is enough")
     budget.pixels -= columns * rows
 
 

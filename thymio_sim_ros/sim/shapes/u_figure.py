@@ -14,7 +14,7 @@ _PARTS = (
     ((-3.0, 0.0), (2.0, 7.0)),
     ((2.0, 4.0), (12.0, 2.0)),
 )
-"""Centre and size of the boxes in units of `unit_m`; one arm is longer and thicker, as in the original."""
+"""Center and size of the boxes in units of `unit_m`; one arm is longer and thicker, as in the original."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -371,7 +371,7 @@ def test_movable_things_and_doors_come_to_life() -> None:
 
 def test_a_band_of_the_texture_lies_where_the_reference_has_it(tmp_path: Path) -> None:
     """docs/spec/playground-formats.md section 1.2: rows 40 to 59 of 200 from the top are y = 70 to 80 cm of a world of
-    a metre."""
+    a meter."""
     (tmp_path / "band.png").write_bytes(png([[BLACK if 40 <= row < 60 else WHITE] * 4 for row in range(200)]))
     path = tmp_path / "band.playground"
     path.write_text(text('<world w="100" h="100" color="orange" groundTexture="band.png"/>'))

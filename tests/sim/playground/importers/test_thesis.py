@@ -17,7 +17,7 @@ from thymio_sim_ros.sim.playground import reader
 from thymio_sim_ros.sim.playground.importers import Conversion, thesis
 from thymio_sim_ros.sim.playground.reader import Playground
 
-GREY, BLUE, RED = "#bdbbbb", "#9fa3bd", "#fc031c"
+GRAY, BLUE, RED = "#bdbbbb", "#9fa3bd", "#fc031c"
 THYMIO = {"name": "thymio", "positionX": 0, "positionZ": 0}
 
 
@@ -26,7 +26,7 @@ def at(x: float, z: float) -> dict[str, float]:
 
 
 def octagon(*, walls: bool) -> dict[str, Any]:
-    return {"name": "ground", "props": {"segmentLength": 50, "color": GREY}, "hasWalls": walls}
+    return {"name": "ground", "props": {"segmentLength": 50, "color": GRAY}, "hasWalls": walls}
 
 
 def pillar(name: str, x: float, z: float) -> dict[str, Any]:
@@ -36,7 +36,7 @@ def pillar(name: str, x: float, z: float) -> dict[str, Any]:
 
 BASE = {
     "playground": "Base",
-    "planes": [{"name": "ground", "props": {"width": 50, "height": 50, "color": GREY}, "hasWalls": True}],
+    "planes": [{"name": "ground", "props": {"width": 50, "height": 50, "color": GRAY}, "hasWalls": True}],
     "thymios": THYMIO,
 }
 BORDERLESS = {

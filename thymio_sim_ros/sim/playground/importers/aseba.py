@@ -1,6 +1,6 @@
 """Aseba's XML playgrounds, as data of our format (docs/spec/playground-formats.md section 1).
 
-Centimetres and radians, the origin at the lower left corner of the world. Elements are read by groups, so that an
+Centimeters and radians, the origin at the lower left corner of the world. Elements are read by groups, so that an
 activation may name a door that comes later. What the simulator takes for granted is kept: missing numbers are 0,
 unknown elements are passed over. A number that is none is refused here, where Aseba would read 0.
 """
@@ -244,7 +244,7 @@ class _Reader:
     def _color_of(self, element: Element) -> str:
         name = element.attributes.get("color", "")
         if name not in self._colors:
-            self._remark(element, f": no color '{name}' is declared, so it is grey")
+            self._remark(element, f": no color '{name}' is declared, so it is gray")
         return self._colors.get(name, DEFAULT_COLOR)
 
 
@@ -269,7 +269,7 @@ def _height(element: Element) -> float:
 
 
 def _length(element: Element, attribute: str) -> float:
-    """Centimetres as meters."""
+    """Centimeters as meters."""
     return rounded(_number(element, attribute) / 100)
 
 

@@ -32,7 +32,7 @@ class Names:
 
 
 def rounded(value: float) -> float:
-    """Metres or radians to a nanometre: 5 cm become 0.05, not 0.05000000000000001."""
+    """Meters or radians to a nanometre: 5 cm become 0.05, not 0.05000000000000001."""
     return round(value, 9) + 0.0
 
 
