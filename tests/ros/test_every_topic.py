@@ -34,8 +34,8 @@ from std_msgs.msg import (
 
 from thymio_sim_ros.ros import generate_ros_docs
 from thymio_sim_ros.ros.interface import command_topics, qos, sensor_topics
+from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.simulator import robot_endpoints, world_endpoints, world_services
-from thymio_sim_ros.ros.simulator.robot_inputs import robot_inputs
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
 from thymio_sim_ros.sim.commands import LED_GROUPS

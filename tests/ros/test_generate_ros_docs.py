@@ -9,7 +9,7 @@ import pytest
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.ros import generate_ros_docs
 from thymio_sim_ros.ros.interface import sensor_topics
-from thymio_sim_ros.ros.simulator.robot_inputs import robot_inputs
+from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 
 PAGE = Path(__file__).parent.parent.parent / "docs" / "ros.md"
 COMMAND = "python -m thymio_sim_ros.ros.generate_ros_docs > docs/ros.md"

@@ -19,12 +19,12 @@ from thymio_sim_ros.ros.aseba.node import RuntimeParams
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.interface import driver_topics, qos, sensor_topics
 from thymio_sim_ros.ros.interface.names import SIDES, is_hidden
+from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.type_mismatch import type_name
 from thymio_sim_ros.ros.ros_docs_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
 from thymio_sim_ros.ros.simulator import robot_endpoints, world_endpoints, world_services
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
-from thymio_sim_ros.ros.simulator.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim import sensors

@@ -11,9 +11,9 @@ from rclpy.context import Context
 from rclpy.node import Node
 from std_msgs.msg import String
 
+from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.rclpy_ext import type_mismatch
 from thymio_sim_ros.ros.rclpy_ext.type_mismatch import TypeMismatches
-from thymio_sim_ros.ros.simulator.robot_inputs import robot_inputs
 
 TWIST, STAMPED, TEXT = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped", "std_msgs/msg/String"
 

@@ -24,9 +24,9 @@ from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
-from thymio_sim_ros.ros.foxglove.fair_queue import FairQueue
 from thymio_sim_ros.ros.foxglove.qos import publisher_qos
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
+from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
 
 __all__ = ["ClientPublishers"]
 

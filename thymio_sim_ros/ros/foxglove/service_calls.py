@@ -17,7 +17,7 @@ from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.task import Future
 
-from thymio_sim_ros.ros.foxglove.fair_queue import FairQueue
+from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
 
 __all__ = ["CALL_TIMEOUT_S", "ServiceCalls"]
 

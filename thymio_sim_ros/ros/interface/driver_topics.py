@@ -19,9 +19,9 @@ from thymio_sim_ros.ros.interface import command_checks, qos, saturation, sensor
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import HIDDEN
+from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput, robot_inputs
 from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.ros.interface.sensor_topics import Row
-from thymio_sim_ros.ros.simulator.robot_inputs import InputContext, RobotInput, robot_inputs
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.sensors import all_sensors

@@ -17,8 +17,8 @@ from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.ros.interface import sensor_topics
 from thymio_sim_ros.ros.interface.names import raw_topic
+from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
-from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 

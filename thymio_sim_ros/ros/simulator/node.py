@@ -29,6 +29,8 @@ from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 from thymio_sim_ros.ros.interface.raw_topic import RawTopic
+from thymio_sim_ros.ros.interface.robot_inputs import InputContext
+from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, deliver, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
@@ -38,9 +40,7 @@ from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
 from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
-from thymio_sim_ros.ros.simulator.robot_inputs import InputContext
 from thymio_sim_ros.ros.simulator.simulation_interfaces import services
-from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand
 from thymio_sim_ros.ros.simulator.transforms import POSE_SENSOR, Transforms, frames_of
 from thymio_sim_ros.ros.simulator.world_endpoints import PaceCounters, SceneMessages, WorldEndpoints, WorldState
 from thymio_sim_ros.ros.simulator.world_services import WorldServices

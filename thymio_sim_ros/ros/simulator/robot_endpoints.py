@@ -21,11 +21,11 @@ from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
 from thymio_sim_ros.ros.interface.names import HIDDEN, RobotNames, full_name
+from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput, robot_inputs
 from thymio_sim_ros.ros.interface.sensor_topics import Row
+from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
-from thymio_sim_ros.ros.simulator.robot_inputs import InputContext, RobotInput, robot_inputs
-from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.simulator.urdf import urdf
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command

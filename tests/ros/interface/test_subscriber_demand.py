@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand, TopicDemand
+from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.sim.model.clock import NEVER_NS
 
 MS = 1_000_000
