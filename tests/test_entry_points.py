@@ -8,7 +8,6 @@ import select
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -28,14 +27,6 @@ IN_A_SHELL = (
     f"import sys; sys.path.insert(0, '{ROOT}'); "
     "from thymio_sim_ros.entry_points import thymio_sim; sys.exit(thymio_sim())"
 )
-
-
-@pytest.fixture(autouse=True)
-def _own_handler() -> Iterator[None]:
-    """Ctrl-C still ends pytest afterwards."""
-    before = signal.getsignal(signal.SIGINT)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 class _Program:

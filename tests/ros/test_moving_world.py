@@ -134,5 +134,5 @@ def test_a_log_of_the_node_replays(ros, simulation, tmp_path):
 
 
 def test_a_log_that_cannot_be_written_is_refused(simulation, tmp_path):
-    with pytest.raises(StartError, match="No such file or directory, expected a file that can be written"):
+    with pytest.raises(StartError, match="No such file or directory, expected a writable file"):
         simulation(log=str(tmp_path / "nowhere" / "run.jsonl"))

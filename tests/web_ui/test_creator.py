@@ -260,9 +260,7 @@ def test_a_file_that_is_not_an_image_is_rejected_at_its_field(suite, page, tmp_p
     page.set_input_files("#creator-picture", str(good))
     page.wait_for_function("() => window.thymio.built().placing?.kind === 'picture'")
     page.set_input_files(".item-form input[data-field=image]", str(bad))
-    playwright.expect(page.locator(".item-form .problem:visible")).to_have_text(
-        "bad.png is no picture that can be read"
-    )
+    playwright.expect(page.locator(".item-form .problem:visible")).to_have_text("bad.png is not a readable image")
 
 
 def test_mac_shortcuts_undo_redo_and_copy(suite, page):
