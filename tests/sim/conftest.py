@@ -18,7 +18,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     folder = metafunc.config.getoption("vectors") or SHIPPED
     if not is_set(folder):
         raise pytest.UsageError(f"--vectors: no file of measured scenes in {folder}")
-    scenes = [scene for scene in load(mark.args[0], folder) if not scene.get("artifact")]
+    scenes = [scene for scene in load(mark.args[0], folder) if not scene.get("artefact")]
     if mark.kwargs.get("pushed"):
         scenes = [scene for scene in scenes if any(thing["mass"] is not None for thing in scene["objects"])]
     metafunc.parametrize("scene", scenes, ids=[scene["id"] for scene in scenes])
