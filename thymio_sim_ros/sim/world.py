@@ -17,12 +17,13 @@ from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveR
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.input_recorder import Input, InputRecorder, Posted, Removed, Reset, Spawned, WorldOptions
+from thymio_sim_ros.sim.mechanics import wheels
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
-from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics
+from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics, RobotState
 from thymio_sim_ros.sim.playground.placement import (
     Footprint,
     Occupied,
@@ -104,6 +105,7 @@ class World:
         self._batch: RobotBatch | None = None
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers)
+        self._rolled: RobotState | None = None
         self._robots: dict[str, Robot] = {}
         self._shared = SharedState(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
         self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
@@ -266,12 +268,11 @@ class World:
 
     def _move_bodies(self) -> tuple[Contact, ...]:
         contacts = self._physics.step()
+        self._roll()
         if self._batch is not None:
-            self._batch.roll(_TICK_S)
             self._batch.check_floor(self._floor_support)
         else:
             for robot in self._robots.values():
-                robot.roll(_TICK_S)
                 robot.edge_fall.check_floor(self._floor_support)
         for movable in self._physics.movables.values():
             if movable.is_moving:
@@ -280,6 +281,13 @@ class World:
             if contact.is_new:
                 self._robots[contact.robot].wake(Contact)
         return contacts
+
+    def _roll(self) -> None:
+        """Advance the wheels by the motion of the bodies."""
+        state = self._physics.robot_state
+        if state is not self._rolled:
+            self._rolled, self._roll_all = state, state.memory.bind(wheels.roll, state)
+        self._roll_all()
 
     def _drop_over_edge(self, movable: MovableBody) -> None:
         x, y = movable.pose.x_m, movable.pose.y_m

@@ -4,28 +4,8 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.compiler import Floats, Ints, Words
+from thymio_sim_ros.sim.kernel.types import Floats, Ints, Words, kernel
 
-KERNELS = (
-    "square", "arithmetic", "integers", "logic", "loops", "nested", "words", "choose", "early", "beyond",
-)  # fmt: skip
-SHARE = 0.1
-STEP = 3
-
-
-def square(x: float) -> float:
-    """Called by others."""
-    return x * x
-
-
-def arithmetic(given: Floats, found: Floats) -> None:
-    """Every operation of floats."""
-    a = given[0]
-    b = given[1]
-    found[0] = a + b * SHARE
-    found[1] = a - b / 3
-    found[2] = -a
-    found[3] = abs(a) + math.sqrt(abs(b))
     found[4] = min(a, b) - max(a, 0.5)
     found[5] = float(math.floor(a)) + int(b)
     found[6] = square(a) - 2
@@ -34,6 +14,7 @@ def arithmetic(given: Floats, found: Floats) -> None:
     found[8] = round(a * 4) + round(b * 4 + 0.5)
 
 
+@kernel
 def integers(given: Ints, found: Ints) -> None:
     """Every operation of integers."""
     a = given[0]
@@ -45,6 +26,7 @@ def integers(given: Ints, found: Ints) -> None:
     found[STEP + 1] = a
 
 
+@kernel
 def logic(given: Floats, found: Ints) -> None:
     """Conditions and what is not looked at."""
     a = given[0]
@@ -61,6 +43,7 @@ def logic(given: Floats, found: Ints) -> None:
         found[4] = 3
 
 
+@kernel
 def loops(given: Floats, found: Floats) -> None:
     """Loops of all kinds."""
     total = 0.0
@@ -78,6 +61,7 @@ def loops(given: Floats, found: Floats) -> None:
     found[2] = index
 
 
+@kernel
 def nested(found: Ints) -> None:
     """A loop in a loop whose limits move."""
     number = 0
@@ -91,17 +75,20 @@ def nested(found: Ints) -> None:
             number += 1
 
 
+@kernel
 def words(given: Words, found: Words) -> None:
     """Sixteen bits."""
     found[0] = given[1] + 1
     found[1] = given[0]
 
 
+@kernel
 def choose(kind: int, share: float, found: Floats) -> None:
     """Numbers as parameters."""
     found[0] = share * kind
 
 
+@kernel
 def early(found: Floats) -> None:
     """Leaves before its end."""
     found[0] = 1.0
@@ -110,6 +97,7 @@ def early(found: Floats) -> None:
     found[0] = 2.0
 
 
+@kernel
 def beyond(found: Floats) -> None:
     """Numbers without end."""
     found[0] = math.floor(1.5) * HUGE

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
+import numpy as np
+
 from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
 from thymio_sim_ros.sim.model.geometry import Tilt
 from thymio_sim_ros.sim.model.noise import NormalBank, UniformBank
-from thymio_sim_ros.sim.physics import BatchDriver, Contact
+from thymio_sim_ros.sim.physics import Contact, RobotState
 from thymio_sim_ros.sim.plugin_api.column_state import ColumnState
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.raycast.batch import Fan, Indices, Values
@@ -29,8 +31,13 @@ class RobotArrays(Protocol):
         ...
 
     @property
-    def batch_driver(self) -> BatchDriver:
-        """Their bodies."""
+    def state(self) -> RobotState:
+        """Their motion."""
+        ...
+
+    @property
+    def fallen(self) -> list[int]:
+        """Numbers of the robots that have fallen."""
         ...
 
     @property
@@ -98,11 +105,13 @@ class BatchView:
 
     @property
     def poses(self) -> Values:
-        return self._batch.batch_driver.poses
+        state, count = self._batch.state, len(self._robots)
+        return np.stack((state.x[:count], state.y[:count], state.yaw[:count]), axis=1)
 
     @property
     def motion(self) -> tuple[Values, Values]:
-        return self._batch.batch_driver.motion
+        state, count = self._batch.state, len(self._robots)
+        return state.speed[:count], state.turn_rate[:count]
 
     @property
     def wheels(self) -> WheelArrays:
@@ -110,8 +119,7 @@ class BatchView:
 
     @property
     def fallen(self) -> Sequence[int]:
-        found: list[int] = self._batch.batch_driver.fallen.tolist()
-        return found
+        return self._batch.fallen
 
     @property
     def falling(self) -> Sequence[int]:

@@ -68,10 +68,8 @@ class RobotBatch:
             for number, sensor in enumerate(self._sensors)
             if sensor.measure_all is not None
         }
-        self.batch_driver = shared.physics.form_batch()
-        self.wheels = WheelArrays([robot.wheels for robot in self._robots])
-        for robot in self._robots:
-            robot.shared_wheels = self.wheels
+        self.state = shared.physics.robot_state
+        self.wheels = WheelArrays(self.state, [robot.wheels for robot in self._robots])
         self._clearances = np.zeros((3, len(self._robots)))
         """Position at which the distance to the edge was computed last, and the square of that distance, by robot."""
         self._acts: list[tuple[Act, list[Any], _ActuatorBatchView]] = []
@@ -92,10 +90,6 @@ class RobotBatch:
 
     def dissolve(self) -> None:
         """End the batch: every robot is updated on its own again."""
-        self.shared.physics.dissolve()
-        self.wheels.write_back()
-        for robot in self._robots:
-            robot.shared_wheels = None
         for bank in self._uniform_banks:
             bank.release()
         for view in self._batch_views.values():
@@ -104,12 +98,18 @@ class RobotBatch:
     @property
     def poses(self) -> Values:
         """Poses, shape (robots, 3): x, y, yaw; a fallen robot is far from any floor."""
-        poses = self.batch_driver.poses
-        fallen = self.batch_driver.fallen
-        if len(fallen):
-            poses = poses.copy()
+        state, count = self.state, len(self._robots)
+        poses = np.stack((state.x[:count], state.y[:count], state.yaw[:count]), axis=1)
+        fallen = self.fallen
+        if fallen:
             poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
         return poses
+
+    @property
+    def fallen(self) -> list[int]:
+        """Numbers of the robots that have fallen."""
+        found: list[int] = (self.state.is_standing[: len(self._robots)] == 0).nonzero()[0].tolist()
+        return found
 
     def states(self, kind: type[S]) -> list[S]:
         """The state of one actuator of every robot."""
@@ -124,18 +124,13 @@ class RobotBatch:
             robot.act(dt_s, is_batched=True)
         for update_all, states, view in self._acts:
             update_all(states, view, dt_s)
-        self.batch_driver.driven = self.wheels.ground
-
-    def roll(self, dt_s: float) -> None:
-        """Advance the wheels by the motion of the bodies."""
-        self.wheels.roll(self.batch_driver.covered, dt_s)
 
     def check_floor(self, floor_support: FloorSupport) -> None:
         """Make robots without floor under their origin fall.
 
         A robot is checked again only when it has moved by the distance to the edge that was found last.
         """
-        places = self.batch_driver.poses.T[:2]
+        places = np.stack((self.state.x[: len(self._robots)], self.state.y[: len(self._robots)]))
         ways = places - self._clearances[:2]
         ways *= ways
         for index in (ways[0] + ways[1] >= self._clearances[2]).nonzero()[0].tolist():
@@ -144,7 +139,7 @@ class RobotBatch:
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """What the rays of all robots meet now (`BatchRaycaster.cast`)."""
-        self._raycaster.move(self.shared.physics.moved_obstacles(), self.batch_driver.fallen.tolist())
+        self._raycaster.move(self.shared.physics.moved_obstacles(), self.fallen)
         return self._raycaster.cast(self.poses, fan)
 
     def measure(self, due: Sequence[int]) -> ReadingTable:

@@ -1,11 +1,11 @@
-"""Restricted Python → WebAssembly text: one definition of a kernel, run by Python as it stands or compiled.
+"""Translates kernels, functions in restricted Python, to WebAssembly text. Python runs the same functions as they are.
 
-A kernel is a plain function of numbers and flat arrays. Every parameter has one of the types below, locals take the
-type of their first value. There are assignments, `if`, `while`, `for … in range(…)`, `break`, `continue`, `return`; the
-operators of numbers, comparisons, `and`, `or`, `not`, conditional expressions; `min`, `max`, `abs`, `int`, `float`,
-`round`, `math.sqrt`, `math.floor`; numbers of the module, and its other kernels. Floats are IEEE doubles and every
-operation is rounded as Python's is, so that both give the same bits; integers have 32 bits. NaN and the sign of 0 do
-not count.
+A kernel is a function of numbers, flat arrays and records of arrays. Every parameter has one of the types of
+`kernel.types`, `int`, `float`, or is a `Record`; a local variable has the type of its first value. There are
+assignments, `if`, `while`, `for … in range(…)`, `break`, `continue`, `return`; the operators of numbers, comparisons,
+`and`, `or`, `not`, conditional expressions; `min`, `max`, `abs`, `int`, `float`, `round`, `math.sqrt`, `math.floor`;
+numbers of the module, and kernels that it defines or imports. Floats are IEEE doubles and every operation is rounded as
+Python rounds it, so that both give the same bits; integers have 32 bits. NaN and the sign of 0 are left open.
 """
 
 from __future__ import annotations
@@ -13,86 +13,138 @@ from __future__ import annotations
 import ast
 import inspect
 import textwrap
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from functools import cache
 from typing import Any
 
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.sim.kernel.record import Record, fields
+from thymio_sim_ros.sim.kernel.types import Kernel, is_kernel
 
-__all__ = ["Floats", "Ints", "KernelError", "Words", "parameters", "translate"]
-
-Floats = Any
-"""A flat array of float64."""
-Ints = Any
-"""A flat array of int32."""
-Words = Any
-"""A flat array of uint16."""
+__all__ = ["KernelError", "Signature", "parameters", "translate"]
 
 _ARRAYS = {"Floats": ("f64", "f64.load", "f64.store", 3), "Ints": ("i32", "i32.load", "i32.store", 2),
            "Words": ("i32", "i32.load16_u", "i32.store16", 1)}  # fmt: skip
-"""Type of an element, how it is read and written, and by how many bits its number is shifted."""
+"""Type of an element, instructions to read and write it, and the shift from its index to its offset."""
 _SCALARS = {"int": "i32", "float": "f64", "None": ""}
 _ARITHMETIC = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 _BITS = {ast.LShift: "shl", ast.RShift: "shr_s", ast.BitAnd: "and", ast.BitOr: "or"}
 _COMPARISONS = {ast.Lt: "lt", ast.LtE: "le", ast.Gt: "gt", ast.GtE: "ge", ast.Eq: "eq", ast.NotEq: "ne"}
 
-Kernel = Callable[..., Any]
-Typed = tuple[str, str]
-"""An expression's text and type."""
+Signature = tuple[dict[str, "str | type[Record]"], str]
+"""The type of each parameter, and that of the result."""
+_Typed = tuple[str, str]
+"""Text and type of an expression."""
 
 
 class KernelError(ThymioSimError):
-    """A function uses what kernels have not; says where."""
+    """A kernel uses what the language of kernels does not have; the message names the line."""
 
 
 def translate(kernels: Iterable[Kernel]) -> str:
-    """The text of a module with its memory as the import "" "memory", and each kernel exported by its name."""
-    kernels = tuple(kernels)
-    signatures = {kernel.__name__: parameters(kernel) for kernel in kernels}
-    functions = "\n".join(_Function(kernel, signatures).text for kernel in kernels)
-    return f'(module (import "" "memory" (memory 1))\n{functions})'
+    """The text of a module that exports the kernels by name and imports its memory as "" "memory".
+
+    Raises:
+        KernelError: A kernel uses something else than this language has.
+    """
+    exported = {kernel.__name__: kernel for kernel in kernels}
+    functions = {}
+    pending = list(exported.values())
+    while pending:
+        kernel = pending.pop()
+        if functions.setdefault(kernel.__name__, kernel) is not kernel:
+            raise KernelError(f"two kernels have the name {kernel.__name__}")
+        pending += [called for called in _called(kernel) if functions.get(called.__name__) is not called]
+    text = "\n".join(_Function(kernel, is_exported=name in exported).text for name, kernel in functions.items())
+    return f'(module (import "" "memory" (memory 1))\n{text})'
 
 
-def parameters(kernel: Kernel) -> tuple[dict[str, str], str]:
-    """The type of each parameter of a kernel as it is written, and that of its result; KernelError for others."""
-    found = {name: str(kind) for name, kind in kernel.__annotations__.items()}
-    result = found.pop("return", "missing")
-    for name, kind in found.items():
-        if kind not in _ARRAYS and kind not in ("int", "float"):
-            raise KernelError(f"{kernel.__name__}: parameter {name} is {kind}, expected int, float or an array")
+@cache
+def parameters(kernel: Kernel) -> Signature:
+    """The parameters of a kernel and its result. Raises KernelError for types that kernels do not have."""
+    found: dict[str, str | type[Record]] = {}
+    annotations = dict(kernel.__annotations__)
+    result = str(annotations.pop("return", "missing"))
+    for name, kind in annotations.items():
+        known = getattr(kernel, "__globals__", {}).get(kind)
+        if isinstance(known, type) and issubclass(known, Record):
+            found[name] = known
+        elif kind in _ARRAYS or kind in ("int", "float"):
+            found[name] = str(kind)
+        else:
+            raise KernelError(f"{kernel.__name__}: parameter {name} is {kind}, expected int, float, array or record")
     if result not in _SCALARS:
         raise KernelError(f"{kernel.__name__}: result is {result}, expected int, float or None")
     return found, result
 
 
-class _Function:
-    """One kernel on its way to text."""
+def _called(kernel: Kernel) -> list[Kernel]:
+    """The kernels that a kernel may call."""
+    names = {
+        node.func.id
+        for node in ast.walk(_tree(kernel))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
+    found = (getattr(kernel, "__globals__", {}).get(name) for name in sorted(names))
+    return [candidate for candidate in found if candidate is not None and is_kernel(candidate)]
 
-    def __init__(self, kernel: Kernel, signatures: dict[str, tuple[dict[str, str], str]]) -> None:
-        self._kernel, self._signatures = kernel, signatures
+
+@cache
+def _tree(kernel: Kernel) -> ast.FunctionDef:
+    tree = ast.parse(textwrap.dedent(inspect.getsource(kernel))).body[0]
+    assert isinstance(tree, ast.FunctionDef)
+    return tree
+
+
+class _Function:
+    """Translates one kernel."""
+
+    def __init__(self, kernel: Kernel, *, is_exported: bool) -> None:
+        self._kernel = kernel
         self._globals: dict[str, Any] = getattr(kernel, "__globals__", {})
         self._arrays: dict[str, str] = {}
+        """The arrays in sight by name, those of a record as `record.field`, and their types."""
         self._types: dict[str, str] = {}
+        """The types of scalar parameters and local variables."""
+        self._records: dict[str, type[Record]] = {}
         self._loops = 0
         self._open: list[int] = []
-        given, result = signatures[kernel.__name__]
+        given, result = parameters(kernel)
         head = []
         for name, kind in given.items():
-            head.append(f"(param ${name} {_SCALARS.get(kind, 'i32')})")
-            if kind in _ARRAYS:
-                self._arrays[name] = kind
-            else:
-                self._types[name] = _SCALARS[kind]
+            if isinstance(kind, str):
+                head.append(self._parameter(name, kind))
+                continue
+            self._records[name] = kind
+            head.append(self._parameter(f"{name}.count", "int"))
+            head += [self._parameter(f"{name}.{field}", array) for field, array in fields(kind).items()]
         self._result = _SCALARS[result]
         own = set(self._types)
-        tree = ast.parse(textwrap.dedent(inspect.getsource(kernel))).body[0]
-        assert isinstance(tree, ast.FunctionDef)
-        body = self._block(tree.body)
+        body = self._block(_tree(kernel).body)
         local = "".join(f"(local ${name} {kind})" for name, kind in self._types.items() if name not in own)
         if self._result:
             head.append(f"(result {self._result})")
             body += f"\n({self._result}.const 0)"
         name = kernel.__name__
-        self.text = f'(func ${name} (export "{name}") {" ".join(head)} {local}\n{body})'
+        export = f'(export "{name}") ' if is_exported else ""
+        self.text = f"(func ${name} {export}{' '.join(head)} {local}\n{body})"
+
+    def _parameter(self, name: str, kind: str) -> str:
+        """Declare a parameter; returns its text."""
+        if kind in _ARRAYS:
+            self._arrays[name] = kind
+            return f"(param ${name} i32)"
+        self._types[name] = _SCALARS[kind]
+        return f"(param ${name} {_SCALARS[kind]})"
+
+    def _name(self, node: ast.expr) -> str:
+        """The name of a variable, or of a field of a record as `record.field`; empty for anything else."""
+        match node:
+            case ast.Name(id=name):
+                return name
+            case ast.Attribute(value=ast.Name(id=record), attr=field) if record in self._records:
+                return f"{record}.{field}"
+        return ""
 
     def _block(self, body: Iterable[ast.stmt]) -> str:
         return "\n".join(self._statement(statement) for statement in body)
@@ -151,12 +203,12 @@ class _Function:
             f"(block $next{number} {inside})\n{after} (br $top{number})))"
         )
 
-    def _store(self, target: ast.expr, value: Typed) -> str:
+    def _store(self, target: ast.expr, value: _Typed) -> str:
         match target:
-            case ast.Name(id=name) if name not in self._arrays:
+            case ast.Name(id=name) if name not in self._arrays and name not in self._records:
                 kind = self._types.setdefault(name, value[1])
                 return f"(local.set ${name} {self._as(value, kind, target)})"
-            case ast.Subscript(value=ast.Name(id=name), slice=index) if name in self._arrays:
+            case ast.Subscript(value=value_of, slice=index) if (name := self._name(value_of)) in self._arrays:
                 kind, _, store, shift = _ARRAYS[self._arrays[name]]
                 return f"({store} {self._address(name, index, shift)} {self._as(value, kind, target)})"
         raise self._refuse(target)
@@ -171,7 +223,7 @@ class _Function:
             raise self._refuse(node)
         return text
 
-    def _as(self, value: Typed, kind: str, node: ast.AST) -> str:
+    def _as(self, value: _Typed, kind: str, node: ast.AST) -> str:
         """A value as a type; an integer may become a float, as in Python."""
         text, found = value
         if found == kind:
@@ -206,15 +258,15 @@ class _Function:
         kind = "f64" if "f64" in (a[1], b[1]) else "i32"
         return (self._as(a, kind, left), self._as(b, kind, right)), kind
 
-    def _value(self, node: ast.expr) -> Typed:
+    def _value(self, node: ast.expr) -> _Typed:
         match node:
             case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
                 return _constant(number)
-            case ast.Name(id=name) if name in self._types:
+            case ast.Name() | ast.Attribute() if (name := self._name(node)) in self._types:
                 return f"(local.get ${name})", self._types[name]
             case ast.Name(id=name) if isinstance(self._globals.get(name), int | float) and name not in self._arrays:
                 return _constant(self._globals[name])
-            case ast.Subscript(value=ast.Name(id=name), slice=index) if name in self._arrays:
+            case ast.Subscript(value=value, slice=index) if (name := self._name(value)) in self._arrays:
                 kind, load, _, shift = _ARRAYS[self._arrays[name]]
                 return f"({load} {self._address(name, index, shift)})", kind
             case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as number)):
@@ -233,7 +285,7 @@ class _Function:
                     return text, kind
         raise self._refuse(node)
 
-    def _operation(self, node: ast.expr, left: ast.expr, op: ast.operator, right: ast.expr) -> Typed:
+    def _operation(self, node: ast.expr, left: ast.expr, op: ast.operator, right: ast.expr) -> _Typed:
         (a, b), kind = self._alike(left, right)
         if type(op) in _ARITHMETIC:
             return f"({kind}.{_ARITHMETIC[type(op)]} {a} {b})", kind
@@ -243,7 +295,7 @@ class _Function:
             return f"(i32.{_BITS[type(op)]} {a} {b})", kind
         raise self._refuse(node)
 
-    def _call(self, node: ast.Call) -> Typed:
+    def _call(self, node: ast.Call) -> _Typed:
         match node.func, node.args:
             case ast.Name(id="min" | "max" as name), [left, right]:
                 (a, b), kind = self._alike(left, right)
@@ -261,20 +313,23 @@ class _Function:
                 return f"(f64.sqrt {self._as(self._value(value), 'f64', node)})", "f64"
             case ast.Attribute(value=ast.Name(id="math"), attr="floor"), [value]:
                 return f"(i32.trunc_sat_f64_s (f64.floor {self._as(self._value(value), 'f64', node)}))", "i32"
-            case ast.Name(id=name), values if name in self._signatures:
-                given, result = self._signatures[name]
+            case ast.Name(id=name), values if is_kernel(self._globals.get(name)):
+                given, result = parameters(self._globals[name])
                 if len(given) == len(values):
-                    arguments = [
-                        self._argument(value, kind) for value, kind in zip(values, given.values(), strict=True)
-                    ]
-                    return f"(call ${name} {' '.join(arguments)})", _SCALARS[result]
+                    arguments = " ".join(map(self._argument, values, given.values()))
+                    return f"(call ${self._globals[name].__name__} {arguments})", _SCALARS[result]
         raise self._refuse(node)
 
-    def _argument(self, node: ast.expr, kind: str) -> str:
-        if kind in _SCALARS:
+    def _argument(self, node: ast.expr, kind: str | type[Record]) -> str:
+        name = self._name(node)
+        if not isinstance(kind, str):
+            if self._records.get(name) is kind:
+                names = (f"{name}.{field}" for field in ("count", *fields(kind)))
+                return " ".join(f"(local.get ${field})" for field in names)
+        elif kind in _SCALARS:
             return self._as(self._value(node), _SCALARS[kind], node)
-        if isinstance(node, ast.Name) and self._arrays.get(node.id) == kind:
-            return f"(local.get ${node.id})"
+        elif self._arrays.get(name) == kind:
+            return f"(local.get ${name})"
         raise self._refuse(node)
 
     def _refuse(self, node: ast.AST) -> KernelError:
@@ -284,7 +339,7 @@ class _Function:
         return KernelError(f"{self._kernel.__module__}, line {line}: kernels have no `{found}`")
 
 
-def _constant(number: float) -> Typed:
+def _constant(number: float) -> _Typed:
     if isinstance(number, int):
         return f"(i32.const {number})", "i32"
     return f"(f64.const {number.hex() if abs(number) != float('inf') else number})", "f64"

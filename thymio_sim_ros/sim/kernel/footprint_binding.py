@@ -53,7 +53,6 @@ class FootprintBinding:
         self.pixels[:], self.tiles[:], self.grays[:] = pixels, tiles, grays
         self._memory = memory
         self._go = memory.bind(
-            footprint_kernel,
             footprint_kernel.spots,
             robots,
             len(points),
@@ -63,8 +62,7 @@ class FootprintBinding:
             xs,
             ys,
         )
-        self._see = memory.bind(
-            footprint_kernel, footprint_kernel.sample, self._counts, own_sizes, xs, ys, self.tiles, self.pixels,
+        self._see = memory.bind(footprint_kernel.sample, self._counts, own_sizes, xs, ys, self.tiles, self.pixels,
             self.grays, near, self._reflectances, self._floors,
         )  # fmt: skip
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.compiler import Floats, Ints, Words
+from thymio_sim_ros.sim.kernel.types import Floats, Ints, Words, kernel
 
-__all__ = ["COUNTS", "KERNELS", "TAPS", "sample", "spots"]
-
-KERNELS = ("spots", "taps", "sample")
+__all__ = ["COUNTS", "TAPS", "sample", "spots"]
 
 TAPS = 9
 COUNTS = (
@@ -26,6 +24,7 @@ _ALL = 1.0 - 1e-9
 _TAPS = TAPS
 
 
+@kernel
 def spots(robots: int, count: int, poses: Floats, turns: Floats, points: Floats, xs: Floats, ys: Floats) -> None:
     """Where points of the robots' frames are; `turns` are cosines, then sines, of the robots' yaws."""
     for robot in range(robots):
@@ -38,6 +37,7 @@ def spots(robots: int, count: int, poses: Floats, turns: Floats, points: Floats,
             ys[robot * count + point] = poses[3 * robot + 1] + sin * along + cos * aside
 
 
+@kernel
 def taps(cell: int, origin: int, size: int, sizes: Floats, found: Ints, first: int) -> None:
     """Pixel of each tap of a cell along one axis, kept one pixel round the picture."""
     middle = (cell + 0.5) * sizes[_CELL]
@@ -46,6 +46,7 @@ def taps(cell: int, origin: int, size: int, sizes: Floats, found: Ints, first: i
         found[first + tap] = -1 if pixel < -1 else size if pixel > size else pixel
 
 
+@kernel
 def sample(
     counts: Ints,
     sizes: Floats,

@@ -1,14 +1,14 @@
 """Memory that Python and compiled kernels share, and kernels bound to arrays in it.
 
-Kernels run in WebAssembly when the package wasmtime is installed (`pip install thymio-sim-ros[fast]`); nothing but time
-depends on it. A kernel that reads beyond its arrays would not be noticed here: tests run all of them in Python too.
+Kernels run in WebAssembly. Where wasmtime does not work, Python runs the same functions: slowly, with the same bits. A
+compiled kernel that reads beyond its arrays would not be noticed; the tests run all kernels in Python too.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
-from functools import cache
-from types import ModuleType
+from functools import cache, partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -16,39 +16,47 @@ import numpy.typing as npt
 
 from aseba_vm.jit.wasm_calls import make_caller
 from aseba_vm.jit.wasm_runtime import WasmRuntime, is_usable
-from thymio_sim_ros.sim.kernel.compiler import Kernel, KernelError, parameters, translate
+from thymio_sim_ros.sim.kernel.compiler import KernelError, parameters, translate
+from thymio_sim_ros.sim.kernel.record import Record, fields
+from thymio_sim_ros.sim.kernel.types import ALIGNMENT, DTYPES, Kernel
 
 __all__ = ["KernelMemory", "is_available"]
 
 _PAGE = 0x10000
-_ALIGNMENT = 16
-_TYPES = {"Floats": np.dtype(np.float64), "Ints": np.dtype(np.int32), "Words": np.dtype(np.uint16)}
 
 Shape = int | tuple[int, ...]
 A = TypeVar("A", bound=np.generic)
+Argument = Record | npt.NDArray[Any] | float
 
 
+@cache
 def is_available() -> bool:
-    """Whether kernels can be compiled here."""
-    return is_usable()
+    """Whether kernels can be compiled here; logged once if not."""
+    if is_usable():
+        return True
+    logging.getLogger(__name__).warning("wasmtime does not work here: the simulator runs some fifty times slower")
+    return False
 
 
 class KernelMemory:
-    """So many bytes, of which arrays are taken. Invariant: an array keeps its place as long as its memory is open."""
+    """A fixed number of bytes in which arrays are allocated. An array stays where it is while its memory is open."""
 
-    def __init__(self, size: int) -> None:
-        """Needs wasmtime."""
-        runtime = WasmRuntime.get()
-        self._wasmtime = wasmtime = runtime.wasmtime
-        self._store = wasmtime.Store(runtime.engine)
-        pages = -(-size // _PAGE)
-        memory = wasmtime.Memory(self._store, wasmtime.MemoryType(wasmtime.Limits(pages, pages)))
-        self._memory = memory
-        self._instances: dict[ModuleType, Any] = {}
-        self._bytes = np.ctypeslib.as_array(memory.data_ptr(self._store), (pages * _PAGE,))
+    def __init__(self, size: int, *, is_compiled: bool | None = None) -> None:
+        """Allocate `size` bytes. `is_compiled`: whether kernels are compiled; None: if that is possible."""
+        self._wasmtime: Any = None
+        if is_available() if is_compiled is None else is_compiled:
+            runtime = WasmRuntime.get()
+            self._wasmtime = wasmtime = runtime.wasmtime
+            self._store = wasmtime.Store(runtime.engine)
+            pages = -(-size // _PAGE)
+            memory = wasmtime.Memory(self._store, wasmtime.MemoryType(wasmtime.Limits(pages, pages)))
+            self._memory = memory
+            self._bytes = np.ctypeslib.as_array(memory.data_ptr(self._store), (pages * _PAGE,))
+            runtime.register(self)
+        else:
+            self._bytes = np.zeros(size + ALIGNMENT, dtype=np.uint8)
         self._base = self._bytes.ctypes.data
         self._used = 0
-        runtime.register(self)
 
     @classmethod
     def holding(cls, floats: Sequence[Shape], ints: Sequence[Shape] = ()) -> tuple[KernelMemory, list[Any], list[Any]]:
@@ -61,45 +69,63 @@ class KernelMemory:
     @staticmethod
     def room(shape: Shape, kind: type[np.generic]) -> int:
         """Bytes that an array takes at most."""
-        return int(np.prod(shape)) * np.dtype(kind).itemsize + _ALIGNMENT
+        return int(np.prod(shape)) * np.dtype(kind).itemsize + ALIGNMENT
 
     def array(self, shape: Shape, kind: type[A]) -> npt.NDArray[A]:
-        """An array of zeros; MemoryError when there is no room."""
-        start = -(-self._used // _ALIGNMENT) * _ALIGNMENT
+        """Allocate an array of zeros. Raises MemoryError when there is no room."""
+        start = -(-self._used // ALIGNMENT) * ALIGNMENT
         end = start + int(np.prod(shape)) * np.dtype(kind).itemsize
         if end > len(self._bytes):
             raise MemoryError(f"an array of {shape}: found {len(self._bytes) - start} bytes, expected {end - start}")
         self._used = end
         return self._bytes[start:end].view(kind).reshape(shape)
 
-    def bind(self, module: ModuleType, kernel: Kernel, *arguments: npt.NDArray[Any] | float) -> Callable[[], object]:
-        """What calls a kernel of a module, always with these numbers and these arrays of this memory."""
-        kinds = parameters(kernel)[0]
+    def bind(self, kernel: Kernel, *arguments: Argument) -> Callable[[], Any]:
+        """Return a function that calls a kernel with these numbers, arrays and records, always the same.
+
+        The arrays must be of this memory. Raises KernelError for arguments that do not fit the parameters.
+        """
+        kinds, result = parameters(kernel)
+        if result != "None":
+            raise KernelError(f"{kernel.__name__}: result is {result}, expected None of a kernel that Python calls")
         if len(kinds) != len(arguments):
             raise KernelError(f"{kernel.__name__}: found {len(arguments)} arguments, expected {len(kinds)}")
-        values = [
-            self._place(argument, kind) if isinstance(argument, np.ndarray) else argument
-            for argument, kind in zip(arguments, kinds.values(), strict=True)
-        ]
-        instance = self._instances.get(module)
-        if instance is None:
-            instance = self._wasmtime.Instance(self._store, _compiled(module), [self._memory]).exports(self._store)
-            self._instances[module] = instance
+        if self._wasmtime is None:
+            return partial(kernel, *map(_as_python, arguments))
+        values: list[float] = []
+        for argument, kind in zip(arguments, kinds.values(), strict=True):
+            if isinstance(argument, Record):
+                values.append(argument.count)
+                values += [
+                    self._place(getattr(argument, name), array) for name, array in fields(type(argument)).items()
+                ]
+            elif isinstance(argument, np.ndarray):
+                values.append(self._place(argument, str(kind)))
+            else:
+                values.append(float(argument) if kind == "float" else argument)
+        instance = self._wasmtime.Instance(self._store, _compiled(kernel), [self._memory]).exports(self._store)
         return make_caller(self._wasmtime, self._store, instance[kernel.__name__], values)
 
     def close(self) -> None:
         """Free the memory; its arrays and bound kernels must not be used any more."""
-        self._store.close()
+        if self._wasmtime is not None:
+            self._store.close()
 
     def _place(self, array: npt.NDArray[Any], kind: str) -> int:
         place = array.ctypes.data - self._base
-        if array.dtype != _TYPES[kind] or not array.flags.c_contiguous or not 0 <= place <= len(self._bytes):
-            raise KernelError(f"an array of {array.dtype}, expected {_TYPES[kind]} in one piece in this memory")
+        if array.dtype != DTYPES[kind] or not array.flags.c_contiguous or not 0 <= place <= len(self._bytes):
+            raise KernelError(f"an array of {array.dtype}, expected {DTYPES[kind]} in one piece in this memory")
         return place
 
 
+def _as_python(argument: Argument) -> Any:
+    """An argument as Python kernels read it fastest."""
+    if isinstance(argument, Record):
+        return argument.view
+    return memoryview(argument.reshape(-1)) if isinstance(argument, np.ndarray) else argument
+
+
 @cache
-def _compiled(module: ModuleType) -> Any:
-    """All kernels of a module, compiled once."""
-    kernels = [module.__dict__[name] for name in module.KERNELS]
-    return WasmRuntime.get().compile(translate(kernels))
+def _compiled(kernel: Kernel) -> Any:
+    """A kernel and those that it calls, compiled once per process."""
+    return WasmRuntime.get().compile(translate([kernel]))

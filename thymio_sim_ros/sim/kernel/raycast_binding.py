@@ -111,7 +111,6 @@ class RaycastBinding:
         self._counts, self._kinds, self._first, self._near = counts, kinds, first, near
         self._side_numbers, self._numbers = side_numbers, numbers
         self._call = memory.bind(
-            raycast_kernel,
             raycast_kernel.cast,
             counts,
             sizes,

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.compiler import Floats, Ints
+from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
 
-__all__ = ["COUNTS", "KERNELS", "cast"]
-
-KERNELS = ("meet_disc", "meet_box", "meet_polygon", "is_facing", "cast")
+__all__ = ["COUNTS", "cast"]
 
 COUNTS = ("robots", "sensors", "rays", "things", "fixed", "is_narrow", "seen", "is_stale")
 """What each of `counts` is: the last two are answers."""
@@ -20,6 +18,7 @@ _TINY = 1e-300
 _DISC, _BOX = -2, -1
 
 
+@kernel
 def meet_disc(x: float, y: float, dx: float, dy: float, radius: float) -> float:
     """How far a ray goes until it enters a disc round the origin."""
     middle = -(x * dx + y * dy)
@@ -28,6 +27,7 @@ def meet_disc(x: float, y: float, dx: float, dy: float, radius: float) -> float:
     return enter if square >= 0.0 and enter >= 0.0 else _FAR
 
 
+@kernel
 def meet_box(x: float, y: float, dx: float, dy: float, half_x: float, half_y: float) -> float:
     """How far a ray goes until it enters a box round the origin."""
     across_x = 1.0 / (_TINY if dx == 0.0 else dx)
@@ -41,6 +41,7 @@ def meet_box(x: float, y: float, dx: float, dy: float, half_x: float, half_y: fl
     return enter if 0.0 <= enter <= leave else _FAR
 
 
+@kernel
 def meet_polygon(x: float, y: float, dx: float, dy: float, planes: Floats, first: int, last: int) -> float:
     """How far a ray goes until it is inside all of some half planes."""
     enter = -_FAR
@@ -59,6 +60,7 @@ def meet_polygon(x: float, y: float, dx: float, dy: float, planes: Floats, first
     return enter if 0.0 <= enter <= leave else _FAR
 
 
+@kernel
 def is_facing(x: float, y: float, ax: float, ay: float, cos: float, sin: float, radius: float) -> int:
     """Whether a ray of a sensor at x, y may meet a circle round the origin: axis, and angle to its outermost ray."""
     ahead = -(ax * x + ay * y)
@@ -66,6 +68,7 @@ def is_facing(x: float, y: float, ax: float, ay: float, cos: float, sin: float, 
     return 1 if aside * cos - ahead * sin <= radius and ahead >= -radius else 0
 
 
+@kernel
 def cast(
     counts: Ints,
     sizes: Floats,

@@ -26,9 +26,7 @@ class RngBinding:
         self._counts[1] = width
         self._memory = memory
         self.most = most
-        self._call = memory.bind(
-            rng_kernel, rng_kernel.draw, self._counts, self._users, self.numbers, self.used, self._drawn
-        )
+        self._call = memory.bind(rng_kernel.draw, self._counts, self._users, self.numbers, self.used, self._drawn)
 
     def draw(self, users: npt.NDArray[np.intp]) -> Values | None:
         """A number for each turn of a user, to be read until the next call; None when one has too few left."""

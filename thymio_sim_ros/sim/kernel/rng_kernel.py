@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.kernel.compiler import Floats, Ints
+from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
 
-__all__ = ["COUNTS", "KERNELS", "draw"]
-
-KERNELS = ("draw",)
+__all__ = ["COUNTS", "draw"]
 
 COUNTS = ("turns", "width", "is_short")
 """What each of `counts` is: so many turns, so many numbers in a row; the last is an answer."""
 _TURNS, _WIDTH, _IS_SHORT = range(len(COUNTS))
 
 
+@kernel
 def draw(counts: Ints, users: Ints, numbers: Floats, used: Ints, drawn: Floats) -> None:
     """The next number for each turn of a user, unless one has too few: then none is dealt."""
     width = counts[_WIDTH]

@@ -2,46 +2,94 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from thymio_sim_ros.sim.kernel.memory import is_available
-from thymio_sim_ros.sim.kernel.wheel_odometry_binding import WheelOdometryBinding
+from thymio_sim_ros.sim.kernel.trigonometry import cos, sin
+from thymio_sim_ros.sim.kernel.types import kernel
 from thymio_sim_ros.sim.mechanics.motor_control import WheelControl
+from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.geometry import Pose, Twist
 from thymio_sim_ros.sim.model.robot_constants import WHEEL_RADIUS_M, WHEEL_TRACK_M
+from thymio_sim_ros.sim.physics.robot_body import RobotBody
+from thymio_sim_ros.sim.physics.robot_state import RobotState
 
-__all__ = ["WheelArrays", "Wheels", "twist_of"]
+__all__ = ["WheelArrays", "Wheels", "roll", "twist_of"]
 
 Values = npt.NDArray[np.float64]
 
+_TICK_S = TICK_NS * 1e-9
+_TRACK_M = WHEEL_TRACK_M
+_RADIUS_M = WHEEL_RADIUS_M
+
+
+@kernel
+def roll(robots: RobotState) -> None:
+    """Advance wheels and odometry by a tick.
+
+    While nothing holds a robot, its wheels turn as the motors aim; what an obstacle takes from the speed over ground,
+    it takes from the wheels.
+    """
+    for robot in range(robots.count):
+        left = robots.covered_left[robot] - robots.ground_left[robot] + robots.aimed_left[robot]
+        right = robots.covered_right[robot] - robots.ground_right[robot] + robots.aimed_right[robot]
+        robots.rim_left[robot] = left
+        robots.rim_right[robot] = right
+        if left == 0.0 and right == 0.0:
+            continue
+        distance = (left + right) / 2.0 * _TICK_S
+        turn = (right - left) / _TRACK_M * _TICK_S
+        heading = robots.odometry_yaw[robot] + turn / 2.0
+        robots.odometry_x[robot] = robots.odometry_x[robot] + distance * cos(heading)
+        robots.odometry_y[robot] = robots.odometry_y[robot] + distance * sin(heading)
+        robots.odometry_yaw[robot] = robots.odometry_yaw[robot] + turn
+        robots.angle_left[robot] = robots.angle_left[robot] + left * (_TICK_S / _RADIUS_M)
+        robots.angle_right[robot] = robots.angle_right[robot] + right * (_TICK_S / _RADIUS_M)
+
 
 class Wheels:
-    """Speeds in m/s at the rim, left then right.
+    """The wheels of one robot; speeds are in m/s at the rim, left then right.
 
-    `commanded` is what the motors aim at, `ground` what reaches the floor after slip. While nothing holds the robot,
-    the wheels turn as commanded; what an obstacle takes from the ground speed, it takes from the wheels. `control` are
-    the loops that the motors follow, if they do not follow at once.
+    `control` are the loops that the motors follow, if they do not follow at once.
     """
 
-    __slots__ = ("angles_rad", "commanded", "control", "ground", "place", "speeds_m_s")
+    __slots__ = ("_body", "control")
 
-    def __init__(self) -> None:
-        self.commanded = (0.0, 0.0)
+    def __init__(self, body: RobotBody) -> None:
+        self._body = body
         self.control: tuple[WheelControl, WheelControl] | None = None
-        self.ground = (0.0, 0.0)
-        self.speeds_m_s = (0.0, 0.0)
-        self.angles_rad = (0.0, 0.0)
-        self.place = (0.0, 0.0, 0.0)
-        """The odometry's x, y and yaw."""
+
+    @property
+    def commanded(self) -> tuple[float, float]:
+        """Speeds that the motors aim at."""
+        state, index = self._body.state, self._body.index
+        return state.aimed_left[index], state.aimed_right[index]
+
+    @property
+    def ground(self) -> tuple[float, float]:
+        """Speeds that reach the floor after slip."""
+        state, index = self._body.state, self._body.index
+        return state.ground_left[index], state.ground_right[index]
+
+    @property
+    def speeds_m_s(self) -> tuple[float, float]:
+        """Speeds in the last tick."""
+        state, index = self._body.state, self._body.index
+        return state.rim_left[index], state.rim_right[index]
+
+    @property
+    def angles_rad(self) -> tuple[float, float]:
+        """Angles by which they have turned."""
+        state, index = self._body.state, self._body.index
+        return state.angle_left[index], state.angle_right[index]
 
     @property
     def odometry(self) -> Pose:
         """Pose by wheel odometry."""
-        return Pose(*self.place)
+        state, index = self._body.state, self._body.index
+        return Pose(state.odometry_x[index], state.odometry_y[index], state.odometry_yaw[index])
 
     @property
     def twist(self) -> Twist:
@@ -50,39 +98,16 @@ class Wheels:
 
     def drive(self, commanded: tuple[float, float], slip: tuple[float, float], limit_m_s: float) -> None:
         """Set target speeds; the speeds over ground are these times slip, both clamped to the limit."""
+        state, index = self._body.state, self._body.index
         left, right = commanded
-        ground = (left * slip[0], right * slip[1])
-        if not (
-            -limit_m_s <= left <= limit_m_s and -limit_m_s <= right <= limit_m_s
-            and -limit_m_s <= ground[0] <= limit_m_s and -limit_m_s <= ground[1] <= limit_m_s
-        ):  # fmt: skip
-            commanded = (_limited(left, limit_m_s), _limited(right, limit_m_s))
-            ground = (_limited(ground[0], limit_m_s), _limited(ground[1], limit_m_s))
-        self.commanded, self.ground = commanded, ground
-
-    def roll(self, covered_m_s: tuple[float, float], dt_s: float) -> None:
-        """Advance angles and odometry by a tick, given the mean speed over ground at each wheel."""
-        if covered_m_s == self.ground:
-            self.speeds_m_s = self.commanded
-        else:
-            self.speeds_m_s = (
-                self.commanded[0] + (covered_m_s[0] - self.ground[0]),
-                self.commanded[1] + (covered_m_s[1] - self.ground[1]),
-            )
-        left, right = self.speeds_m_s
-        if left == 0.0 and right == 0.0:
-            return
-        distance, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s
-        x_m, y_m, yaw_rad = self.place
-        heading = yaw_rad + turn / 2
-        self.place = (x_m + distance * math.cos(heading), y_m + distance * math.sin(heading), yaw_rad + turn)
-        angle_left, angle_right = self.angles_rad
-        per_m = dt_s / WHEEL_RADIUS_M
-        self.angles_rad = (angle_left + left * per_m, angle_right + right * per_m)
+        state.aimed_left[index], state.aimed_right[index] = _limited(left, limit_m_s), _limited(right, limit_m_s)
+        state.ground_left[index] = _limited(left * slip[0], limit_m_s)
+        state.ground_right[index] = _limited(right * slip[1], limit_m_s)
 
     def reset_odometry(self) -> None:
         """Set the odometry to zero."""
-        self.place = (0.0, 0.0, 0.0)
+        state, index = self._body.state, self._body.index
+        state.odometry_x[index] = state.odometry_y[index] = state.odometry_yaw[index] = 0.0
 
 
 def twist_of(left_m_s: float, right_m_s: float) -> Twist:
@@ -91,135 +116,51 @@ def twist_of(left_m_s: float, right_m_s: float) -> Twist:
 
 
 def _limited(speed_m_s: float, limit_m_s: float) -> float:
-    return max(-limit_m_s, min(limit_m_s, speed_m_s))
+    return -limit_m_s if speed_m_s < -limit_m_s else limit_m_s if speed_m_s > limit_m_s else speed_m_s
 
 
 class WheelArrays:
-    """The wheels of a batch: the computations of `Wheels` on arrays of shape (2, robots), left first.
+    """The wheels of all robots, as arrays of shape (2, robots), left first."""
 
-    The arrays are authoritative. After `write_back`, and until the next `drive` or `roll`, each `Wheels` may be read
-    and changed.
-    """
+    def __init__(self, state: RobotState, wheels: Sequence[Wheels]) -> None:
+        self._state, self._wheels, self._count = state, tuple(wheels), len(wheels)
 
-    def __init__(self, wheels: Sequence[Wheels], *, is_compiled: bool | None = None) -> None:
-        """`is_compiled`: use kernels, or numpy; None: kernels if available. The results are the same."""
-        self._wheels = tuple(wheels)
-        self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._odometry_binding: WheelOdometryBinding | None = None
-        self.is_written_back = True
-        """Whether the wheels are the truth just now."""
-        self._given: Values | None = None
-        """What was commanded last, beyond the limit perhaps."""
-        self._allowed: Values = np.zeros((2, 0))
-        self.load()
-
-    @property
-    def ground(self) -> Values:
-        """Speeds that reach the floor, m/s."""
-        self.load()
-        return self._ground
+    def _rows(self, *arrays: Values) -> Values:
+        return np.array([array[: self._count] for array in arrays])
 
     @property
     def speeds(self) -> Values:
-        """Speeds at the rim, m/s."""
-        self.load()
-        return self._speeds
+        """Speeds at the rim in the last tick, m/s."""
+        return self._rows(self._state.rim_left, self._state.rim_right)
 
     @property
     def commanded(self) -> Values:
         """Speeds that the motors aim at, m/s."""
-        self.load()
-        return self._commanded
+        return self._rows(self._state.aimed_left, self._state.aimed_right)
 
     @property
     def angles(self) -> Values:
-        """How far they have turned, rad."""
-        self.load()
-        return self._angles
+        """Angles by which they have turned, rad."""
+        return self._rows(self._state.angle_left, self._state.angle_right)
 
     @property
     def odometry(self) -> Values:
-        """Where they have brought the robots by their count: rows x, y, yaw."""
-        self.load()
-        return self._odometry
+        """Poses by wheel odometry: rows x, y in m, yaw in rad."""
+        return self._rows(self._state.odometry_x, self._state.odometry_y, self._state.odometry_yaw)
 
     @property
     def controls(self) -> dict[int, tuple[WheelControl, WheelControl]]:
-        """The loops that motors follow, by robot; those that follow at once have none."""
+        """The loops that motors follow, by robot; motors that follow at once have none."""
         return {number: wheels.control for number, wheels in enumerate(self._wheels) if wheels.control is not None}
 
     def set_control(self, number: int, control: tuple[WheelControl, WheelControl] | None) -> None:
-        """The loops that one robot's motors follow."""
+        """Set the loops that one robot's motors follow."""
         self._wheels[number].control = control
 
-    def write_back(self) -> None:
-        """Write the arrays back to the `Wheels`."""
-        if self.is_written_back:
-            return
-        self.is_written_back = True
-        columns = (self._commanded, self._ground, self._speeds, self._angles)
-        pairs = zip(*(zip(*values.tolist(), strict=True) for values in columns), strict=True)
-        for wheels, values, place in zip(self._wheels, pairs, zip(*self._odometry.tolist(), strict=True), strict=True):
-            wheels.commanded, wheels.ground, wheels.speeds_m_s, wheels.angles_rad = values
-            wheels.place = place
-
-    def load(self) -> None:
-        """Read the `Wheels` into the arrays, if they may have been changed."""
-        if not self.is_written_back:
-            return
-        self.is_written_back = False
-        self._commanded = _rows([wheels.commanded for wheels in self._wheels], 2)
-        self._ground = _rows([wheels.ground for wheels in self._wheels], 2)
-        self._speeds = _rows([wheels.speeds_m_s for wheels in self._wheels], 2)
-        self._angles = _rows([wheels.angles_rad for wheels in self._wheels], 2)
-        self._odometry = _rows([wheels.place for wheels in self._wheels], 3)
-        if self._odometry_binding is not None:
-            self._odometry_binding.odometry[:], self._odometry_binding.angles[:] = self._odometry, self._angles
-
     def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
-        """Set target speeds, shape (2, robots); `commanded` must not be modified afterwards."""
-        self.load()
-        if commanded is not self._given:
-            self._given = commanded
-            self._allowed = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded))
-        self._commanded = self._allowed
-        self._ground = ground = commanded * slip
-        np.minimum(ground, limit_m_s, out=ground)
-        np.maximum(ground, -limit_m_s, out=ground)
-
-    def roll(self, covered_m_s: Values, dt_s: float) -> None:
-        """Advance angles and odometry by a tick; `covered_m_s` has shape (2, robots)."""
-        self.load()
-        if self._is_compiled:
-            self._roll_compiled(covered_m_s, dt_s)
-            return
-        self._speeds = speeds = covered_m_s - self._ground
-        speeds += self._commanded
-        left, right = speeds
-        distance, turn = left + right, right - left
-        distance *= dt_s / 2
-        turn /= WHEEL_TRACK_M
-        turn *= dt_s
-        before, self._odometry = self._odometry, np.empty_like(self._odometry)
-        heading = turn / 2
-        heading += before[2]
-        place = self._odometry[:2]
-        np.cos(heading, out=place[0])
-        np.sin(heading, out=place[1])
-        place *= distance
-        place += before[:2]
-        np.add(before[2], turn, out=self._odometry[2])
-        self._angles = self._angles + speeds * (dt_s / WHEEL_RADIUS_M)
-
-    def _roll_compiled(self, covered_m_s: Values, dt_s: float) -> None:
-        binding = self._odometry_binding
-        if binding is None or binding.dt_s != dt_s:
-            binding = self._odometry_binding = WheelOdometryBinding(
-                len(self._wheels), dt_s, WHEEL_TRACK_M, WHEEL_RADIUS_M
-            )
-            binding.odometry[:], binding.angles[:] = self._odometry, self._angles
-        self._speeds, self._odometry, self._angles = binding.roll(covered_m_s, self._ground, self._commanded)
-
-
-def _rows(values: Sequence[Sequence[float]], width: int) -> Values:
-    return np.ascontiguousarray(np.array(values, dtype=float).reshape(-1, width).T)
+        """Set target speeds, shape (2, robots); see `Wheels.drive`."""
+        state, count = self._state, self._count
+        ground = np.minimum(np.maximum(commanded * slip, -limit_m_s), limit_m_s)
+        aimed = np.minimum(np.maximum(commanded, -limit_m_s), limit_m_s)
+        state.aimed_left[:count], state.aimed_right[:count] = aimed
+        state.ground_left[:count], state.ground_right[:count] = ground

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import pymunk
@@ -18,13 +17,9 @@ _OBJECT_TYPE = 2
 
 
 class ContactTracker:
-    """The contacts in a space. Invariant: every shape in it has a name here, every robot's shape its robot.
+    """The contacts in a space. Invariant: every shape in it has a name here, every robot's shape its robot."""
 
-    `on_change` is called with a robot when a contact of it begins or ends.
-    """
-
-    def __init__(self, space: pymunk.Space, on_change: Callable[[RobotBody], None], *, do_objects_bounce: bool) -> None:
-        self._on_change = on_change
+    def __init__(self, space: pymunk.Space, *, do_objects_bounce: bool) -> None:
         self._names: dict[pymunk.Shape, str] = {}
         self._robots: dict[pymunk.Shape, RobotBody] = {}
         space.on_collision(ROBOT_TYPE, _OBJECT_TYPE, self._on_begin, separate=self._on_separate)
@@ -44,7 +39,8 @@ class ContactTracker:
     def forget(self, shape: pymunk.Shape) -> None:
         """Remove the contacts with a shape."""
         for robot in self._robots.values():
-            robot.touching.pop(shape, None)
+            if robot.touching.pop(shape, None) is not None:
+                robot.hold()
 
     def unwatch(self, shape: pymunk.Shape) -> None:
         """A shape will not be in the space again."""
@@ -60,16 +56,16 @@ class ContactTracker:
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
             if robot is not None:
-                self._on_change(robot)
                 robot.touching[its] = Contact(robot.name, self._names[its], x, y, speed, True)
+                robot.hold()
 
     def _on_separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
         one, other = arbiter.shapes
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
             if robot is not None:
-                self._on_change(robot)
                 robot.touching.pop(its, None)
+                robot.hold()
 
 
 def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:

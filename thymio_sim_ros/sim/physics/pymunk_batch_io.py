@@ -17,48 +17,40 @@ import numpy.typing as npt
 import pymunk
 from pymunk import _chipmunk_cffi, batch
 
-__all__ = ["FORCES", "SPEEDS", "BodyReader", "BodyWriter", "set_by_properties"]
+__all__ = ["BodyReader", "BodyWriter", "set_by_properties"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
 _Fields = batch.BodyFields
-SPEEDS = _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
-FORCES = SPEEDS | _Fields.FORCE | _Fields.TORQUE
-_STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | SPEEDS
+_SPEEDS = _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
+_FORCES = _SPEEDS | _Fields.FORCE | _Fields.TORQUE
+_STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | _SPEEDS
 
 
 class BodyWriter:
-    """Writes to chosen bodies of a space; the others stay asleep."""
+    """Writes velocities and forces to chosen bodies of a space; the others stay asleep."""
 
-    def __init__(self, bodies: Sequence[pymunk.Body] = ()) -> None:
+    def __init__(self, rows: Values) -> None:
+        """A row of `rows` for each body: velocity x, y, rate of turn, force x, y, torque."""
+        self._rows, self._buffer = rows, batch.Buffer()
+        self._buffer.set_float_buf(rows)
         self._function = getattr(_chipmunk_cffi.lib, "pmSpaceBodySetIteratorFuncBatched", None)
-        self._prepared: dict[int, tuple[Values, batch.Buffer, Any]] = {}
-        self.choose(bodies)
+        self._data = _data(_FORCES, self._buffer)
+        self.choose(())
 
     def choose(self, bodies: Sequence[pymunk.Body]) -> None:
-        """Write to these bodies from now on."""
+        """Write the first rows to these bodies from now on."""
         self._bodies = bodies
         self._handles = [] if self._function is None else [body._body for body in bodies]
 
-    def set(self, fields: batch.BodyFields, motion: Values) -> None:
-        """Write a row of `motion` to each chosen body; `fields` are its columns, as in `set_by_properties`."""
+    def write(self) -> None:
+        """Write the rows."""
         if self._function is None:
-            set_by_properties(self._bodies, motion)
+            set_by_properties(self._bodies, self._rows)
             return
-        prepared = self._prepared.get(fields.value)
-        if prepared is None or len(prepared[0]) < len(motion):
-            prepared = self._prepared[fields.value] = self._prepare(fields, motion)
-        rows, buffer, data = prepared
-        rows[: len(motion)] = motion
-        buffer._float_arr.num = 0  # rewinds the buffer: pymunk reads from the beginning
-        deque(map(self._function, self._handles, repeat(data)), maxlen=0)
-
-    def _prepare(self, fields: batch.BodyFields, motion: Values) -> tuple[Values, batch.Buffer, Any]:
-        """An array that pymunk reads, with room for twice as many bodies, and its way to it."""
-        rows, buffer = np.zeros((2 * len(motion), motion.shape[1])), batch.Buffer()
-        buffer.set_float_buf(rows)
-        return rows, buffer, _data(fields, buffer)
+        self._buffer._float_arr.num = 0  # rewinds the buffer: pymunk reads from the beginning
+        deque(map(self._function, self._handles, repeat(self._data)), maxlen=0)
 
 
 class BodyReader:
@@ -112,7 +104,7 @@ def _data(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
 
 def set_by_properties(bodies: Sequence[pymunk.Body], motion: Values) -> None:
     """Velocity, rate of turn and, if there are more columns, force and torque: a row for each body."""
-    for body, row in zip(bodies, motion.tolist(), strict=True):
+    for body, row in zip(bodies, motion.tolist(), strict=False):
         body.velocity, body.angular_velocity = (row[0], row[1]), row[2]
         if len(row) > 3:
             body.force, body.torque = (row[3], row[4]), row[5]

@@ -1,139 +1,82 @@
-"""The body of a robot.
-
-A free robot has the speed of its wheels; its velocity points along the heading in the middle of the sub-step, so that
-its path follows arcs to the third order. pymunk moves bodies first and solves contacts and forces afterwards; a robot
-that touches something is therefore pushed by a force, which that solution takes into account: it would give the robot
-the speed of its wheels within a tick, as Enki imposes, but never exceeds the grip of the tires, so that heavy
-objects stall it. Wheels at rest resist a push in the same way, and two robots share the difference of their
-speeds. Wheels hold the heading (docs/spec/thymio-robot.md section 11).
-"""
+"""The body of one robot: a pymunk body, its contacts, and its element of the robots' motion."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Protocol
 
 import pymunk
 
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
-from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, SUB_STEP_S, SUB_STEPS, TICK_S, Contact
+from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, Contact
+from thymio_sim_ros.sim.physics.driving import MOMENT_KG_M2
+from thymio_sim_ros.sim.physics.robot_state import RobotState
 from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle
 
-__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "BodyArrays", "RobotBody"]
+__all__ = ["ROBOT_TYPE", "RobotBody"]
 
 ROBOT_TYPE = 1
 """pymunk's collision type of robots."""
-MOMENT_KG_M2 = 1.0
-"""Far above the real one: wheels hold the heading of a robot that hits a wall.
-
-Source: docs/spec/thymio-robot.md section 11.
-"""
-PUSH_N_S_M = robot_constants.MASS_KG / TICK_S
-"""Force for each m/s that a robot in contact lacks: enough to make up for it in one tick."""
 _AT_REST_M_S = 1e-6
 _HULL = robot_constants.hull()
-_set_velocity, _set_spin, _set_force, _set_torque = (
-    getattr(pymunk.Body, name).fset for name in ("velocity", "angular_velocity", "force", "torque")
-)
-"""pymunk's own setters, without its check of the attribute's name, which takes half of the time."""
-
-
-class BodyArrays(Protocol):
-    """The owner of the state of many robots in arrays."""
-
-    @property
-    def is_written_back(self) -> bool:
-        """Whether the bodies are up to date."""
-        ...
-
-    def write_back(self) -> None:
-        """Write the arrays back to the bodies."""
-        ...
 
 
 class RobotBody:
-    """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick.
+    """One robot's body. `state` has its motion at `index`, after the last tick."""
 
-    In a batch the driver moves it, and the methods of a tick are not called.
-    """
+    __slots__ = ("_held", "_obstacle", "_pose", "body", "index", "is_fallen", "name", "shape", "state", "touching")
 
-    __slots__ = (
-        "_angle",
-        "_covered",
-        "_driven",
-        "_heading",
-        "_is_free",
-        "_obstacle",
-        "_pose",
-        "_speed_m_s",
-        "_spin_rad_s",
-        "batch_driver",
-        "body",
-        "is_active",
-        "is_fallen",
-        "name",
-        "shape",
-        "touching",
-    )
-
-    def __init__(self, name: str, pose: Pose) -> None:
+    def __init__(self, name: str, pose: Pose, held: dict[RobotBody, None]) -> None:
+        """`held`: where it adds itself when a contact begins or ends. It is placed once it has been attached."""
+        self._held = held
         self.name = name
-        self._pose = pose
         self.touching: dict[pymunk.Shape, Contact] = {}
-        self._speed_m_s = self._spin_rad_s = 0.0
-        self.batch_driver: BodyArrays | None = None
-        """The driver of its batch, if it is in one."""
-        self.is_active = False
-        """Whether pymunk moves it; otherwise its body is in no space."""
         self.is_fallen = False
         """Whether it has fallen; nothing touches or sees it until it is placed."""
-        self._driven = self._covered = (0.0, 0.0)
-        self._is_free = True
-        self._angle = self._heading = pose.yaw_rad
+        self.state: RobotState
+        self.index = 0
+        self._pose = pose
         self._obstacle: tuple[Pose, ConvexObstacle] | None = None
         self.body = pymunk.Body(robot_constants.MASS_KG, MOMENT_KG_M2)
-        self.body.position = (pose.x_m, pose.y_m)
-        self.body.angle = pose.yaw_rad
+        self.body.position, self.body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
         self.shape = pymunk.Poly(self.body, _HULL)
         self.shape.collision_type = ROBOT_TYPE
         self.shape.elasticity = ROBOT_BOUNCE
 
+    def attach(self, state: RobotState, index: int) -> None:
+        """Use an element of the view of a record from now on."""
+        self.state, self.index = state, index
+
     @property
     def pose(self) -> Pose:
-        """Where it is."""
-        if self.batch_driver is not None and not self.batch_driver.is_written_back:
-            self.batch_driver.write_back()
-        return self._pose
+        """True pose; the same object as long as it does not move."""
+        state, index, known = self.state, self.index, self._pose
+        x_m, y_m, yaw_rad = state.x[index], state.y[index], state.yaw[index]
+        if known.yaw_rad != yaw_rad or known.x_m != x_m or known.y_m != y_m:
+            self._pose = known = Pose(x_m, y_m, yaw_rad)
+        return known
 
     @property
     def speed_m_s(self) -> float:
         """Speed along the heading."""
-        if self.batch_driver is not None and not self.batch_driver.is_written_back:
-            self.batch_driver.write_back()
-        return self._speed_m_s
+        speed: float = self.state.speed[self.index]
+        return speed
 
     @property
-    def spin_rad_s(self) -> float:
+    def turn_rate_rad_s(self) -> float:
         """Rate of turn, counter-clockwise."""
-        if self.batch_driver is not None and not self.batch_driver.is_written_back:
-            self.batch_driver.write_back()
-        return self._spin_rad_s
-
-    @property
-    def covered_m_s(self) -> tuple[float, float]:
-        """Speed over ground at each wheel, mean of the last tick; exactly what was driven when nothing was touched."""
-        return self._driven if self._is_free else self._covered
+        rate: float = self.state.turn_rate[self.index]
+        return rate
 
     @property
     def reach_m(self) -> float:
-        """No part of it is farther from its origin."""
+        """Largest distance of any of its points from its origin."""
         return robot_constants.HULL_RADIUS_M
 
     @property
     def obstacle(self) -> ConvexObstacle:
-        """What the rays of others see of it."""
+        """Its obstacle for the rays of others."""
         pose = self.pose
         if self._obstacle is None or self._obstacle[0] is not pose:
             self._obstacle = (pose, ConvexObstacle(pose.place_all(_HULL), robot_constants.HULL_HEIGHT_M))
@@ -142,125 +85,48 @@ class RobotBody:
     @property
     def course_rad(self) -> float:
         """The direction in which it moves, in its own frame; 0 at rest."""
-        if self.batch_driver is not None and not self.batch_driver.is_written_back:
-            self.batch_driver.write_back()
-        if self._is_free:
+        if not self.state.was_touching[self.index]:
             return math.pi if self.speed_m_s < 0.0 else 0.0
         vx, vy = self.body.velocity
-        return wrap_angle(math.atan2(vy, vx) - self._angle) if math.hypot(vx, vy) > _AT_REST_M_S else 0.0
-
-    def drive(self, ground_m_s: tuple[float, float]) -> None:
-        """Speed over ground that each wheel gives from now on."""
-        self._driven = ground_m_s
+        return wrap_angle(math.atan2(vy, vx) - self.pose.yaw_rad) if math.hypot(vx, vy) > _AT_REST_M_S else 0.0
 
     def place(self, pose: Pose) -> None:
-        """Put it somewhere, at rest; what has fallen stands on the floor again."""
+        """Place it at a pose, at rest; a fallen one stands on the floor again."""
         self.is_fallen = False
-        body = self.body
+        body, state, index = self.body, self.state, self.index
         body.position, body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
         body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
-        self._speed_m_s = self._spin_rad_s = 0.0
-        self._angle = pose.yaw_rad
-        self._pose = pose
-        if self.is_active:
-            assert body.space is not None
+        state.x[index], state.y[index], state.yaw[index] = pose.x_m, pose.y_m, pose.yaw_rad
+        state.is_standing[index] = 1
+        self._stop()
+        if body.space is not None:
             body.space.reindex_shapes_for_body(body)
-
-    def set_state(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
-        """Set the state that the batch driver computed."""
-        self._is_free = is_free
-        self._pose, self._angle = pose, pose.yaw_rad
-        self._speed_m_s, self._spin_rad_s = speed_m_s, spin_rad_s
 
     def fall(self) -> None:
         """Fall: from now on the wheels have no grip."""
-        self.is_fallen = self._is_free = True
+        self.is_fallen = True
         self.touching.clear()
-        self._speed_m_s = self._spin_rad_s = 0.0
+        state, index = self.state, self.index
+        state.is_standing[index] = state.is_touching[index] = state.was_touching[index] = 0
+        self._stop()
 
-    def move_freely(self) -> None:
-        """Integrate a tick without pymunk, for a robot that can touch nothing.
+    def hold(self) -> None:
+        """Note that a contact has begun or ended. Also called while a space is freed, when `state` may be gone."""
+        self._held[self] = None
 
-        The operations and their order are those of the other path, so that both give the same bits.
-        """
-        left, right = self._driven
-        self._speed_m_s = speed = (left + right) / 2
-        self._spin_rad_s = spin = (right - left) / robot_constants.WHEEL_TRACK_M
-        self._is_free = True
-        x_m, y_m, angle = self._pose.x_m, self._pose.y_m, self._pose.yaw_rad
-        for _ in range(SUB_STEPS):
-            heading = angle + spin / 2 * SUB_STEP_S
-            x_m += speed * math.cos(heading) * SUB_STEP_S
-            y_m += speed * math.sin(heading) * SUB_STEP_S
-            angle += spin * SUB_STEP_S
-        self._angle = angle
-        self._pose = Pose(x_m, y_m, angle)
-
-    def activate(self, space: pymunk.Space) -> None:
-        """Add the body to pymunk's space."""
-        if not self.is_active:
-            self.is_active = True
-            self.body.position = (self._pose.x_m, self._pose.y_m)
-            self.body.angle = self._angle
-            space.add(self.body, self.shape)
-
-    def deactivate(self, space: pymunk.Space) -> None:
-        """Remove the body from pymunk's space."""
-        if self.is_active:
-            self.is_active = False
-            space.remove(self.shape, self.body)
+    def update_touching(self) -> None:
+        """Write to the record whether it is in contact."""
+        self.state.is_touching[self.index] = 1 if self.touching else 0
 
     def begin_tick(self) -> None:
-        """Forget what the last tick covered; contacts are no longer new."""
-        self._covered = (0.0, 0.0)
-        self._is_free = not self.touching
+        """Its contacts are no longer new; in contact, it has covered nothing yet in this tick."""
+        state, index = self.state, self.index
+        state.was_touching[index] = state.is_touching[index]
+        state.covered_left[index] = state.covered_right[index] = 0.0
         for key, contact in self.touching.items():
             if contact.is_new:
                 self.touching[key] = replace(contact, is_new=False)
 
-    def push(self) -> None:
-        """Before a sub-step: set the speed of the wheels, or in contact a force toward it, limited by the grip."""
-        left, right = self._driven
-        speed, spin = (left + right) / 2, (right - left) / robot_constants.WHEEL_TRACK_M
-        body = self.body
-        if not self.touching:
-            self._heading = heading = self._angle + spin / 2 * SUB_STEP_S
-            _set_velocity(body, (speed * math.cos(heading), speed * math.sin(heading)))
-            _set_spin(body, spin)
-            self._speed_m_s, self._spin_rad_s = speed, spin
-            return
-        turning = body.angular_velocity
-        self._heading = heading = self._angle + (turning + spin / 2) * SUB_STEP_S
-        vx, vy = body.velocity
-        push_x = (speed * math.cos(heading) - vx) * PUSH_N_S_M
-        push_y = (speed * math.sin(heading) - vy) * PUSH_N_S_M
-        share = robot_constants.DRIVE_FORCE_N / max(robot_constants.DRIVE_FORCE_N, math.hypot(push_x, push_y))
-        _set_force(body, (push_x * share, push_y * share))
-        _set_torque(body, (spin - turning) * (MOMENT_KG_M2 / SUB_STEP_S))
-
-    def finish_sub_step(self, earlier: int) -> None:
-        """After a sub-step, which follows `earlier` ones of this tick: read back the motion that contacts allowed."""
-        if self._is_free and not self.touching:
-            self._angle += self._spin_rad_s * SUB_STEP_S
-            return
-        body = self.body
-        if self._is_free:
-            self._is_free = False
-            left, right = self._driven
-            self._covered = (left * earlier / SUB_STEPS, right * earlier / SUB_STEPS)
-        vx, vy = body.velocity
-        self._angle = body.angle
-        self._speed_m_s = vx * math.cos(self._heading) + vy * math.sin(self._heading)
-        self._spin_rad_s = body.angular_velocity
-        half = self._spin_rad_s * robot_constants.WHEEL_TRACK_M / 2
-        left, right = self._covered
-        self._covered = (
-            left + (self._speed_m_s - half) / SUB_STEPS,
-            right + (self._speed_m_s + half) / SUB_STEPS,
-        )
-
-    def end_tick(self) -> None:
-        """Update the pose."""
-        x_m, y_m = self.body.position
-        self._angle = self.body.angle
-        self._pose = Pose(x_m, y_m, self._angle)
+    def _stop(self) -> None:
+        state, index = self.state, self.index
+        state.speed[index] = state.turn_rate[index] = state.velocity_x[index] = state.velocity_y[index] = 0.0

@@ -1,8 +1,4 @@
-"""The space of all bodies: motion, collisions, and the obstacles of rays.
-
-Robots that can reach nothing are not in pymunk's space but are integrated by the same formulas. While that holds for
-all robots and no object or door moves, pymunk does not step.
-"""
+"""The space of all bodies: motion, collisions, and the obstacles of rays."""
 
 from __future__ import annotations
 
@@ -14,15 +10,14 @@ import pymunk
 
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Disc, Solid, Trigger
-from thymio_sim_ros.sim.physics.batch_driver import BatchDriver
-from thymio_sim_ros.sim.physics.broadphase_batch import BroadphaseBatch
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.contact_tracker import ContactTracker
 from thymio_sim_ros.sim.physics.door_body import DoorBody
 from thymio_sim_ros.sim.physics.door_controller import DoorController
 from thymio_sim_ros.sim.physics.movable_body import AT_REST_M_S, MovableBody
+from thymio_sim_ros.sim.physics.robot_bodies import RobotBodies
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.physics.scalar_driver import ScalarDriver
+from thymio_sim_ros.sim.physics.robot_state import RobotState
 from thymio_sim_ros.sim.raycast.broadphase import Broadphase, Mover
 from thymio_sim_ros.sim.raycast.scalar import Obstacle, Surroundings, obstacle_of
 
@@ -53,13 +48,11 @@ class Physics:
         self._space.sleep_time_threshold = _DROWSY_S
         solids = tuple(solids)
         bouncing = any(solid.load is not None and solid.load.restitution for solid in solids)
-        self._contact_tracker = ContactTracker(self._space, self._mark_changed, do_objects_bounce=bouncing)
-        self._robots: dict[RobotBody, None] = {}
+        self._contact_tracker = ContactTracker(self._space, do_objects_bounce=bouncing)
         self._movables: dict[str, MovableBody] = {}
         self._moved: set[MovableBody | DoorBody] = set()
         """Objects and doors that have moved since the last call of `moved_obstacles`."""
         self._door_controller = DoorController(solids, triggers, self._moved)
-        self._batch_driver: BatchDriver | None = None
         for solid in solids:
             if solid.load is not None:
                 self._movables[solid.name] = movable = MovableBody(solid, self._space.static_body, self._moved)
@@ -73,8 +66,8 @@ class Physics:
         self.fixed: tuple[Obstacle, ...] = tuple(obstacle_of(solid) for solid in solids if solid.is_fixed)
         """Obstacles that never move."""
         self._broadphase = Broadphase(self.fixed)
+        self._robots = RobotBodies(self._space, len(self._numbers))
         self._list_movers()
-        self._scalar_driver = ScalarDriver(self._space, self._robots, self._movables, self._broadphase)
 
     @property
     def movables(self) -> Mapping[str, MovableBody]:
@@ -100,36 +93,32 @@ class Physics:
         self._moved.clear()
         return found
 
+    @property
+    def robot_state(self) -> RobotState:
+        """The motion of all robots, in the order in which they were added; another record after one is added."""
+        return self._robots.state
+
     def add_robot(self, name: str, pose: Pose) -> RobotBody:
-        """A robot's body, at rest at a pose."""
-        self.dissolve()
-        self._interrupt()
-        robot = RobotBody(name, pose)
-        self._robots[robot] = None
+        """Add the body of a robot, at rest at a pose."""
+        robot = self._robots.add(name, pose)
         self._contact_tracker.watch(robot.shape, robot)
         self._list_movers()
         return robot
 
     def remove_robot(self, robot: RobotBody) -> None:
         """Remove a robot's body and its contacts."""
-        self.dissolve()
-        self._interrupt()
-        robot.deactivate(self._space)
         self._contact_tracker.unwatch(robot.shape)
-        del self._robots[robot]
+        self._robots.remove(robot)
         self._list_movers()
 
     def drop_robot(self, robot: RobotBody) -> None:
         """Make a robot fall; nothing touches or sees it until it is placed."""
-        self._interrupt()
-        robot.deactivate(self._space)
         self._contact_tracker.forget(robot.shape)
-        robot.fall()
+        self._robots.drop(robot)
         self._list_movers()
 
     def drop_movable(self, movable: MovableBody) -> None:
         """Make an object fall."""
-        self._interrupt()
         self._space.remove(movable.shape, movable.body, *movable.joints)
         self._contact_tracker.forget(movable.shape)
         movable.fall()
@@ -137,12 +126,14 @@ class Physics:
 
     def place(self, body: RobotBody | MovableBody, pose: Pose) -> None:
         """Place a robot or an object at a pose, at rest; a fallen one stands on the floor again."""
-        self._interrupt()
         was_fallen = body.is_fallen
-        body.place(pose)
-        if was_fallen:
-            if isinstance(body, MovableBody):
+        if isinstance(body, RobotBody):
+            self._robots.place(body, pose)
+        else:
+            body.place(pose)
+            if was_fallen:
                 self._space.add(body.body, body.shape, *body.joints)
+        if was_fallen:
             self._list_movers()
         self._broadphase.invalidate_movers()
 
@@ -151,34 +142,20 @@ class Physics:
         """Movables and doors, always in the same order."""
         return (*self._movables.values(), *self.doors.values())
 
-    def form_batch(self) -> BatchDriver:
-        """Move all robots as a batch until a robot is added or removed or `dissolve` is called."""
-        self._interrupt()
-        movables, doors = tuple(self._movables.values()), tuple(self.doors.values())
-        self._batch_driver = BatchDriver(self._space, tuple(self._robots), movables, doors, BroadphaseBatch(self.fixed))
-        return self._batch_driver
-
-    def dissolve(self) -> None:
-        """End the batch: robots are moved one by one again."""
-        if self._batch_driver is not None:
-            self._batch_driver.dissolve()
-            self._batch_driver = None
-            self._scalar_driver.interrupt()
-
     def step(self) -> tuple[Contact, ...]:
-        """One tick; the contacts at its end, by robot and in the order in which they began."""
+        """Advance by one tick; returns the contacts at its end, by robot and in the order in which they began."""
         self._broadphase.invalidate_movers()
         self._door_controller.begin_tick(self._broadphase)
-        driver = self._batch_driver or self._scalar_driver
-        driver.begin_tick(do_doors_move=not self._door_controller.are_still)
-        if driver.needs_engine:
-            for earlier in range(SUB_STEPS):
-                driver.push()
-                self._space.step(SUB_STEP_S)
-                driver.finish_sub_step(earlier)
-            driver.end_tick()
+        self._robots.begin_tick()
+        for earlier in range(SUB_STEPS):
+            self._robots.push()
+            self._space.step(SUB_STEP_S)
+            self._robots.finish_sub_step(earlier)
+        self._robots.end_tick()
+        for movable in self._movables.values():
+            movable.end_tick()
         self._door_controller.end_tick(self._space)
-        return driver.contacts()
+        return self._robots.contacts()
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """Obstacles within `reach_m` of a robot's origin that are at least `height_m` high."""
@@ -201,19 +178,9 @@ class Physics:
         )
         return Surroundings(near)
 
-    def _standing(self) -> list[RobotBody]:
-        """Robots that have not fallen."""
-        return [robot for robot in self._robots if not robot.is_fallen]
-
-    def _interrupt(self) -> None:
-        """Prepare for a change of a body from outside."""
-        self._scalar_driver.interrupt()
-        if self._batch_driver is not None:
-            self._batch_driver.release()
-
     def _list_movers(self) -> None:
         """Update the list of moving bodies in the broadphase."""
-        movers: list[Mover] = [*self._standing()]
+        movers: list[Mover] = [robot for robot in self._robots if not robot.is_fallen]
         movers += [movable for movable in self._movables.values() if not movable.is_fallen]
         self._broadphase.replace_movers([*movers, *self.doors.values()])
 
@@ -226,10 +193,6 @@ class Physics:
         if isinstance(solid.outline, Disc):
             return pymunk.Circle(body, solid.outline.radius_m, (solid.pose.x_m, solid.pose.y_m))
         return pymunk.Poly(body, solid.vertices)
-
-    def _mark_changed(self, robot: RobotBody) -> None:
-        if self._batch_driver is not None:
-            self._batch_driver.changed.add(robot)
 
 
 def _obstacle_or_none(body: MovableBody | DoorBody) -> Obstacle | None:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from thymio_sim_ros.sim.audio.propagation import Sound, SoundSource
 from thymio_sim_ros.sim.ground.sampling import NO_FLOOR, Ground, GroundSample
 from thymio_sim_ros.sim.mechanics.edge_fall import EdgeFall
-from thymio_sim_ros.sim.mechanics.wheels import WheelArrays, Wheels
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
 from thymio_sim_ros.sim.model.clock import SimClock
 from thymio_sim_ros.sim.model.geometry import LEVEL, Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.model.noise import Noise
@@ -151,9 +151,7 @@ class Robot:
     ) -> None:
         self.name = start.name
         self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
-        self._wheels = Wheels()
-        self.shared_wheels: WheelArrays | None = None
-        """The wheels of the batch, if the robot is in one."""
+        self.wheels = Wheels(self.body)
         self._clock, self._physics = shared.clock, shared.physics
         self.edge_fall = EdgeFall(shared.clock, shared.physics, self.body)
         """Detects when it falls off an edge."""
@@ -188,13 +186,6 @@ class Robot:
         self._woken: set[int] = set()
 
     @property
-    def wheels(self) -> Wheels:
-        """Its wheels."""
-        if self.shared_wheels is not None and not self.shared_wheels.is_written_back:
-            self.shared_wheels.write_back()
-        return self._wheels
-
-    @property
     def pose(self) -> Pose:
         """True pose."""
         return self.body.pose
@@ -202,7 +193,7 @@ class Robot:
     @property
     def twist(self) -> Twist:
         """How its body really moves, in its own frame."""
-        return Twist(self.body.speed_m_s, self.body.spin_rad_s)
+        return Twist(self.body.speed_m_s, self.body.turn_rate_rad_s)
 
     @property
     def tilt(self) -> Tilt:
@@ -263,8 +254,6 @@ class Robot:
                 instance.is_busy, has_rested = False, True
         if has_rested:
             self._list_busy()
-        if not is_batched:
-            self.body.drive(self.wheels.ground)
 
     def _list_busy(self) -> None:
         """Collect what has to be updated, in name order, and register the robot as busy."""
@@ -273,10 +262,6 @@ class Robot:
             self._shared.busy.pop(self, None)
         else:
             self._shared.busy[self] = None
-
-    def roll(self, dt_s: float) -> None:
-        """Advance the wheels by the motion of the body."""
-        self.wheels.roll(self.body.covered_m_s, dt_s)
 
     def pop_woken(self) -> list[int]:
         """Remove and return the numbers of the woken sensors, in order; those with `on_wake` are called instead."""

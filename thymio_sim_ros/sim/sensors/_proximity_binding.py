@@ -32,7 +32,6 @@ class ProximityCounts:
         own_cosines[:] = cosines
         self._memory = memory
         self._call = memory.bind(
-            _proximity_kernel,
             _proximity_kernel.proximity,
             self._counts,
             own_cosines,

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.compiler import Floats, Ints
+from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
 from thymio_sim_ros.sim.model import robot_constants, units
 from thymio_sim_ros.sim.model.units import proximity_response
 
-__all__ = ["COS_CONE", "COUNTS", "KERNELS", "proximity", "proximity_response"]
-
-KERNELS = ("proximity_response", "proximity")
+__all__ = ["COS_CONE", "COUNTS", "proximity", "proximity_response"]
 
 COUNTS = ("sensors", "rays", "model", "seen")
 _SENSORS, _RAYS, _MODEL, _SEEN = range(len(COUNTS))
@@ -22,6 +20,7 @@ _RANGE_M = robot_constants.PROXIMITY_RANGE_M
 COS_CONE = math.cos(robot_constants.PROXIMITY_HALF_CONE_RAD)
 
 
+@kernel
 def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, noise: Floats, found: Ints) -> None:
     """What every sensor counts: of those that see anything the `numbers`, distances of their rays and noise."""
     for sensor in range(counts[_SENSORS]):

@@ -1,0 +1,36 @@
+"""The types of kernels: what their parameters may be, and how arrays of them are stored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numpy as np
+
+__all__ = ["ALIGNMENT", "DTYPES", "Floats", "Ints", "Kernel", "Words", "is_kernel", "kernel"]
+
+Floats = Any
+"""A flat array of float64."""
+Ints = Any
+"""A flat array of int32."""
+Words = Any
+"""A flat array of uint16."""
+
+DTYPES = {"Floats": np.dtype(np.float64), "Ints": np.dtype(np.int32), "Words": np.dtype(np.uint16)}
+"""Type of the elements of each kind of array."""
+ALIGNMENT = 16
+"""Every array begins at a multiple of so many bytes."""
+
+Kernel = Callable[..., Any]
+K = TypeVar("K", bound=Kernel)
+
+
+def kernel(function: K) -> K:
+    """Mark a function as a kernel: other kernels may call it."""
+    function.is_kernel = True  # type: ignore[attr-defined]
+    return function
+
+
+def is_kernel(candidate: object) -> bool:
+    """Whether something is a kernel."""
+    return getattr(candidate, "is_kernel", False) is True
