@@ -99,6 +99,17 @@ def test_a_changed_source_is_built_without_installing_packages_again(page: Path,
     assert [call.split()[0] for call in calls(page)] == ["ci", "run", "run"]
 
 
+def test_a_changed_text_is_built(page: Path, install_node: InstallNode) -> None:
+    install_node("v24.0.0")
+    text = page.parent / "aseba_vm" / "languages" / "en" / "page.json"
+    text.parent.mkdir(parents=True)
+    text.write_text("{}")
+    webbuild.build(page)
+    text.write_text('{"stop": "Stop"}')
+    assert webbuild.build(page)
+    assert not webbuild.build(page)
+
+
 def test_a_changed_lock_file_installs_packages_again(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
     webbuild.build(page)

@@ -1,9 +1,9 @@
 """The web page's bundle `web_ui/dist`, built with the system's Node or with one from a Python wheel.
 
 `make`, the wheel's build hook and the tests share this; it needs the standard library only. A finished build leaves a
-digest of its sources beside the bundle, so that the next one is skipped until a source changes, wherever the folder
-has been copied to. `python -m thymio_sim_ros.webbuild` builds, `--ready` answers whether a build would find its Node,
-`--script NAME` runs another script of package.json.
+digest of its sources, texts of all languages included, beside the bundle, so that the next one is skipped until a
+source changes, wherever the folder has been copied to. `python -m thymio_sim_ros.webbuild` builds, `--ready` answers
+whether a build would find its Node, `--script NAME` runs another script of package.json.
 """
 
 from __future__ import annotations
@@ -71,9 +71,9 @@ def find_node() -> Node | None:
 def digest(page: Path) -> str:
     """One digest of names and contents of everything the bundle is made from."""
     total = hashlib.sha256()
-    for path in _sources(page):
+    for root, path in [*((page, path) for path in _sources(page)), *_language_files(page)]:
         content = hashlib.sha256(path.read_bytes()).hexdigest()
-        total.update(f"{path.relative_to(page).as_posix()} {content}\n".encode())
+        total.update(f"{path.relative_to(root).as_posix()} {content}\n".encode())
     return total.hexdigest()
 
 
@@ -139,6 +139,12 @@ def _sources(page: Path) -> Iterator[Path]:
             yield path
         elif path.name not in _NOT_SOURCES:
             yield from sorted(file for file in path.rglob("*") if file.is_file())
+
+
+def _language_files(page: Path) -> Iterator[tuple[Path, Path]]:
+    """The folder of the languages, which lies beside the page, and each file in it."""
+    root = page.parent / "aseba_vm" / "languages"
+    yield from ((root, path) for path in sorted(root.glob("*/*.json")))
 
 
 def _fits(node: str) -> bool:

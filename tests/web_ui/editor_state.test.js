@@ -12,7 +12,6 @@ import { csv, parseNumbers } from "../../web_ui/editor/numbers.js";
 import { roundStep } from "../../web_ui/editor/plot.js";
 import { INITIAL, KEPT_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
 import { FileStore, KEPT_FILES } from "../../web_ui/editor/file_store.js";
-import { PHRASES, WORDS } from "../../web_ui/editor/words/index.js";
 import { ALL, Workspace } from "../../web_ui/editor/workspace.js";
 
 /** A browser's storage in memory. */
@@ -390,16 +389,6 @@ test("a rejected variable is reported with its reason", async () => {
   const link = new Link(/** @type {any} */ ({ call: async () => ({ ok: true, message: "", value }) }));
   assert.deepEqual(await link.setVariable("", "a", [1]), { ok: false, message: "too large" });
 });
-
-for (const [language, table] of Object.entries(WORDS)) {
-  test(`the editor has every text in ${language}, with the same values`, () => {
-    assert.deepEqual(Object.keys(table), Object.keys(WORDS.en));
-    /** @param {string} text */
-    const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
-    for (const [key, text] of Object.entries(WORDS.en)) assert.deepEqual(values(table[key]), values(text), key);
-    if (language !== "en") assert.deepEqual(Object.keys(PHRASES[language]), Object.keys(PHRASES.de));
-  });
-}
 
 const REFUSED = {
   line: 2,

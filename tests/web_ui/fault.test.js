@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
+import pageTexts from "../../web_ui/i18n/page.texts.js";
 import { faultText, isForeign, refusalOf } from "../../web_ui/panels/fault.js";
 import { locate } from "../../web_ui/state/index.js";
 
@@ -22,7 +23,7 @@ for (const message of FOREIGN) {
     const fault = locate(`/simulator.playground: ${message}`, "a.json");
     for (const language of Object.keys(LANGUAGES)) {
       const said = faultText(translator(language), fault);
-      assert.equal(said, LANGUAGES[language]["fault.notPlayground"]);
+      assert.equal(said, pageTexts[language]["fault.notPlayground"] ?? pageTexts.en["fault.notPlayground"]);
       assert.ok(!/Expecting|JSON|None|byte/.test(said));
     }
   });

@@ -132,7 +132,7 @@ test("keys move, turn, select the next body and drop it", async () => {
   dragController.nudge(1, 2, 1);
   assert.deepEqual(reported.at(-1), ["move.at", { x: "31", y: "2", yaw: 15 }]);
   dragController.nudge(70, -2);
-  assert.deepEqual(reported.at(-1), ["move.taken", { x: "101", y: "0", yaw: 15, by: "wall" }]);
+  assert.deepEqual(reported.at(-1), ["move.blocked", { x: "101", y: "0", yaw: 15, by: "wall" }]);
   await dragController.drop();
   assert.equal(asked[0][0], "can");
   assert.equal(dragController.held?.pose.x, 0.3); // still in hand, where it stands

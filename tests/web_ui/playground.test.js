@@ -160,7 +160,7 @@ test("an item may not overlap a robot, but objects may overlap each other", () =
   const [robot] = parse(text([], [{ name: "thymio", x_m: 0, y_m: 0 }])).items;
   const crate = { ...BOX, x_m: 0.05 };
   assert.equal(blockerOf([robot], crate), "thymio");
-  assert.deepEqual(findProblem([robot], crate), { word: "problem.taken", values: { name: "thymio" } });
+  assert.deepEqual(findProblem([robot], crate), { word: "problem.blocked", values: { name: "thymio" } });
   assert.equal(findProblem([robot, { ...BOX, name: "other", x_m: 0.2 }], { ...BOX, x_m: 0.21 }), null);
   assert.equal(findProblem([robot], { ...BOX, x_m: 0.13 + 1e-9 }), null);
 });

@@ -189,7 +189,7 @@ def test_the_ghost_is_red_at_invalid_positions_and_the_reason_is_shown(suite, pa
     open_creator(page, suite)
     page.click("[data-tool=cylinder]")
     page.mouse.move(*spot(page, 0.0, 0.0))
-    page.wait_for_function("window.thymio.built().problem === 'problem.taken'")
+    page.wait_for_function("window.thymio.built().problem === 'problem.blocked'")
     playwright.expect(page.locator(".building-hint")).to_have_text("thymio is in the way")
     click(page, 0.0, 0.0)
     page.mouse.move(*spot(page, 0.3, 0.2))

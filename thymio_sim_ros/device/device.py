@@ -11,9 +11,9 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from aseba_vm import VirtualMachine
+from aseba_vm.languages import LANGUAGES
 from aseba_vm.machine.costs import NO_COSTS
 from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
-from aseba_vm.messages import LANGUAGES
 from thymio_sim_ros.device.costs import COSTS
 from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
 from thymio_sim_ros.device.firmware.indicators import PERIOD_NS, Indicators

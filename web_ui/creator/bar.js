@@ -16,7 +16,7 @@ export function bar(t, model) {
   const undo = button("undo", () => model.undo());
   const redo = button("redo", () => model.redo());
   const camera = button("camera", () => model.toggleCamera());
-  camera.append(t("bar.cameraWord"));
+  camera.append(t("bar.cameraLabel"));
   const size = h("select", { "aria-label": t("bar.grid"), "data-verb": "grid" });
   size.append(...GRID_SIZES.map((meters) => h("option", { value: meters }, `${meters * 100} cm`)));
   size.addEventListener("change", () => model.setGrid({ size: Number(size.value) }));
@@ -30,7 +30,7 @@ export function bar(t, model) {
     undo,
     redo,
     camera,
-    h("span", { class: "grid-word" }, t("bar.gridWord")),
+    h("span", { class: "grid-word" }, t("bar.gridLabel")),
     size,
     on,
     output,

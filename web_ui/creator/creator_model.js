@@ -76,7 +76,7 @@ export class CreatorModel {
       }
       this.selected = null;
       this.placing = new Placing(this, kind, values);
-      this.report({ word: this.placing.isPath ? "tell.path" : "tell.placing", values: { kind } });
+      this.report({ word: this.placing.isPath ? "status.path" : "status.placing", values: { kind } });
     }
     this.changed();
   }
@@ -87,7 +87,7 @@ export class CreatorModel {
     this.selecting.cancel();
     this.placing = null;
     this.selected = name;
-    if (name !== null) this.report({ word: "tell.selected", values: { name } });
+    if (name !== null) this.report({ word: "status.selected", values: { name } });
     this.changed();
   }
 
@@ -162,7 +162,7 @@ export class CreatorModel {
     const problem = this.problemOf(next, item.name);
     if (problem !== null && !(problem.word === "problem.outside" && !this.#wasInside(item))) return problem;
     this.selected = next.name;
-    this.do(commands.replaced(this.playground, item.name, next), { word: "did.changed", values: { name: next.name } });
+    this.do(commands.replaced(this.playground, item.name, next), { word: "change.changed", values: { name: next.name } });
     return null;
   }
 
@@ -184,7 +184,7 @@ export class CreatorModel {
     const { item } = this;
     if (item === null) return;
     const next = moved(item, x * step, y * step);
-    const did = { word: "did.moved", values: { name: item.name } };
+    const did = { word: "change.moved", values: { name: item.name } };
     if (this.replace(item.name, next, did, `move ${item.name}`)) this.tellPlace(next);
   }
 
@@ -195,7 +195,7 @@ export class CreatorModel {
     const { item } = this;
     if (item === null || !canTurn(item)) return;
     const next = turned(item, angle);
-    const did = { word: "did.turned", values: { name: item.name } };
+    const did = { word: "change.turned", values: { name: item.name } };
     if (this.replace(item.name, next, did, `turn ${item.name}`)) this.tellPlace(next);
   }
 
@@ -203,13 +203,13 @@ export class CreatorModel {
   tellPlace(item, problem = null) {
     const [x, y] = middleOf(item);
     const degrees = Math.round(((item.yaw_rad ?? 0) * 180) / Math.PI);
-    this.report(problem ?? { word: "tell.at", values: { x: centimeters(x), y: centimeters(y), degrees } });
+    this.report(problem ?? { word: "status.at", values: { x: centimeters(x), y: centimeters(y), degrees } });
   }
 
   remove() {
     const { item } = this;
     if (item === null) return;
-    const did = { word: "did.removed", values: { name: item.name } };
+    const did = { word: "change.removed", values: { name: item.name } };
     this.do(commands.removed(this.playground, item.name), did);
     this.report(did);
   }
@@ -224,7 +224,7 @@ export class CreatorModel {
     const problem = findProblem(items, copy);
     if (problem !== null) return this.report(problem);
     this.selected = copy.name;
-    const did = { word: "did.copied", values: { name: copy.name } };
+    const did = { word: "change.copied", values: { name: copy.name } };
     this.do(commands.added(this.playground, copy), did);
     this.report(did);
   }
@@ -233,7 +233,7 @@ export class CreatorModel {
   raise(by) {
     const { item } = this;
     if (item === null) return;
-    const did = { word: "did.raised", values: { name: item.name } };
+    const did = { word: "change.raised", values: { name: item.name } };
     const next = commands.raised(this.playground, item.name, by);
     if (next === this.playground) return;
     this.do(next, did);
@@ -255,21 +255,21 @@ export class CreatorModel {
   undo() {
     if (this.placing?.undoPoint()) return;
     this.selecting.cancel();
-    this.#say("tell.undone", this.history.undo());
+    this.#say("status.undone", this.history.undo());
   }
 
   redo() {
     if (this.placing?.redoPoint()) return;
     this.selecting.cancel();
-    this.#say("tell.redone", this.history.redo());
+    this.#say("status.redone", this.history.redo());
   }
 
   /** @param {string} word @param {Phrase | null} did */
   #say(word, did) {
-    if (did === null) return this.report({ word: "tell.nothing" });
+    if (did === null) return this.report({ word: "status.nothing" });
     if (this.item === null) this.selected = null;
     this.placing?.refresh();
-    this.report({ word, values: { did: did.word, ...did.values } });
+    this.report({ word, values: { change: did.word, ...did.values } });
     this.changed();
   }
 
@@ -278,7 +278,7 @@ export class CreatorModel {
     if (this.selecting.ghost !== null) this.selecting.cancel();
     else if (this.placing !== null) {
       this.placing = null;
-      this.report({ word: "tell.cancelled" });
+      this.report({ word: "status.cancelled" });
     } else if (this.selected !== null) this.selected = null;
     else return false;
     this.changed();
@@ -287,7 +287,7 @@ export class CreatorModel {
 
   toggleCamera() {
     this.cameraOn = !this.cameraOn;
-    this.report({ word: this.cameraOn ? "tell.cameraOn" : "tell.cameraOff" });
+    this.report({ word: this.cameraOn ? "status.cameraOn" : "status.cameraOff" });
     this.changed();
   }
 

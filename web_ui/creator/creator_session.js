@@ -124,7 +124,7 @@ export class CreatorSession {
       this.storage.setItem(SAVED_KEY, String(!this.isUnsaved));
     } catch {
       this.storage.removeItem(DRAFT_KEY); // too large: no draft is better than an outdated one
-      this.model.report({ word: "tell.noDraft" });
+      this.model.report({ word: "status.noDraft" });
     }
   }
 

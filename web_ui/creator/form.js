@@ -21,12 +21,12 @@ export function itemForm(setting, model) {
   const title = h("h3");
   const fields = h("div", { class: "fields" });
   const verbs = [
-    { icon: "turnLeft", word: "verb.turnLeft", act: () => model.turn(1) },
-    { icon: "turnRight", word: "verb.turnRight", act: () => model.turn(-1) },
-    { icon: "copy", word: "verb.copy", act: () => model.duplicate() },
-    { icon: "over", word: "verb.over", act: () => model.raise(1) },
-    { icon: "under", word: "verb.under", act: () => model.raise(-1) },
-    { icon: "remove", word: "verb.remove", act: () => model.remove() },
+    { icon: "turnLeft", word: "action.turnLeft", act: () => model.turn(1) },
+    { icon: "turnRight", word: "action.turnRight", act: () => model.turn(-1) },
+    { icon: "copy", word: "action.copy", act: () => model.duplicate() },
+    { icon: "over", word: "action.over", act: () => model.raise(1) },
+    { icon: "under", word: "action.under", act: () => model.raise(-1) },
+    { icon: "remove", word: "action.remove", act: () => model.remove() },
   ].map((verb) => ({
     ...verb,
     button: h(

@@ -22,7 +22,7 @@ import { watchCreatorPointer } from "./pointer.js";
 import { readPicture } from "./read_picture.js";
 import { sheetForm } from "./sheet.js";
 import { itemList } from "./item_list.js";
-import { WORDS } from "./words/index.js";
+import WORDS from "../i18n/creator.texts.js";
 import { CreatorSession } from "./creator_session.js";
 
 export { CreatorSession, WORDS };
@@ -51,7 +51,7 @@ const OF_ANOTHER_KIND = ["fault.json", "fault.object", "fault.format"];
 export function inWords(t, { word, values = {} }) {
   const filled = { ...values };
   if (typeof values.kind === "string" && kindNamed(values.kind) !== undefined) filled.kind = t(`kind.${values.kind}`);
-  if (typeof values.did === "string") filled.did = t(values.did, values);
+  if (typeof values.change === "string") filled.change = t(values.change, values);
   return t(word, filled);
 }
 
@@ -89,15 +89,15 @@ export function createCreator({ session, language, pageText, scene, announce, tr
   const groundless = h(
     "div",
     { class: "warning", role: "status", hidden: true },
-    h("p", {}, t("warn.noGround")),
+    h("p", {}, t("warning.noGround")),
     h(
       "button",
       {
         type: "button",
         "data-verb": "ground",
-        onclick: () => model.replacePlayground(withGround(model.playground), { word: "did.ground" }),
+        onclick: () => model.replacePlayground(withGround(model.playground), { word: "change.ground" }),
       },
-      t("warn.addGround"),
+      t("warning.addGround"),
     ),
   );
   const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
@@ -133,11 +133,11 @@ export function createCreator({ session, language, pageText, scene, announce, tr
     const content = await textOf(file);
     if (content === null) return refuse(faultView(pageText, pageText("file.notText", { name: file.name }), null));
     try {
-      session.replacePlayground(parse(content), { word: "did.opened", values: { name: file.name } });
+      session.replacePlayground(parse(content), { word: "change.opened", values: { name: file.name } });
       refuse(null);
       scene.reframe();
       scene.setView("home");
-      report({ word: "did.opened", values: { name: file.name } });
+      report({ word: "change.opened", values: { name: file.name } });
     } catch (error) {
       if (!(error instanceof Fault)) throw error;
       const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${say(error.expected)}`;
@@ -150,14 +150,14 @@ export function createCreator({ session, language, pageText, scene, announce, tr
   const save = () => {
     download(session.fileName, session.text, "application/json");
     session.noteSaved();
-    report({ word: "tell.saved", values: { name: session.fileName } });
+    report({ word: "status.saved", values: { name: session.fileName } });
   };
   const fresh = () => {
-    session.replacePlayground(newPlayground(t("new.title")), { word: "did.new" });
+    session.replacePlayground(newPlayground(t("new.title")), { word: "change.new" });
     refuse(null);
     scene.reframe();
     scene.setView("home");
-    report({ word: "did.new" });
+    report({ word: "change.new" });
   };
   const trying = h(
     "button",
@@ -246,7 +246,7 @@ export function createCreator({ session, language, pageText, scene, announce, tr
         const outside = itemsOffGround(checked.items).map((item) => item.name);
         warning.hidden = outside.length === 0;
         groundless.hidden = !lacksGround(checked.items);
-        setText(warning, outside.length === 0 ? "" : t("warn.outside", { names: outside.join(", ") }));
+        setText(warning, outside.length === 0 ? "" : t("warning.outside", { names: outside.join(", ") }));
       }
       const { placing } = model;
       const problem = model.ghost?.problem ?? null;

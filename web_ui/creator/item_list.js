@@ -5,7 +5,7 @@ import { h, setAttribute, setText } from "../panels/dom.js";
 /** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
 export function itemList(t, model) {
   const summary = h("summary");
-  const list = h("ul", { class: "things" });
+  const list = h("ul", { class: "items" });
   const element = h("details", { class: "things-list" }, summary, list);
   /** @type {readonly import("../playground/parts.js").Item[] | null} */ let shown = null;
   /** @type {{ name: string, button: HTMLElement }[]} */ let rows = [];
@@ -25,7 +25,7 @@ export function itemList(t, model) {
           ),
         }));
         list.replaceChildren(...rows.map(({ button }) => h("li", {}, button)));
-        setText(summary, t("things", { count: items.length }));
+        setText(summary, t("items", { count: items.length }));
       }
       for (const { name, button } of rows) setAttribute(button, "aria-pressed", String(name === model.selected));
     },

@@ -99,7 +99,7 @@ export class Placing {
     const point = this.points.pop();
     if (point === undefined) return false;
     this.takenBack.push(point);
-    this.model.report({ word: "tell.pointBack", values: { count: this.points.length } });
+    this.model.report({ word: "status.pointBack", values: { count: this.points.length } });
     this.model.changed();
     return true;
   }
@@ -175,7 +175,7 @@ export class Placing {
     }
     points.push(place);
     this.takenBack = [];
-    model.report({ word: "tell.point", values: { count: points.length } });
+    model.report({ word: "status.point", values: { count: points.length } });
     model.changed();
   }
 
@@ -197,7 +197,7 @@ export class Placing {
   /** @param {Item} item */
   #add(item) {
     const { model } = this;
-    const did = { word: "did.added", values: { name: item.name } };
+    const did = { word: "change.added", values: { name: item.name } };
     model.do(added(model.playground, item), did);
     this.takenBack = [];
     this.refresh();

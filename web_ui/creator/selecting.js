@@ -66,7 +66,7 @@ export class Selecting {
     if (ghost === null || grip === null) return;
     if (ghost.problem !== null) return model.report(ghost.problem);
     const word =
-      grip.handle.type === "ring" ? "did.turned" : grip.handle.type === "point" ? "did.changed" : "did.moved";
+      grip.handle.type === "ring" ? "change.turned" : grip.handle.type === "point" ? "change.changed" : "change.moved";
     model.do(replaced(model.playground, ghost.item.name, ghost.item), { word, values: { name: ghost.item.name } });
     model.tellPlace(ghost.item);
   }

@@ -19,13 +19,13 @@ export function sheetForm(setting, model) {
   /** @param {Record<string, any>} values */
   const title = (values) => {
     if (!RULES.line.pattern?.test(values.title ?? values.description ?? "")) return { word: "problem.line" };
-    return model.replacePlayground(titled(model.playground, values), { word: "did.titled" });
+    return model.replacePlayground(titled(model.playground, values), { word: "change.titled" });
   };
   const titles = ["title", "description"].map((key) => control({ ...setting, commit: title }, key, needed(RULES.line)));
   const select = h("select", { id: "creator-ground", "data-field": "ground" });
   select.append(...GROUNDS.map((kind) => h("option", { value: kind }, t(`ground.${kind}`))));
   select.addEventListener("change", () =>
-    model.replacePlayground(grounded(model.playground, select.value), { word: "did.ground" }),
+    model.replacePlayground(grounded(model.playground, select.value), { word: "change.ground" }),
   );
   const fields = h("div", { class: "fields" });
   const element = h(

@@ -23,7 +23,8 @@ import { Link } from "./link.js";
 import { createText } from "./text.js";
 import { toolbar, watchKeys } from "./toolbar.js";
 import { toolbox } from "./tools/index.js";
-import { PHRASES, WORDS } from "./words/index.js";
+import PHRASES from "../i18n/codemirror.texts.js";
+import WORDS from "../i18n/editor.texts.js";
 import { ALL } from "./workspace.js";
 
 import "./editor.css";
@@ -137,7 +138,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     verdict = answer;
     if (answer === null) {
       isChecked = false;
-      foot.report({ text: t("verdict.unknown"), kind: "" });
+      foot.report({ text: t("check.unknown"), kind: "" });
       return;
     }
     const found = marks(source, answer);
@@ -146,10 +147,10 @@ export function createEditor({ session, client, store, language, pageText, annou
     const { hint = "", repair = null } = found.find((mark) => mark.hint !== undefined) ?? {};
     correction = repair && { text: source, repair };
     hints.show(hint === "" ? null : { text: hint, button: repair === null ? "" : repairLabel(t, source, repair) });
-    if (first === undefined) foot.report({ text: `✓ ${t("verdict.good")}`, kind: "good" });
+    if (first === undefined) foot.report({ text: `✓ ${t("check.ok")}`, kind: "good" });
     else {
       const kind = answer.errors.length > 0 ? "error" : "warning";
-      const said = first.line === null ? first.message : t("verdict.at", { line: first.line, message: first.message });
+      const said = first.line === null ? first.message : t("check.error", { line: first.line, message: first.message });
       foot.report({ text: `${kind === "error" ? "✕" : "⚠"} ${said}`, kind });
       if (kind === "error") announce(hint === "" ? said : `${said}. ${hint}`);
     }
@@ -204,7 +205,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     if (!ok) {
       const fault = (await link.fault(source, language)) ?? locate(message, name);
       report(
-        fault.line === null ? fault.text : t("verdict.at", { line: codeLine(fault.line), message: fault.text }),
+        fault.line === null ? fault.text : t("check.error", { line: codeLine(fault.line), message: fault.text }),
         "error",
       );
       return false;

@@ -76,8 +76,8 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
         type: "button",
         class: "change",
         hidden: true,
-        title: t("gallery.change"),
-        "aria-label": t("gallery.changeOf", { title }),
+        title: t("gallery.edit"),
+        "aria-label": t("gallery.editOf", { title }),
       },
       icon(PENCIL),
     );

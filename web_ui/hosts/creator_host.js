@@ -1,6 +1,7 @@
 // Integrates the playground creator into the page: loads it on demand and runs its playground in the simulator.
 
 import { localStore } from "../browser/local_storage.js";
+import { translator } from "../i18n/index.js";
 import { faultView } from "../panels/fault.js";
 import { parse } from "../playground/document.js";
 import { CONNECTION } from "../state/index.js";
@@ -64,7 +65,7 @@ export class CreatorHost {
       context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded"), cause: CONNECTION });
       return;
     }
-    const title = this.module.WORDS[context.language]["new.title"];
+    const title = translator(context.language, this.module.WORDS)("new.title");
     this.session ??= new this.module.CreatorSession({
       storage: localStore,
       title,
@@ -72,7 +73,7 @@ export class CreatorHost {
       changed: () => this.scene().invalidate(),
     });
     if (playground !== undefined) {
-      this.session.replacePlayground(playground, { word: "did.opened", values: { name: playground.title } });
+      this.session.replacePlayground(playground, { word: "change.opened", values: { name: playground.title } });
       this.scene().reframe();
     }
     if (!this.isOpen) {

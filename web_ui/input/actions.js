@@ -150,7 +150,7 @@ export class Actions {
     } else {
       this.#report("/simulator/set_poses", { ok: true, message: "" });
       if (this.store.state.simulator?.paused) {
-        this.store.dispatch({ type: "notice", level: "info", text: this.t("move.later") });
+        this.store.dispatch({ type: "notice", level: "info", text: this.t("move.paused") });
       }
     }
     return result.successful;

@@ -87,13 +87,13 @@ export class DragController {
     const { x: nowX, y: nowY, yaw } = this.held.pose;
     const values = { x: (nowX * 100).toFixed(0), y: (nowY * 100).toFixed(0), yaw: degrees(yaw) };
     if (this.held.blocker === null) this.report("move.at", values);
-    else this.report("move.taken", { ...values, by: this.held.blocker });
+    else this.report("move.blocked", { ...values, by: this.held.blocker });
   }
 
   /** Select the next body. */
   next() {
     this.#hold(this.#choice(1));
-    if (this.held !== null) this.report("move.holds", { name: this.held.body.name || "thymio" });
+    if (this.held !== null) this.report("move.selected", { name: this.held.body.name || "thymio" });
   }
 
   /** Place the body at the ghost; the simulator accepts or rejects the pose. */

@@ -37,9 +37,9 @@ export function playgroundPanel(context) {
   );
   const copy = h(
     "button",
-    { type: "button", id: "playground-change", title: t("playground.changeHelp"), onclick: change },
+    { type: "button", id: "playground-change", title: t("playground.editHelp"), onclick: change },
     icon(PENCIL),
-    t("playground.change"),
+    t("playground.edit"),
   );
   const file = fileButton({
     id: "playground-file",
@@ -96,7 +96,7 @@ export function playgroundPanel(context) {
       if (notesJson !== noted) {
         noted = notesJson;
         const texts = simulator?.notes ?? [];
-        setText(summary, t("playground.remarks", { count: texts.length }));
+        setText(summary, t("playground.warnings", { count: texts.length }));
         notes.replaceChildren(...texts.map((text) => h("li", {}, text)));
         remarks.hidden = texts.length === 0;
       }

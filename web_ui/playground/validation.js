@@ -32,7 +32,7 @@ export function findProblem(others, item) {
     throw error;
   }
   const blocker = blockerOf(others, item);
-  return blocker === null ? null : { word: "problem.taken", values: { name: blocker } };
+  return blocker === null ? null : { word: "problem.blocked", values: { name: blocker } };
 }
 
 /**

@@ -4,10 +4,9 @@ import json
 
 import pytest
 
-from aseba_vm import messages
+from aseba_vm.languages import texts
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros import resources
-from thymio_sim_ros.device.editor import help as helps
 from thymio_sim_ros.device.editor.help_order import ORDER
 from thymio_sim_ros.device.editor.language_service import (
     MOST_CHARACTERS,
@@ -110,9 +109,8 @@ def test_a_program_too_large_for_the_memory_is_an_error_without_a_place():
     assert (error["line"], error["kind"]) == (None, "bytecode-too-large")
 
 
-def test_messages_come_in_the_language_that_has_them(monkeypatch):
-    tables = {"en": messages.MESSAGES, "xx": {"unknown-event": "xx {0}"}}
-    monkeypatch.setattr("thymio_sim_ros.device.editor.language_service.LANGUAGES", tables)
+def test_messages_come_in_the_language_that_has_them(add_language):
+    add_language("xx", compiler={"unknown-event": "xx {0}"})
     answers = [check(Question("onevent zzzzz", language=language)) for language in ("xx", "en", "yy")]
     said = [answer["errors"][0]["message"] for answer in answers]
     assert said == ["xx zzzzz", "no event is called 'zzzzz'", "no event is called 'zzzzz'"]
@@ -132,9 +130,9 @@ def test_the_target_says_all_that_a_program_can_use():
         "size": 1,
         "address": target().addresses["button.center"][0],
         "hidden": False,
-        "help": helps.ENGLISH.variables["button.center"],
+        "help": texts("help")["variables.button.center"],
     } in told["variables"]
-    assert {"name": "prox", "help": helps.ENGLISH.events["prox"]} in told["events"]
+    assert {"name": "prox", "help": texts("help")["events.prox"]} in told["events"]
     natives = {entry["name"]: entry for entry in told["natives"]}
     assert natives["leds.top"]["parameters"][0] == {"name": "red", "size": 1}
     assert natives["_poweroff"]["hidden"]
@@ -167,11 +165,11 @@ def test_every_name_of_the_robot_has_help():
     assert [entry["name"] for entry in entries if not entry["help"]] == []
 
 
-def test_help_comes_in_the_language_that_has_it(monkeypatch):
-    monkeypatch.setattr(helps, "TABLES", {"en": helps.ENGLISH, "xx": helps.HelpTable({"acc": "xx"}, {}, {})})
+def test_help_comes_in_the_language_that_has_it(add_language):
+    add_language("xx", help={"variables.acc": "xx"})
     told = {entry["name"]: entry["help"] for entry in describe_target(language="xx")["variables"]}
     assert told["acc"] == "xx"
-    assert told["leds.top"] == helps.ENGLISH.variables["leds.top"]
+    assert told["leds.top"] == texts("help")["variables.leds.top"]
 
 
 def test_a_loaded_program_is_described_with_the_topics_of_its_events():

@@ -24,4 +24,4 @@ class DeviceStatus:
     fault: str = ""
     pc: int | None = field(default=None, compare=False)  # the place is the line
     faults: Mapping[str, str] = field(default_factory=dict, compare=False)
-    """Language → the sentence of `fault` in it (`aseba_vm.messages.LANGUAGES`)."""
+    """Language → the sentence of `fault` in it (`aseba_vm.languages.LANGUAGES`)."""
