@@ -14,12 +14,13 @@ from typing import Any, TypeVar
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.server import BridgeServer
 from thymio_sim_ros.bridge.server_thread import listen
-from thymio_sim_ros.bridge.switchboard import Switchboard
+from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 
 DEADLINE_S = 20.0
 

@@ -9,9 +9,10 @@ from typing import TypeVar
 
 from websockets.sync.client import ClientConnection, connect
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import CDR
+from thymio_sim_ros.bridge import SUBPROTOCOLS
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.protocol.constants import CDR
 
 T = TypeVar("T")
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.bridge.access import TOKEN, AttemptLimiter, Role, Tokens, given_token, is_loopback, new_token
+from thymio_sim_ros.bridge.access import TOKEN, AttemptLimiter, Tokens, given_token, is_loopback, new_token
+from thymio_sim_ros.bridge.protocol.constants import Role
 
 TOKENS = Tokens("fulltoken", "looktoken")
 

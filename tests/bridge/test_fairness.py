@@ -12,11 +12,12 @@ import pytest
 from websockets.exceptions import ConnectionClosedError
 
 from tests.bridge.peers import DEADLINE_S, Client, StalledClient, bridge, run
-from thymio_sim_ros.bridge import ServerSettings, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.bounded_json import MAX_STRUCTURE
-from thymio_sim_ros.bridge.switchboard import MAX_CALLS
+from thymio_sim_ros.bridge import ServerSettings
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.protocol.bounded_json import MAX_STRUCTURE
+from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.pending_requests import MAX_PENDING_CALLS
 
 PING = bytes([0x89, 0x80, 0, 0, 0, 0])
 CLIENT_FRAME = ms.ServiceRequest(7, 1, "cdr", b"")
@@ -129,7 +130,7 @@ def test_calls_that_are_refused_leave_the_others_room() -> None:
             await server.sink.until(lambda events: any(getattr(event, "client", 0) == 2 for event in events))
             await busy.settle()
             calls = [event for event in server.sink.events if isinstance(event, ev.ServiceCalled)]
-            assert len([call for call in calls if call.client == 1]) == MAX_CALLS
+            assert len([call for call in calls if call.client == 1]) == MAX_PENDING_CALLS
 
     run(scenario())
 

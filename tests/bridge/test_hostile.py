@@ -12,11 +12,12 @@ from collections.abc import Iterator
 import pytest
 
 from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClient, bridge, run
-from thymio_sim_ros.bridge import ServerSettings, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import ServerSettings
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue
-from thymio_sim_ros.bridge.client_state import ClientState
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.client_state import ClientState
 from thymio_sim_ros.bridge.transport import SharedConnection, SharedTransport
 
 FRAMES = 10_000

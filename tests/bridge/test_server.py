@@ -14,10 +14,10 @@ from websockets.typing import Subprotocol
 from tests.bridge.certificates import make_certificate
 from tests.bridge.peers import CHANNEL, DEADLINE_S, Client, StalledClient, bridge, run
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerSettings, Tokens
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import StatusLevel
-from thymio_sim_ros.bridge.server import WRONG_TOKEN
+from thymio_sim_ros.bridge.handshake import WRONG_TOKEN
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.switchboard import events as ev
 
 LIMIT = 1 << 16
 KILOBYTE = bytes(1024)

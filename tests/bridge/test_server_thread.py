@@ -17,11 +17,12 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from tests.bridge.certificates import make_certificate, trusting
-from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import StatusLevel
+from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.switchboard import events as ev
 
 CHANNEL = ms.Channel(1, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
 DEADLINE_S = 20.0
@@ -245,8 +246,8 @@ def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
 COUNTING = """
 import sys
 from websockets.sync.client import connect
-from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import SUBPROTOCOLS
+from thymio_sim_ros.bridge.protocol import messages as ms, wire
 
 with connect(f"ws://127.0.0.1:{sys.argv[1]}", subprotocols=SUBPROTOCOLS, close_timeout=0) as client:
     client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))

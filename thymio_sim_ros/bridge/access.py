@@ -14,14 +14,14 @@ import urllib.parse
 from collections import OrderedDict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from enum import StrEnum
+
+from thymio_sim_ros.bridge.protocol.constants import Role
 
 __all__ = [
     "READ_ONLY_VARIABLE",
     "TOKEN",
     "TOKEN_VARIABLE",
     "AttemptLimiter",
-    "Role",
     "Tokens",
     "given_token",
     "is_loopback",
@@ -37,13 +37,6 @@ TOKEN = re.compile(r"[A-Za-z0-9._~-]{4,200}")
 _BURST = 30
 _PER_S = 1.0
 _MAX_ADDRESSES = 1000
-
-
-class Role(StrEnum):
-    """What a client may do."""
-
-    FULL = "full"
-    READ_ONLY = "read_only"
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 from websockets.protocol import State
 
-from thymio_sim_ros.bridge.constants import StatusLevel
 from thymio_sim_ros.bridge.framing import data_frame, framed
-from thymio_sim_ros.bridge.messages import Status
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import Status
+from thymio_sim_ros.bridge.protocol.wire import encode_server
 from thymio_sim_ros.bridge.transport import SharedConnection
-from thymio_sim_ros.bridge.wire import encode_server
 
 SendFunction = Callable[[int, bytes], bool]
 """Sends a payload with its time in ns; returns False if the frame was kept for later."""

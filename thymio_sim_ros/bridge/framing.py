@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import struct
 
-from thymio_sim_ros.bridge.constants import BinaryOpcode
-from thymio_sim_ros.bridge.wire import DATA_HEAD_SIZE, data_head
+from thymio_sim_ros.bridge.protocol.constants import BinaryOpcode
+from thymio_sim_ros.bridge.protocol.wire import DATA_HEAD_SIZE, data_head
 
 __all__ = ["binary_head", "data_frame", "framed"]
 

@@ -9,48 +9,38 @@ stops reading from the client that fills it.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import itertools
 import logging
 import ssl
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from http import HTTPStatus
 from socket import socket
 from typing import Any, Protocol, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
-from websockets.datastructures import Headers
-from websockets.exceptions import ConnectionClosed, NegotiationError
+from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
-from websockets.http11 import Request, Response
-from websockets.typing import Subprotocol
 
-from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens, given_token
+from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, SendFunction
-from thymio_sim_ros.bridge.constants import SUBPROTOCOLS, StatusLevel
-from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.events import Command, Data, Event, RemoveChannels
 from thymio_sim_ros.bridge.fair_lock import FairLock
 from thymio_sim_ros.bridge.framing import framed
-from thymio_sim_ros.bridge.messages import ServerMessage, Status, Time, Unsubscribe
-from thymio_sim_ros.bridge.origin_policy import is_allowed
-from thymio_sim_ros.bridge.switchboard import Delivery, Routes, Switchboard
+from thymio_sim_ros.bridge.handshake import HandshakeCheck, select_subprotocol
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.errors import FrameError
+from thymio_sim_ros.bridge.protocol.messages import ServerMessage, Status, Time, Unsubscribe
+from thymio_sim_ros.bridge.protocol.wire import decode_client, encode_server
+from thymio_sim_ros.bridge.switchboard.events import Command, Data, Event, RemoveChannels
+from thymio_sim_ros.bridge.switchboard.outcome import Delivery
+from thymio_sim_ros.bridge.switchboard.subscriptions import Routes
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
-from thymio_sim_ros.bridge.wire import decode_client, encode_server
 
-__all__ = ["WRONG_TOKEN", "BridgeServer", "EventSink", "ServerSettings"]
+__all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 
 _FLUSH_PERIOD_S = 0.01
 _FULL_PAUSE_S = 0.005
-WRONG_TOKEN = 4401
-"""Close code for a page without a valid token: browsers hide the reason of a rejected handshake from pages."""
-_NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's terminal, or append ?token=… to this one"
-_WRONG_TOKEN_TEXT = (
-    "the token is wrong or of an earlier start: open the address that is in the simulator's terminal now"
-)
-_WARN_EVERY_S = 60.0
 _CLOSE_S = 0.3
 BACKLOG = 128
 """Connections that may wait to be accepted."""
@@ -102,7 +92,7 @@ class BridgeServer:
 
     def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
         self._board = board
-        self._routed, self._retained = board.routed, board.retained
+        self._routed, self._retained = board.subscriptions.routed, board.subscriptions.retained
         self._senders: dict[int, tuple[Routes, tuple[SendFunction, ...]]] = {}
         """Send functions by channel, with the routes they were made for; made again when the routes change."""
         self._sink = sink
@@ -110,8 +100,7 @@ class BridgeServer:
         self._log = logging.getLogger(__name__)
         self._queues: dict[int, ClientSendQueue] = {}
         self._client_ids = itertools.count(1)
-        self._attempts = AttemptLimiter(time.monotonic)
-        self._warned_s: dict[str, float] = {}
+        self._handshakes = HandshakeCheck(self._settings.tokens, self._settings.allowed_origins, self._log)
         self._flush_is_due = False
         self._loop: asyncio.AbstractEventLoop
         self._servers: list[Server] = []
@@ -140,8 +129,8 @@ class BridgeServer:
                 sock=listener,
                 ssl=settings.tls,
                 create_connection=cast("type[ServerConnection]", self._make_connection),
-                select_subprotocol=_select_subprotocol,
-                process_request=self._check_access,
+                select_subprotocol=select_subprotocol,
+                process_request=self._handshakes.check,
                 compression=None,
                 server_header=None,
                 max_size=settings.max_message_size,
@@ -188,8 +177,8 @@ class BridgeServer:
             routes = self._routed.get(channel_id)
             if routes is None:
                 return  # not retained either: it would be outdated for the next subscriber
-            if channel_id in self._retained:
-                self._board.retain(Data(channel_id, time_ns, payload))
+            if channel_id in self._retained.by_channel:
+                self._retained.add(Data(channel_id, time_ns, payload))
             known, senders = self._senders.get(channel_id, _NO_SENDERS)
             if known is not routes:
                 senders = tuple(self._queues[client].sender(subscription_id) for client, subscription_id in routes)
@@ -244,7 +233,7 @@ class BridgeServer:
             await connection.close(CloseCode.TRY_AGAIN_LATER, "too many clients")
             return
         if connection.role is None:
-            await self._reject(connection)
+            await self._handshakes.reject(connection)
             return
         client = next(self._client_ids)
         queue = ClientSendQueue(connection, self._settings.buffer_limit)
@@ -324,64 +313,3 @@ class BridgeServer:
     def _post_events(self, events: Iterable[Event]) -> None:
         for event in events:
             self._sink.post(event)
-
-    def _check_access(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Reject a handshake without a valid token or from a foreign page; with a valid token any page is accepted."""
-        assert isinstance(connection, SharedConnection)
-        tokens, address = self._settings.tokens, _address(connection)
-        token = given_token(request.path, request.headers.get_all("Authorization"))
-        if tokens.is_required and not self._attempts.is_allowed_to_try(address):
-            self._warn("attempts", f"too many connections from {address} with a wrong token; its others have to wait")
-            return connection.respond(HTTPStatus.TOO_MANY_REQUESTS, "Too many wrong tokens; wait some seconds.\n")
-        connection.role = tokens.role(token)
-        origin, host = _header(request.headers, "Origin"), _header(request.headers, "Host")
-        if connection.role is None:
-            self._attempts.record_failure(address)
-            self._warn("token", f"refused a connection from {address}: its token is wrong or missing")
-            if origin is not None:
-                return None  # the reason is sent once it is connected
-            response = connection.respond(HTTPStatus.UNAUTHORIZED, f"{_token_text(request)}\n")
-            response.headers["WWW-Authenticate"] = "Bearer"
-            return response
-        if tokens.is_required or is_allowed(origin, host, self._settings.allowed_origins):
-            return None
-        self._warn("origin", f"refused a web page from {origin:.100}: add it to allowed_origins if it is yours")
-        return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
-
-    async def _reject(self, connection: SharedConnection) -> None:
-        """Send a status with the reason, and close the connection."""
-        assert connection.request is not None
-        text = _token_text(connection.request)
-        with contextlib.suppress(ConnectionClosed):
-            await connection.send(encode_server(Status(StatusLevel.ERROR, text, "access")))
-            await connection.close(WRONG_TOKEN, "wrong or missing token")
-
-    def _warn(self, about: str, text: str) -> None:
-        """Log a warning, at most once in `_WARN_EVERY_S` per topic: any client can cause it."""
-        now_s = time.monotonic()
-        if now_s - self._warned_s.get(about, -_WARN_EVERY_S) >= _WARN_EVERY_S:
-            self._warned_s[about] = now_s
-            self._log.warning("%s", text)
-
-
-def _address(connection: ServerConnection) -> str:
-    peer = connection.remote_address
-    return str(peer[0]) if peer else ""
-
-
-def _token_text(request: Request) -> str:
-    given = given_token(request.path, request.headers.get_all("Authorization"))
-    return _NO_TOKEN_TEXT if given is None else _WRONG_TOKEN_TEXT
-
-
-def _header(headers: Headers, name: str) -> str | None:
-    """The header's value, the last one if it is repeated."""
-    values = headers.get_all(name)
-    return values[-1] if values else None
-
-
-def _select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol:
-    for name in SUBPROTOCOLS:
-        if name in offered:
-            return name
-    raise NegotiationError(f"offer one of the sub-protocols {', '.join(SUBPROTOCOLS)}")

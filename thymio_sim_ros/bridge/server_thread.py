@@ -8,10 +8,10 @@ import socket
 import threading
 from collections.abc import Callable, Sequence
 
-from thymio_sim_ros.bridge.events import Command
-from thymio_sim_ros.bridge.messages import ServerInfo
+from thymio_sim_ros.bridge.protocol.messages import ServerInfo
 from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer, EventSink, ServerSettings
-from thymio_sim_ros.bridge.switchboard import Switchboard
+from thymio_sim_ros.bridge.switchboard.events import Command
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 
 __all__ = ["ServerThread", "check_free", "listen"]
 

@@ -17,7 +17,7 @@ from typing import Any, cast
 
 from websockets.asyncio.server import ServerConnection
 
-from thymio_sim_ros.bridge.access import Role
+from thymio_sim_ros.bridge.protocol.constants import Role
 
 __all__ = ["SLICE_S", "SharedConnection", "SharedTransport"]
 

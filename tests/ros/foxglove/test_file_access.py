@@ -11,7 +11,7 @@ from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 
 from tests.bridge.studio import set_and_answer
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros.foxglove.file_access import call_refusal, parameter_refusal
 
 PATHS = ["/etc/passwd", "line.json", "~/x.json", "../line", "file:///etc/passwd", "/proc/self/environ"]

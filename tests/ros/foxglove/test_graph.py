@@ -6,7 +6,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros.foxglove import assets
 from thymio_sim_ros.ros.foxglove.graph import connection_graph
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
-from thymio_sim_ros.bridge.messages import Parameter
+from thymio_sim_ros.bridge.protocol.messages import Parameter
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
 
 INT64 = st.integers(-(2**63), 2**63 - 1)

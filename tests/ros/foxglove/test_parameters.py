@@ -9,9 +9,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from tests.bridge.studio import Studio, set_and_answer
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import StatusLevel
-from thymio_sim_ros.bridge.switchboard import MAX_REFUSALS
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.switchboard.outcome import MAX_REFUSALS
 
 
 def test_parameters_of_all_nodes_can_be_read(studio, peer):

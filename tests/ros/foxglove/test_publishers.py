@@ -10,8 +10,8 @@ from rclpy.serialization import serialize_message
 from std_msgs.msg import Bool, Int16MultiArray, String
 
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import JSON, StatusLevel
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import JSON, StatusLevel
 from thymio_sim_ros.ros.foxglove.publishers import ClientPublishers
 
 

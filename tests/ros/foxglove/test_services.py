@@ -9,8 +9,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_srvs.srv import SetBool, Trigger
 
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import CDR, JSON
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 from thymio_sim_ros.ros.foxglove import node
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 

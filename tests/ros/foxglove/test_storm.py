@@ -15,8 +15,8 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 from tests.bridge.studio import Studio, set_and_answer
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import CDR, JSON
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 
 
 def flip(request, response):

@@ -6,7 +6,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
 
 
 def test_simulated_time_is_told_and_a_step_back_begins_a_new_session(ros, bridge):

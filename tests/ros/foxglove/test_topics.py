@@ -9,8 +9,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Bool, String
 
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove.topics import Topics
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from rclpy.node import Node, NodeNameNonExistentError
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from thymio_sim_ros.bridge.graph import ConnectionGraph
+from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph
 
 __all__ = ["allow_list", "connection_graph", "is_parameter_service", "visible", "visible_topics"]
 

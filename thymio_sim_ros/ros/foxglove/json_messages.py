@@ -13,7 +13,7 @@ import re
 import sys
 from typing import Any
 
-from thymio_sim_ros.bridge import bounded_json
+from thymio_sim_ros.bridge.protocol import bounded_json
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.foxglove.types import full_name, load_type
 

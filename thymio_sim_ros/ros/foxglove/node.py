@@ -25,9 +25,9 @@ from std_msgs.msg import UInt32
 
 from thymio_sim_ros.banner import access, places, urls
 from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Tokens
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge.constants import CDR, JSON
-from thymio_sim_ros.bridge.messages import AssetResponse
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
+from thymio_sim_ros.bridge.protocol.messages import AssetResponse
+from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
 from thymio_sim_ros.ros.foxglove.graph import (
     allow_list,

@@ -8,7 +8,7 @@ from typing import Any
 
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
-from thymio_sim_ros.bridge.messages import Parameter
+from thymio_sim_ros.bridge.protocol.messages import Parameter
 from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["UnfitValueError", "from_ros", "to_ros"]

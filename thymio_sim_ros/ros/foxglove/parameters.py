@@ -20,8 +20,9 @@ from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameter_events
 
-from thymio_sim_ros.bridge.constants import StatusLevel
-from thymio_sim_ros.bridge.events import (
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import Parameter, RemoveStatus, Status, parameter_status
+from thymio_sim_ros.bridge.switchboard.events import (
     Command,
     ParametersChanged,
     ParametersRequested,
@@ -31,8 +32,8 @@ from thymio_sim_ros.bridge.events import (
     SendToClient,
     size_of,
 )
-from thymio_sim_ros.bridge.messages import Parameter, RemoveStatus, Status, parameter_status
-from thymio_sim_ros.bridge.switchboard import MAX_REFUSALS, MAX_WATCHED
+from thymio_sim_ros.bridge.switchboard.outcome import MAX_REFUSALS
+from thymio_sim_ros.bridge.switchboard.parameters import MAX_WATCHED
 from thymio_sim_ros.ros.foxglove.file_access import parameter_refusal
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls

@@ -17,9 +17,9 @@ from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
-from thymio_sim_ros.bridge.constants import JSON, StatusLevel
-from thymio_sim_ros.bridge.events import Command, SendToClient
-from thymio_sim_ros.bridge.messages import ClientChannel, Status
+from thymio_sim_ros.bridge.protocol.constants import JSON, StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import ClientChannel, Status
+from thymio_sim_ros.bridge.switchboard.events import Command, SendToClient
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages

@@ -11,9 +11,8 @@ from rclpy._rclpy_pybind11 import RMWError
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message, serialize_message
 
-from thymio_sim_ros.bridge.constants import CDR, JSON, StatusLevel
-from thymio_sim_ros.bridge.events import AddServices, AnswerCall, Command, RemoveServices, SendToClient
-from thymio_sim_ros.bridge.messages import (
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON, StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import (
     Service,
     ServiceCallFailure,
     ServiceRequest,
@@ -21,6 +20,7 @@ from thymio_sim_ros.bridge.messages import (
     ServiceSide,
     Status,
 )
+from thymio_sim_ros.bridge.switchboard.events import AddServices, AnswerCall, Command, RemoveServices, SendToClient
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
 from thymio_sim_ros.ros.foxglove.file_access import call_refusal

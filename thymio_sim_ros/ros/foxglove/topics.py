@@ -11,9 +11,9 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from thymio_sim_ros.bridge.constants import CDR
-from thymio_sim_ros.bridge.events import AddChannels, Command, RemoveChannels, RetainLast
-from thymio_sim_ros.bridge.messages import Channel
+from thymio_sim_ros.bridge.protocol.constants import CDR
+from thymio_sim_ros.bridge.protocol.messages import Channel
+from thymio_sim_ros.bridge.switchboard.events import AddChannels, Command, RemoveChannels, RetainLast
 from thymio_sim_ros.ros.foxglove.qos import SubscriptionQos, subscription_qos
 from thymio_sim_ros.ros.foxglove.schemas import message_definition
 from thymio_sim_ros.ros.foxglove.time_share import TimeShare

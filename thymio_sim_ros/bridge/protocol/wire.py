@@ -11,11 +11,11 @@ import struct
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from thymio_sim_ros.bridge import bounded_json
-from thymio_sim_ros.bridge.constants import ASSET_OPCODE, BinaryOpcode, ClientBinaryOpcode
-from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.json_codec import describe, reader, writer
-from thymio_sim_ros.bridge.messages import (
+from thymio_sim_ros.bridge.protocol import bounded_json
+from thymio_sim_ros.bridge.protocol.constants import ASSET_OPCODE, BinaryOpcode, ClientBinaryOpcode
+from thymio_sim_ros.bridge.protocol.errors import FrameError
+from thymio_sim_ros.bridge.protocol.json_codec import describe, reader, writer
+from thymio_sim_ros.bridge.protocol.messages import (
     CLIENT_JSON,
     SERVER_JSON,
     AssetResponse,

@@ -14,9 +14,9 @@ from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import Any, get_args, get_origin, get_type_hints
 
-from thymio_sim_ros.bridge.constants import MAX_ID
-from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.messages import ParameterValue
+from thymio_sim_ros.bridge.protocol.constants import MAX_ID
+from thymio_sim_ros.bridge.protocol.errors import FrameError
+from thymio_sim_ros.bridge.protocol.messages import ParameterValue
 
 Reader = Callable[[Any, str], Any]
 Writer = Callable[[Any], Any]

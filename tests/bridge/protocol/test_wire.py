@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thymio_sim_ros.bridge import FrameError, wire
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import MAX_ID, StatusLevel
-from thymio_sim_ros.bridge.messages import CLIENT_JSON, SERVER_JSON
+from thymio_sim_ros.bridge import FrameError
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.protocol.constants import MAX_ID, StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import CLIENT_JSON, SERVER_JSON
 
 IDS = st.integers(0, MAX_ID)
 TEXTS = st.text(max_size=20)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thymio_sim_ros.bridge.graph import ConnectionGraph, Names
-from thymio_sim_ros.bridge.messages import (
+from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph, Names
+from thymio_sim_ros.bridge.protocol.messages import (
     AdvertisedService,
     ConnectionGraphUpdate,
     PublishedTopic,

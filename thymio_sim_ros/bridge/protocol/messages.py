@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
-from thymio_sim_ros.bridge.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 
 # --- parts ---------------------------------------------------------------------------------------------------------
 
@@ -350,32 +350,6 @@ class ServiceRequest:
     payload: bytes
 
 
-SERVER_JSON: tuple[type[Any], ...] = (
-    ServerInfo,
-    Status,
-    RemoveStatus,
-    Advertise,
-    Unadvertise,
-    AdvertiseServices,
-    UnadvertiseServices,
-    ParameterValues,
-    ConnectionGraphUpdate,
-    ServiceCallFailure,
-)
-CLIENT_JSON: tuple[type[Any], ...] = (
-    Subscribe,
-    Unsubscribe,
-    ClientAdvertise,
-    ClientUnadvertise,
-    GetParameters,
-    SetParameters,
-    SubscribeParameterUpdates,
-    UnsubscribeParameterUpdates,
-    SubscribeConnectionGraph,
-    UnsubscribeConnectionGraph,
-    FetchAsset,
-)
-
 ServerMessage = (
     ServerInfo
     | Status
@@ -407,3 +381,9 @@ ClientMessage = (
     | ClientMessageData
     | ServiceRequest
 )
+
+SERVER_JSON: tuple[type[Any], ...] = tuple(kind for kind in get_args(ServerMessage) if hasattr(kind, "op"))
+"""Messages of servers that are JSON objects."""
+
+CLIENT_JSON: tuple[type[Any], ...] = tuple(kind for kind in get_args(ClientMessage) if hasattr(kind, "op"))
+"""Messages of clients that are JSON objects."""

@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.bridge.messages import AdvertisedService, ConnectionGraphUpdate, PublishedTopic, SubscribedTopic
+from thymio_sim_ros.bridge.protocol.messages import (
+    AdvertisedService,
+    ConnectionGraphUpdate,
+    PublishedTopic,
+    SubscribedTopic,
+)
 
 Names = Mapping[str, tuple[str, ...]]
 

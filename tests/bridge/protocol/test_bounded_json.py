@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from thymio_sim_ros.bridge.bounded_json import MAX_STRUCTURE, TooMuchStructureError, loads
+from thymio_sim_ros.bridge.protocol.bounded_json import MAX_STRUCTURE, TooMuchStructureError, loads
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from thymio_sim_ros.bridge.constants import ASSET_OPCODE, SUBPROTOCOLS, BinaryOpcode, ClientBinaryOpcode
+from thymio_sim_ros.bridge.protocol.constants import ASSET_OPCODE, SUBPROTOCOLS, BinaryOpcode, ClientBinaryOpcode
 
 
 def test_opcodes_are_those_of_the_specification() -> None:

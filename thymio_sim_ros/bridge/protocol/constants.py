@@ -25,6 +25,7 @@ __all__ = [
     "BinaryOpcode",
     "Capability",
     "ClientBinaryOpcode",
+    "Role",
     "StatusLevel",
 ]
 
@@ -51,3 +52,10 @@ class Capability(StrEnum):
     CONNECTION_GRAPH = "connectionGraph"
     ASSETS = "assets"
     TIME = "time"
+
+
+class Role(StrEnum):
+    """What a client may do; sent to read-only clients in the metadata of serverInfo (key `access`)."""
+
+    FULL = "full"
+    READ_ONLY = "read_only"
