@@ -101,4 +101,4 @@ def test_so_many_addresses_are_remembered_and_no_more() -> None:
     attempts = AttemptLimiter(lambda: 0.0)
     for number in range(2000):
         attempts.record_failure(f"10.0.{number // 250}.{number % 250}")
-    assert len(attempts._left) == 1000
+    assert len(attempts._remaining_by_network) == 1000

@@ -184,7 +184,7 @@ def test_the_pages_tell_how_long_a_velocity_holds(description: Call) -> None:
 def test_a_file_of_parameters_comes_last_and_must_be_there(description: Call, tmp_path: Path) -> None:
     assert all(len(node["parameters"]) == 1 for node in _ours(description))
     file = tmp_path / "mine.yaml"
-    with pytest.raises(RuntimeError, match=r"params_file: '.*mine\.yaml' found, expected a YAML file"):
+    with pytest.raises(RuntimeError, match=r"params_file: found '.*mine\.yaml', expected a YAML file"):
         _ours(description, params_file=str(file))
     file.touch()
     assert all(node["parameters"][1:] == [str(file)] for node in _ours(description, params_file=str(file)))

@@ -81,7 +81,7 @@ def test_messages_in_another_frame():
     assert (found.position.x, found.position.y) == (pytest.approx(1.0), pytest.approx(1.0))
     assert euler_from_quaternion([q.x, q.y, q.z, q.w])[2] == pytest.approx(math.pi / 2)
     assert isinstance(do_transform_pose(Pose(), buffer.lookup_transform("map", "base", Time())), Pose)
-    with pytest.raises(TypeException, match="Said found, expected one of PointStamped"):
+    with pytest.raises(TypeException, match="found Said, expected one of PointStamped"):
         Buffer().transform(type("Said", (String,), {"header": point.header})(), "map")
 
 
@@ -180,7 +180,7 @@ def test_the_robot_and_its_sensors_are_on_the_map(ros, simulation):
     assert euler_from_quaternion([q.x, q.y, q.z, q.w])[2] == pytest.approx(truth.yaw_rad)
     sensor = buffer.lookup_transform("base_link", "proximity_center_link", Time()).transform.translation
     assert (sensor.x, sensor.y) == (pytest.approx(0.08, abs=0.005), pytest.approx(0.0))
-    with pytest.raises(LookupException, match="frames there are: base_footprint, base_link"):
+    with pytest.raises(LookupException, match="known frames: base_footprint, base_link"):
         buffer.lookup_transform("map", "base_lnik", Time())
     with pytest.raises(ExtrapolationException, match="into the future"):
         buffer.lookup_transform("odom", "base_link", Time(seconds=100.0))

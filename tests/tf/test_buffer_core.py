@@ -43,8 +43,8 @@ def place(core, target, source, seconds=0.0):
 
 def test_a_transform_and_its_inverse():
     core = filled(("map", "base", 1.0, turn(math.pi / 2, 1.0, 2.0)))
-    assert core.lookup("map", "base").motion.moved((1.0, 0.0, 0.0)) == pytest.approx((1.0, 3.0, 0.0))
-    assert core.lookup("base", "map").motion.moved((1.0, 3.0, 0.0)) == pytest.approx((1.0, 0.0, 0.0))
+    assert core.lookup("map", "base").motion.apply((1.0, 0.0, 0.0)) == pytest.approx((1.0, 3.0, 0.0))
+    assert core.lookup("base", "map").motion.apply((1.0, 3.0, 0.0)) == pytest.approx((1.0, 0.0, 0.0))
     assert core.lookup("base", "map").stamp_ns == S
 
 
@@ -76,9 +76,9 @@ def test_a_chain_is_the_product_of_its_links():
     point = (0.2, -0.3, 0.4)
     wanted = point
     for _, _, motion in reversed(links):
-        wanted = motion.moved(wanted)
-    assert core.lookup("a", "d").motion.moved(point) == pytest.approx(wanted)
-    assert core.lookup("d", "a").motion.moved(wanted) == pytest.approx(point)
+        wanted = motion.apply(wanted)
+    assert core.lookup("a", "d").motion.apply(point) == pytest.approx(wanted)
+    assert core.lookup("d", "a").motion.apply(wanted) == pytest.approx(point)
 
 
 def test_two_branches_meet_where_they_part():
@@ -154,7 +154,7 @@ def test_frames_that_nothing_connects():
 
 def test_frames_that_nobody_sent():
     core = filled(("map", "base", 1.0, turn(0.0)))
-    with pytest.raises(LookupException, match='"odom" passed as source_frame does not exist; frames there are: base'):
+    with pytest.raises(LookupException, match='"odom" passed as source_frame does not exist; known frames: base'):
         core.lookup("map", "odom")
     with pytest.raises(LookupException, match='"odom" passed as target_frame does not exist'):
         core.lookup("odom", "map")
@@ -176,17 +176,17 @@ def test_a_slash_before_the_names_of_what_is_sent_is_left_out():
 @pytest.mark.parametrize(
     ("placed", "text"),
     [
-        (StampedTransform(S, "a", "a", IDENTITY), "a transform of 'a' in itself"),
-        (StampedTransform(S, "", "a", IDENTITY), "has no frame_id"),
-        (StampedTransform(S, "a", "", IDENTITY), "has no child_frame_id"),
-        (StampedTransform(S, "a", "b", RigidTransform((math.nan, 0.0, 0.0))), "not finite"),
+        (StampedTransform(S, "a", "a", IDENTITY), "the transform of 'a' has the same frame as frame_id"),
+        (StampedTransform(S, "", "a", IDENTITY), "has an empty frame_id"),
+        (StampedTransform(S, "a", "", IDENTITY), "has an empty child_frame_id"),
+        (StampedTransform(S, "a", "b", RigidTransform((math.nan, 0.0, 0.0))), "NaN or infinite"),
         (
             StampedTransform(S, "a", "b", RigidTransform(rotation=(0.0, 0.0, 0.0, 0.0))),
-            "a quaternion of length 0, expected 1",
+            "a quaternion of norm 0, expected 1",
         ),
         (
             StampedTransform(S, "a", "b", RigidTransform(rotation=(0.0, 0.0, 1.0, 1.0))),
-            "a quaternion of length 1.41, expected 1",
+            "a quaternion of norm 1.41, expected 1",
         ),
     ],
 )
@@ -289,4 +289,4 @@ def test_any_tree_by_chance_agrees_with_the_product_of_its_links():
         target, source = chance.choice(list(absolute)), chance.choice(list(absolute))
         wanted = absolute[target].inverse() * absolute[source]
         found = core.lookup(target, source, S).motion
-        assert found.moved((0.3, -0.2, 0.9)) == pytest.approx(wanted.moved((0.3, -0.2, 0.9)), abs=1e-9)
+        assert found.apply((0.3, -0.2, 0.9)) == pytest.approx(wanted.apply((0.3, -0.2, 0.9)), abs=1e-9)

@@ -26,7 +26,7 @@ __all__ = ["WRONG_TOKEN", "HandshakeCheck", "select_subprotocol"]
 WRONG_TOKEN = 4401
 """Close code for a page without a valid token: browsers hide the reason of a rejected handshake from pages."""
 
-_NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's terminal, or append ?token=… to this one"
+_NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's terminal, or append ?token=… to yours"
 _WRONG_TOKEN_TEXT = (
     "the token is wrong or from an earlier start: open the address that the simulator's terminal shows now"
 )

@@ -40,15 +40,18 @@ from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
 __all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 
 _FLUSH_PERIOD_S = 0.01
+"""Time between attempts to send kept data frames."""
 _FULL_PAUSE_S = 0.005
+"""Time between checks whether the event sink accepts events again."""
 _CLOSE_S = 0.3
+"""Time that clients have to answer the closing handshake."""
 BACKLOG = 128
-"""Connections that may wait to be accepted."""
+"""Connections that the kernel queues until they are accepted."""
 _ACCEPTED_AT_ONCE = 4
-"""Connections accepted in one iteration of the loop: a handshake takes 3 ms."""
+"""Connections accepted in one iteration of the loop. A handshake takes 3 ms, during which no client is served."""
 _NO_SENDERS: tuple[Routes, tuple[SendFunction, ...]] = ((), ())
 _SMALL_SHARE = 0.05
-"""Share of the loop's time below which a client is served without a pause."""
+"""Share of the loop's time below which a client is not throttled."""
 _TIME_SLOT = -1
 """Key of the newest time in a send queue; no subscription has this ID."""
 
@@ -70,7 +73,7 @@ class ServerSettings:
     allowed_origins: tuple[str, ...] = ()
     """Additional origins of web pages (see `origin_policy`); `*` allows all."""
     buffer_limit: int = 1 << 20
-    """Bytes that may wait for a client before data frames are dropped."""
+    """Bytes that may be buffered for a client before data frames are dropped."""
     max_message_size: int = 4 << 20
     """Size of the longest frame accepted from a client, bytes."""
     max_clients: int = 128
@@ -120,7 +123,7 @@ class BridgeServer:
         self._loop = asyncio.get_running_loop()
         self._throttle_lock = asyncio.Lock()
         settings = self._settings
-        # Refused handshakes are answered with their reason; websockets would log each with a traceback.
+        # `websockets` logs each rejected handshake with a traceback; `HandshakeCheck` logs the ones that matter.
         log = logging.getLogger(f"{__name__}.websockets")
         log.setLevel(logging.CRITICAL)
         for listener in listeners:
@@ -140,7 +143,7 @@ class BridgeServer:
                 backlog=_ACCEPTED_AT_ONCE,
                 logger=log,
             )
-            listener.listen(BACKLOG)  # more may wait than are accepted at once
+            listener.listen(BACKLOG)  # the kernel may queue more connections than are accepted in one iteration
             self._servers.append(server)
 
     async def close(self) -> None:
@@ -176,11 +179,11 @@ class BridgeServer:
         try:
             routes = self._routed.get(channel_id)
             if routes is None:
-                return  # not retained either: it would be outdated for the next subscriber
+                return  # without subscribers the message is not retained: it would be outdated for the next one
             if channel_id in self._retained.by_channel:
                 self._retained.add(Data(channel_id, time_ns, payload))
             known, senders = self._senders.get(channel_id, _NO_SENDERS)
-            if known is not routes:
+            if known is not routes:  # routes are immutable: another object means other subscriptions
                 senders = tuple(self._queues[client].sender(subscription_id) for client, subscription_id in routes)
                 self._senders[channel_id] = (routes, senders)
             for send in senders:
@@ -247,7 +250,7 @@ class BridgeServer:
             await self._throttle(time.thread_time() - began_s)
             await self._read(client, connection)
         except ConnectionClosed:
-            pass  # a lost connection ends like a closed one
+            pass  # a lost connection is handled like a closed one
         finally:
             with self._lock:
                 del self._queues[client]
@@ -256,7 +259,11 @@ class BridgeServer:
             self._post_events(events)
 
     async def _read(self, client: int, connection: SharedConnection) -> None:
-        """Receive a client's messages until it leaves."""
+        """Process messages of a client until it disconnects.
+
+        The client is throttled after each `SLICE_S` of processor time, unless its share of the loop's time is small:
+        such a client must not wait behind the busy ones.
+        """
         spent_s, since_s = 0.0, time.monotonic()
         async for frame in connection:
             if self._is_closing:
@@ -267,7 +274,6 @@ class BridgeServer:
             while self._sink.is_full(client) and not self._is_closing:
                 await asyncio.sleep(_FULL_PAUSE_S)
             if spent_s >= SLICE_S:
-                # A client that uses little of the loop's time does not queue behind the busy ones.
                 if spent_s > _SMALL_SHARE * (time.monotonic() - since_s):
                     await self._throttle(spent_s)
                 spent_s, since_s = 0.0, time.monotonic()
@@ -283,14 +289,14 @@ class BridgeServer:
                 await asyncio.sleep(spent_s)
 
     def _handshake_frame(self, message: ServerMessage) -> bytes:
-        """Encode one of the first messages to a client, cached: 1500 topics are 2 MB, the same for all clients."""
+        """Encode one of the first messages to a client; cached, because 1500 topics are 2 MB for each client."""
         known = self._frames.get(type(message))
         if known is None or known[0] is not message:
             known = self._frames[type(message)] = message, framed(encode_server(message))
         return known[1]
 
     def _log_client_limit(self) -> None:
-        """Log that the limit of clients is reached, once until there are fewer."""
+        """Log that the limit of clients is reached; once, until there are fewer clients."""
         if not self._is_limit_logged:
             self._is_limit_logged = True
             self._log.warning("%d clients are connected: more are rejected", self._settings.max_clients)

@@ -40,11 +40,14 @@ def test_a_client_comes_by_tls(ros, bridge, certificate):
 @pytest.mark.parametrize(
     ("parameters", "text"),
     [
-        ({"tls": True}, "tls needs a certificate: set certfile and keyfile"),
+        ({"tls": True}, "parameter tls: no certificate given; set certfile and keyfile"),
         ({"tls": True, "certfile": "/no/such.pem"}, "the certificate '/no/such.pem' cannot be used: No such file"),
-        ({"topic_whitelist": ("/a", "*")}, r"parameter topic_whitelist: '\*' is no regular expression: nothing to rep"),
-        ({"asset_uri_allowlist": ("(",)}, r"parameter asset_uri_allowlist: '\(' is no regular expression"),
-        ({"capabilities": ("fly",)}, "parameter capabilities: 'fly' found, expected some of clientPublish, "),
+        (
+            {"topic_whitelist": ("/a", "*")},
+            r"parameter topic_whitelist: '\*' is not a regular expression: nothing to rep",
+        ),
+        ({"asset_uri_allowlist": ("(",)}, r"parameter asset_uri_allowlist: '\(' is not a regular expression"),
+        ({"capabilities": ("fly",)}, "parameter capabilities: found 'fly', expected some of clientPublish, "),
     ],
 )
 def test_what_cannot_be_used_is_refused_by_name(ros, parameters, text):

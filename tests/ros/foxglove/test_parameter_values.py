@@ -82,8 +82,8 @@ def test_the_type_in_force_decides_what_a_number_means(value, current, kind):
     [
         (Parameter("p", 2**63), "expected an integer of 64 bits"),
         (Parameter("p", (1, 2**63)), "expected an integer of 64 bits"),
-        (Parameter("p", (1, "x")), "a list must have elements of one kind"),
-        (Parameter("p", (True, 1)), "a list must have elements of one kind"),
+        (Parameter("p", (1, "x")), "expected a list with elements of one type"),
+        (Parameter("p", (True, 1)), "expected a list with elements of one type"),
         (Parameter("p", "x", "float64"), "expected a number, found 'x'"),
         (Parameter("p", True, "float64"), "expected a number, found True"),
         (Parameter("p", 10**400, "float64"), "expected a number, found 1000"),

@@ -54,7 +54,10 @@ def test_several_values_are_answered_together_each_with_its_own_fate(studio, pee
     [
         (ms.Parameter("/peer.fixed", 2), "/peer.fixed: "),
         (ms.Parameter("/peer.speed", "fast"), "/peer.speed: "),
-        (ms.Parameter("/peer.count", (1, "x")), "/peer.count: a list must have elements of one kind"),
+        (
+            ms.Parameter("/peer.count", (1, "x")),
+            "/peer.count: expected a list with elements of one type, found several types",
+        ),
         (ms.Parameter("/peer", 1), "/peer: not offered by this bridge"),
         (ms.Parameter("/peer.count", 2**70), "/peer.count: expected an integer of 64 bits"),
     ],
@@ -121,7 +124,7 @@ def test_of_many_refusals_some_are_told(studio, peer):
     studio.parameter("/peer.program")
     *told, _ = set_and_answer(studio, *(ms.Parameter(f"/no/node.x{number}", 1) for number in range(1000)))
     assert len(told) == MAX_REFUSALS + 1
-    assert told[-1].message == f"{1000 - MAX_REFUSALS} more parameters were refused"
+    assert told[-1].message == f"{1000 - MAX_REFUSALS} more parameters were rejected"
 
 
 def test_a_node_that_does_not_answer_at_first_is_asked_again(ros, bridge):

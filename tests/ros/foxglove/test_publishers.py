@@ -68,8 +68,8 @@ def test_a_ros_publisher_lives_as_long_as_its_last_client_channel(ros, bridge):
     [
         (b"\0\1\0\0\1", "/cmd_vel: expected a geometry_msgs/msg/Twist in cdr"),
         (b"", "/cmd_vel: expected a geometry_msgs/msg/Twist in cdr"),
-        (serialize_message(Twist(linear=Vector3(x=math.nan))), "/cmd_vel: a velocity that is not a number"),
-        (serialize_message(Twist(angular=Vector3(z=math.inf))), "/cmd_vel: a velocity that is not a number"),
+        (serialize_message(Twist(linear=Vector3(x=math.nan))), "/cmd_vel: expected finite velocities, found NaN"),
+        (serialize_message(Twist(angular=Vector3(z=math.inf))), "/cmd_vel: expected finite velocities, found NaN"),
     ],
     ids=["short", "empty", "nan", "inf"],  # the bytes differ from process to process: padding is not set
 )
@@ -91,7 +91,7 @@ def test_a_bad_twist_is_refused_and_the_next_good_one_taken(ros, studio, payload
     [
         ("/a", "no_such_msgs/msg/Thing", "/a: type no_such_msgs/msg/Thing is not available"),
         ("/a", "nonsense", "/a: type nonsense is not available: expected package/msg/Type"),
-        ("/a b", "std_msgs/msg/Bool", "/a b: not a topic name"),
+        ("/a b", "std_msgs/msg/Bool", "/a b: not a valid topic name"),
         ("/a", "__main__/Foo", "/a: type __main__/msg/Foo is not available: there is no package __main__"),
         ("/a", "std_srvs/srv/SetBool", "'/a': cannot publish std_srvs/srv/SetBool"),
         ("/\ud800", "std_msgs/msg/Bool", "'/\\ud800': cannot publish std_msgs/msg/Bool"),
@@ -105,7 +105,7 @@ def test_a_channel_that_cannot_be_published_is_refused(studio, topic, schema, te
 def test_a_second_type_on_a_topic_is_refused(ros, studio):
     ros.node.create_subscription(Twist, "/cmd_vel", lambda _: None, 10)
     studio.advertise(1, "/cmd_vel", "std_msgs/msg/Bool")
-    assert studio.next(ms.Status).message == "/cmd_vel: cannot publish std_msgs/msg/Bool here, it carries another type"
+    assert studio.next(ms.Status).message == "/cmd_vel: cannot publish std_msgs/msg/Bool, the topic has another type"
 
 
 def test_clients_publish_only_where_they_may(ros, bridge):

@@ -128,7 +128,7 @@ def test_calls_of_a_vanished_service_fail(node, calls):
     for number in range(3):
         calls.call(str, "/s", number, lambda _, reason: reasons.append(reason))
     calls.forget("/s")
-    assert reasons == ["service /s is gone"] * 3
+    assert reasons == ["service /s no longer exists"] * 3
     assert not calls.poll()
 
 

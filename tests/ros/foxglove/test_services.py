@@ -49,9 +49,9 @@ def test_a_service_carries_the_definitions_of_both_sides(ros, studio):
 @pytest.mark.parametrize(
     ("encoding", "payload", "text"),
     [
-        (CDR, b"", "/flip: undecodable request"),
-        (JSON, b'{"no": 1}', "/flip: undecodable request: message: no field no"),
-        ("protobuf", b"", "/flip: undecodable request: expected encoding cdr or json, found protobuf"),
+        (CDR, b"", "/flip: cannot decode the request"),
+        (JSON, b'{"no": 1}', "/flip: cannot decode the request: message: no field no"),
+        ("protobuf", b"", "/flip: cannot decode the request: expected encoding cdr or json, found protobuf"),
     ],
 )
 def test_an_undecodable_request_fails_with_a_status_beside_it(ros, studio, encoding, payload, text):

@@ -1,1 +1,1 @@
-"""The Foxglove WebSocket protocol: its constants, its messages as values, and their encoding (docs/spec/foxglove.md)."""
+"""The Foxglove WebSocket protocol (docs/spec/foxglove.md): constants, messages as values, and their encoding."""
