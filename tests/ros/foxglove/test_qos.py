@@ -1,4 +1,4 @@
-"""QoS from what the graph tells, and which names are shown."""
+"""QoS derived from the graph, and visible names."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def endpoint(*, reliable=True, transient_local=False, depth=0):
         ([endpoint(transient_local=True, depth=1000)], SubscriptionQos(is_reliable=True, retained=25, depth=25)),
     ],
 )
-def test_subscriptions_suit_all_publishers(publishers, expected):
+def test_subscriptions_match_all_publishers(publishers, expected):
     assert subscription_qos(publishers, min_depth=10, max_depth=25) == expected
 
 
@@ -42,7 +42,7 @@ def test_a_subscription_may_be_best_effort_whatever_is_published():
     assert not subscription_qos([endpoint()], min_depth=10, max_depth=25, best_effort=True).is_reliable
 
 
-def test_the_profile_says_the_same_to_rclpy():
+def test_the_profile_has_the_same_qos_for_rclpy():
     profile = SubscriptionQos(is_reliable=True, retained=1, depth=7).profile
     assert (profile.reliability, profile.durability, profile.depth) == (
         ReliabilityPolicy.RELIABLE,
@@ -51,7 +51,7 @@ def test_the_profile_says_the_same_to_rclpy():
     )
 
 
-def test_a_clients_publisher_is_reliable_and_transient_local_where_others_expect_it():
+def test_a_publisher_for_clients_is_reliable_and_transient_local_if_another_endpoint_is():
     plain, transient_local = endpoint(depth=1), endpoint(transient_local=True, depth=1)
     assert publisher_qos([], [plain]).durability == DurabilityPolicy.VOLATILE
     assert publisher_qos([], [plain, transient_local]).durability == DurabilityPolicy.TRANSIENT_LOCAL

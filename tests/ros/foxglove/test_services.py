@@ -54,7 +54,7 @@ def test_a_service_carries_the_definitions_of_both_sides(ros, studio):
         ("protobuf", b"", "/flip: cannot decode the request: expected encoding cdr or json, found protobuf"),
     ],
 )
-def test_an_undecodable_request_fails_with_a_status_beside_it(ros, studio, encoding, payload, text):
+def test_a_request_that_cannot_be_decoded_fails_with_a_status(ros, studio, encoding, payload, text):
     ros.node.create_service(SetBool, "/flip", flip)
     studio.send(ms.ServiceRequest(studio.service("/flip").id, 1, encoding, payload))
     failure = studio.next(ms.ServiceCallFailure)
