@@ -63,7 +63,9 @@ def payload(size: int) -> bytes:
 
 def serve_ours(port: int, rate: float, size: int) -> None:
     """The server of this project, fed from another thread as the node does it."""
-    from thymio_sim_ros.bridge import ServerInfo, ServerThread, events, messages
+    from thymio_sim_ros.bridge import ServerInfo, ServerThread
+    from thymio_sim_ros.bridge.protocol import messages
+    from thymio_sim_ros.bridge.switchboard import events
 
     class Sink:
         def is_full(self, client: int) -> bool:

@@ -27,8 +27,9 @@ from pathlib import Path
 from PIL import Image
 from websockets.sync.client import ClientConnection, connect
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import SUBPROTOCOLS
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
 
 COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(sys.argv[1:]))"
 SERVICE = "/simulator/get_poses"

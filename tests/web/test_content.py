@@ -1,4 +1,4 @@
-"""Paths of requests → documents; nothing but the page's files."""
+"""Documents by the paths of requests: only files of the page."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_nothing_else_is_found(content, path):
     assert content.find(path) is None
 
 
-def test_links_lead_out_of_the_folder_only_as_colcon_makes_them(tmp_path, folder):
+def test_only_links_of_colcon_lead_out_of_the_folder(tmp_path, folder):
     installed = tmp_path / "install" / "web_ui"
     (installed / "assets").mkdir(parents=True)
     (installed / "index.html").symlink_to(folder / "index.html")

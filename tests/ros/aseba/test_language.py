@@ -11,8 +11,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import String
 
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import JSON
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import JSON
 from thymio_sim_ros.device.editor.language_service import MOST_CHARACTERS
 from thymio_sim_ros.ros.foxglove import json_messages
 

@@ -1,23 +1,23 @@
-"""Every message of the protocol as a frozen value (docs/spec/foxglove.md section 2).
+"""The messages of the protocol as frozen values (docs/spec/foxglove.md section 2).
 
-JSON messages name their `op`; their other keys are the camelCase names of the fields. An `int` is an unsigned 32-bit
-id, an optional field that is None is left out. Messages without `op` are binary. `wire` turns all of them into frames.
+JSON messages have an `op`; their other keys are the camelCase names of the fields. An `int` is an unsigned 32-bit ID.
+An optional field is left out if it is None. Messages without `op` are binary. `wire` encodes and decodes all of them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
-from thymio_sim_ros.bridge.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 
 # --- parts ---------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A stream that clients can subscribe to."""
+    """A stream of messages of one topic, which clients can subscribe to."""
 
     id: int
     topic: str
@@ -29,7 +29,7 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class ClientChannel:
-    """A stream that a client sends; the id is the client's own."""
+    """A stream of messages that a client publishes; the client chooses the ID."""
 
     id: int
     topic: str
@@ -41,7 +41,7 @@ class ClientChannel:
 
 @dataclass(frozen=True, slots=True)
 class Subscription:
-    """A client's name for its interest in one channel."""
+    """A subscription of a client to a channel; the client chooses the ID."""
 
     id: int
     channel_id: int
@@ -49,7 +49,7 @@ class Subscription:
 
 @dataclass(frozen=True, slots=True)
 class ServiceSide:
-    """Form of a service's request or response."""
+    """Encoding and schema of the requests or of the responses of a service."""
 
     encoding: str
     schema_name: str
@@ -73,7 +73,7 @@ ParameterValue = bool | int | float | str | tuple[bool | int | float | str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A named value, None: not set. `type` says float64, float64_array or byte_array (base64) where JSON cannot."""
+    """A named value; None: not set. `type` is float64, float64_array or byte_array (base64) where JSON is ambiguous."""
 
     name: str
     value: ParameterValue = None
@@ -82,7 +82,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class PublishedTopic:
-    """Who publishes a topic; node names as /ns/node."""
+    """The publishers of a topic, as node names /ns/node."""
 
     name: str
     publisher_ids: tuple[str, ...]
@@ -90,7 +90,7 @@ class PublishedTopic:
 
 @dataclass(frozen=True, slots=True)
 class SubscribedTopic:
-    """Who subscribes to a topic."""
+    """The subscribers of a topic, as node names."""
 
     name: str
     subscriber_ids: tuple[str, ...]
@@ -98,7 +98,7 @@ class SubscribedTopic:
 
 @dataclass(frozen=True, slots=True)
 class AdvertisedService:
-    """Who answers a service."""
+    """The servers of a service, as node names."""
 
     name: str
     provider_ids: tuple[str, ...]
@@ -109,7 +109,7 @@ class AdvertisedService:
 
 @dataclass(frozen=True, slots=True)
 class ServerInfo:
-    """First message to each client; a new session id makes clients drop their state."""
+    """First message to each client; a new session ID makes clients drop their state."""
 
     op: ClassVar[str] = "serverInfo"
     name: str
@@ -121,7 +121,7 @@ class ServerInfo:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """A remark to the user; with an id it can be replaced or removed."""
+    """A message for the user; with an ID it can be replaced or removed."""
 
     op: ClassVar[str] = "status"
     level: StatusLevel
@@ -130,13 +130,13 @@ class Status:
 
 
 def parameter_status(name: str) -> str:
-    """The id of the status that says why a parameter was not set."""
+    """ID of the status with the reason why a parameter was not set."""
     return f"parameter:{name}"
 
 
 @dataclass(frozen=True, slots=True)
 class RemoveStatus:
-    """These remarks no longer hold."""
+    """Remove statuses that no longer apply."""
 
     op: ClassVar[str] = "removeStatus"
     status_ids: tuple[str, ...]
@@ -152,7 +152,7 @@ class Advertise:
 
 @dataclass(frozen=True, slots=True)
 class Unadvertise:
-    """Channels that are gone."""
+    """Removed channels."""
 
     op: ClassVar[str] = "unadvertise"
     channel_ids: tuple[int, ...]
@@ -168,7 +168,7 @@ class AdvertiseServices:
 
 @dataclass(frozen=True, slots=True)
 class UnadvertiseServices:
-    """Services that are gone."""
+    """Removed services."""
 
     op: ClassVar[str] = "unadvertiseServices"
     service_ids: tuple[int, ...]
@@ -176,7 +176,7 @@ class UnadvertiseServices:
 
 @dataclass(frozen=True, slots=True)
 class ParameterValues:
-    """Values in force; `id` repeats that of the request it answers."""
+    """Current values; `id` is that of the request, None for an update."""
 
     op: ClassVar[str] = "parameterValues"
     parameters: tuple[Parameter, ...]
@@ -185,7 +185,7 @@ class ParameterValues:
 
 @dataclass(frozen=True, slots=True)
 class ConnectionGraphUpdate:
-    """Who talks to whom: the first one complete, later ones differences."""
+    """Publishers, subscribers and services: the first update is complete, later ones are differences."""
 
     op: ClassVar[str] = "connectionGraphUpdate"
     published_topics: tuple[PublishedTopic, ...] = ()
@@ -197,7 +197,7 @@ class ConnectionGraphUpdate:
 
 @dataclass(frozen=True, slots=True)
 class ServiceCallFailure:
-    """A call that cannot be answered, and why."""
+    """The reason why a call failed."""
 
     op: ClassVar[str] = "serviceCallFailure"
     service_id: int
@@ -223,7 +223,7 @@ class Time:
 
 @dataclass(frozen=True, slots=True)
 class ServiceResponse:
-    """Answer to a `ServiceRequest` with the same ids."""
+    """Answer to the `ServiceRequest` with the same IDs."""
 
     service_id: int
     call_id: int
@@ -233,7 +233,7 @@ class ServiceResponse:
 
 @dataclass(frozen=True, slots=True)
 class AssetResponse:
-    """A file, or why there is none (`error`; `data` is then empty)."""
+    """A file, or the reason why there is none (`error`; `data` is then empty)."""
 
     request_id: int
     data: bytes
@@ -245,7 +245,7 @@ class AssetResponse:
 
 @dataclass(frozen=True, slots=True)
 class Subscribe:
-    """Start streams."""
+    """Subscribe to channels."""
 
     op: ClassVar[str] = "subscribe"
     subscriptions: tuple[Subscription, ...]
@@ -253,7 +253,7 @@ class Subscribe:
 
 @dataclass(frozen=True, slots=True)
 class Unsubscribe:
-    """End streams."""
+    """End subscriptions."""
 
     op: ClassVar[str] = "unsubscribe"
     subscription_ids: tuple[int, ...]
@@ -261,7 +261,7 @@ class Unsubscribe:
 
 @dataclass(frozen=True, slots=True)
 class ClientAdvertise:
-    """Streams that the client is going to send."""
+    """Open channels on which the client is going to publish."""
 
     op: ClassVar[str] = "advertise"
     channels: tuple[ClientChannel, ...]
@@ -269,7 +269,7 @@ class ClientAdvertise:
 
 @dataclass(frozen=True, slots=True)
 class ClientUnadvertise:
-    """Streams that the client ends."""
+    """Close channels of the client."""
 
     op: ClassVar[str] = "unadvertise"
     channel_ids: tuple[int, ...]
@@ -277,7 +277,7 @@ class ClientUnadvertise:
 
 @dataclass(frozen=True, slots=True)
 class GetParameters:
-    """Ask for values; no names: all."""
+    """Request values; without names: of all parameters."""
 
     op: ClassVar[str] = "getParameters"
     parameter_names: tuple[str, ...]
@@ -286,7 +286,7 @@ class GetParameters:
 
 @dataclass(frozen=True, slots=True)
 class SetParameters:
-    """Change values."""
+    """Request to set values."""
 
     op: ClassVar[str] = "setParameters"
     parameters: tuple[Parameter, ...]
@@ -295,7 +295,7 @@ class SetParameters:
 
 @dataclass(frozen=True, slots=True)
 class SubscribeParameterUpdates:
-    """Tell this client of changes of these parameters."""
+    """Subscribe to updates of these parameters."""
 
     op: ClassVar[str] = "subscribeParameterUpdates"
     parameter_names: tuple[str, ...]
@@ -303,7 +303,7 @@ class SubscribeParameterUpdates:
 
 @dataclass(frozen=True, slots=True)
 class UnsubscribeParameterUpdates:
-    """No longer tell this client of them."""
+    """Unsubscribe from updates of these parameters."""
 
     op: ClassVar[str] = "unsubscribeParameterUpdates"
     parameter_names: tuple[str, ...]
@@ -311,21 +311,21 @@ class UnsubscribeParameterUpdates:
 
 @dataclass(frozen=True, slots=True)
 class SubscribeConnectionGraph:
-    """Tell this client who talks to whom."""
+    """Subscribe to the connection graph."""
 
     op: ClassVar[str] = "subscribeConnectionGraph"
 
 
 @dataclass(frozen=True, slots=True)
 class UnsubscribeConnectionGraph:
-    """No longer tell it."""
+    """Unsubscribe from the connection graph."""
 
     op: ClassVar[str] = "unsubscribeConnectionGraph"
 
 
 @dataclass(frozen=True, slots=True)
 class FetchAsset:
-    """Ask for a file by its URI."""
+    """Request a file by its URI."""
 
     op: ClassVar[str] = "fetchAsset"
     uri: str
@@ -342,39 +342,13 @@ class ClientMessageData:
 
 @dataclass(frozen=True, slots=True)
 class ServiceRequest:
-    """A call; the client chooses `call_id`."""
+    """A call of a service; the client chooses `call_id`."""
 
     service_id: int
     call_id: int
     encoding: str
     payload: bytes
 
-
-SERVER_JSON: tuple[type[Any], ...] = (
-    ServerInfo,
-    Status,
-    RemoveStatus,
-    Advertise,
-    Unadvertise,
-    AdvertiseServices,
-    UnadvertiseServices,
-    ParameterValues,
-    ConnectionGraphUpdate,
-    ServiceCallFailure,
-)
-CLIENT_JSON: tuple[type[Any], ...] = (
-    Subscribe,
-    Unsubscribe,
-    ClientAdvertise,
-    ClientUnadvertise,
-    GetParameters,
-    SetParameters,
-    SubscribeParameterUpdates,
-    UnsubscribeParameterUpdates,
-    SubscribeConnectionGraph,
-    UnsubscribeConnectionGraph,
-    FetchAsset,
-)
 
 ServerMessage = (
     ServerInfo
@@ -407,3 +381,9 @@ ClientMessage = (
     | ClientMessageData
     | ServiceRequest
 )
+
+SERVER_JSON: tuple[type[Any], ...] = tuple(kind for kind in get_args(ServerMessage) if hasattr(kind, "op"))
+"""Messages of servers that are JSON objects."""
+
+CLIENT_JSON: tuple[type[Any], ...] = tuple(kind for kind in get_args(ClientMessage) if hasattr(kind, "op"))
+"""Messages of clients that are JSON objects."""

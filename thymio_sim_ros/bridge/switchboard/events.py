@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.bridge.graph import ConnectionGraph
-from thymio_sim_ros.bridge.messages import (
+from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph
+from thymio_sim_ros.bridge.protocol.messages import (
     Channel,
     ClientChannel,
     Parameter,
@@ -253,11 +253,11 @@ Command = (
 
 
 _PARAMETER_SIZE = 2048
-"""Memory of one parameter as a ROS message in Python, bytes."""
+"""Memory of one parameter as a ROS message in Python, without its value, bytes."""
 
 
 def size_of(event: Event) -> int:
-    """Bytes of the client's data in an event: of a payload or of parameters."""
+    """Size of the client's data in an event: payload or parameters, bytes. Other events have 0."""
     if isinstance(event, ClientMessageReceived):
         return len(event.payload)
     if isinstance(event, ServiceCalled):

@@ -1,25 +1,30 @@
-"""The connection graph as a value; the protocol sends it once and then differences."""
+"""The connection graph as a value: which nodes publish, subscribe to and serve what."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.bridge.messages import AdvertisedService, ConnectionGraphUpdate, PublishedTopic, SubscribedTopic
+from thymio_sim_ros.bridge.protocol.messages import (
+    AdvertisedService,
+    ConnectionGraphUpdate,
+    PublishedTopic,
+    SubscribedTopic,
+)
 
 Names = Mapping[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
 class ConnectionGraph:
-    """Topic or service → sorted node names (/ns/node); a name without nodes is left out."""
+    """Topic or service → sorted node names (/ns/node). Names without nodes are left out."""
 
     published: Names = field(default_factory=dict)
     subscribed: Names = field(default_factory=dict)
     services: Names = field(default_factory=dict)
 
     def since(self, earlier: ConnectionGraph) -> ConnectionGraphUpdate | None:
-        """The difference to an `earlier` graph as a message, or None if they are equal."""
+        """The difference from an `earlier` graph as a message, or None if they are equal."""
         topics = self.published.keys() | self.subscribed.keys()
         update = ConnectionGraphUpdate(
             tuple(PublishedTopic(*item) for item in _changed(earlier.published, self.published, topics)),
@@ -32,6 +37,6 @@ class ConnectionGraph:
 
 
 def _changed(before: Names, after: Names, alive: Collection[str]) -> list[tuple[str, tuple[str, ...]]]:
-    """Rows that differ; one that lost its last node while the name lives on is told with no nodes."""
+    """Names whose nodes differ, with their nodes now; no nodes for a name in `alive` that lost its last one."""
     names = sorted(name for name in before.keys() | after.keys() if before.get(name, ()) != after.get(name, ()))
     return [(name, after.get(name, ())) for name in names if name in alive]

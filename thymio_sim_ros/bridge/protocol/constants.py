@@ -1,8 +1,8 @@
-"""The words of the Foxglove WebSocket protocol: sub-protocols, capabilities, encodings, opcodes, status levels.
+"""Constants of the Foxglove WebSocket protocol: sub-protocols, capabilities, encodings, opcodes, status levels, roles.
 
-Opcodes and levels come from `foxglove-websocket`, the package that defined them. Its vocabulary module imports nothing
-but the standard library, so the deprecated `websockets.legacy` behind its server stays out of our process; what it
-lacks (assets, capability names) is added here. Facts: docs/spec/foxglove.md section 2.
+Opcodes and levels come from `foxglove-websocket`, the package that defined them. Its module `types` imports only the
+standard library, so the deprecated `websockets.legacy`, which its server needs, is not loaded. What the package lacks
+(assets, capability names) is added here. Facts: docs/spec/foxglove.md section 2.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ __all__ = [
     "BinaryOpcode",
     "Capability",
     "ClientBinaryOpcode",
+    "Role",
     "StatusLevel",
 ]
 
@@ -32,17 +33,17 @@ SUBPROTOCOLS = (Subprotocol("foxglove.sdk.v1"), Subprotocol("foxglove.websocket.
 """Two names of one wire format, the preferred first."""
 
 ASSET_OPCODE = 4
-"""Server → client; younger than the package that gives the other opcodes."""
+"""Opcode of an asset, server → client; `foxglove-websocket` does not have it."""
 
 MAX_ID = 0xFFFF_FFFF
-"""Ids are unsigned 32-bit numbers, in JSON too."""
+"""IDs are unsigned 32-bit integers, also in JSON."""
 
 CDR = "cdr"
 JSON = "json"
 
 
 class Capability(StrEnum):
-    """What a server may announce in serverInfo; `time` exactly when simulated time is used."""
+    """What a server may announce in serverInfo; `time` if and only if it uses simulated time."""
 
     CLIENT_PUBLISH = "clientPublish"
     PARAMETERS = "parameters"
@@ -51,3 +52,10 @@ class Capability(StrEnum):
     CONNECTION_GRAPH = "connectionGraph"
     ASSETS = "assets"
     TIME = "time"
+
+
+class Role(StrEnum):
+    """What a client may do; sent to read-only clients in the metadata of serverInfo (key `access`)."""
+
+    FULL = "full"
+    READ_ONLY = "read_only"

@@ -1,8 +1,8 @@
 """Decoding of untrusted JSON at a bounded cost: any text takes a few milliseconds at most.
 
-Four megabytes of `[],[],…` take 0.4 s to read, during which Python does nothing else, while a string of that length
-takes 5 ms. A long text is therefore read only if nearly all of it is inside of strings, as in a playground with
-pictures.
+Four megabytes of `[],[],…` take 0.4 s to decode, during which no other thread can run Python, while a string of that
+length takes 5 ms. A long text is therefore decoded only if nearly all of it is inside strings, as in a playground with
+images.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from thymio_sim_ros.errors import ThymioSimError
 __all__ = ["MAX_STRUCTURE", "TooMuchStructureError", "loads"]
 
 MAX_STRUCTURE = 128 << 10
-"""Characters outside of strings, quotes included: some 4000 subscriptions in one message."""
+"""Characters outside strings, including quotes: enough for some 4000 subscriptions in one message."""
 
 
 class TooMuchStructureError(ThymioSimError, ValueError):
@@ -32,6 +32,7 @@ def loads(text: str, parse_constant: Callable[[str], Any] | None = None) -> Any:
 
 
 def _check_structure(text: str) -> None:
+    """Raise TooMuchStructureError. `scanstring`, in C, skips each string; only the text between strings is counted."""
     size, end = 0, 0
     while (quote := text.find('"', end)) >= 0:
         size += quote - end + 2

@@ -1,4 +1,4 @@
-"""JSON of strangers costs a bounded time."""
+"""Untrusted JSON is decoded in a bounded time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from thymio_sim_ros.bridge.bounded_json import MAX_STRUCTURE, TooMuchStructureError, loads
+from thymio_sim_ros.bridge.protocol.bounded_json import MAX_STRUCTURE, TooMuchStructureError, loads
 
 
 @pytest.mark.parametrize(
@@ -21,7 +21,7 @@ from thymio_sim_ros.bridge.bounded_json import MAX_STRUCTURE, TooMuchStructureEr
     ],
     ids=["lists", "digits", "brackets", "strings", "list behind text", "commas behind quotes"],
 )
-def test_much_structure_is_refused(text: str) -> None:
+def test_much_structure_is_rejected(text: str) -> None:
     with pytest.raises(TooMuchStructureError):
         loads(text)
 
@@ -42,6 +42,6 @@ def test_long_texts_are_read(value: object) -> None:
 
 
 @pytest.mark.parametrize("text", ['"' + "x" * MAX_STRUCTURE, '["a\nb' + "x" * MAX_STRUCTURE + '"]', "nonsense"])
-def test_what_is_no_json_is_a_value_error(text: str) -> None:
+def test_invalid_json_is_a_value_error(text: str) -> None:
     with pytest.raises(ValueError, match=r"line|Expecting"):
         loads(text)

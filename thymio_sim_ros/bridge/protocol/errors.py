@@ -8,11 +8,11 @@ __all__ = ["BridgeError", "FrameError"]
 
 
 class BridgeError(ThymioSimError):
-    """Base of the bridge's errors."""
+    """Base of the exceptions of the bridge."""
 
 
 class FrameError(BridgeError):
-    """A frame that breaks the protocol: `where` in it, what was `expected` and what was `found`."""
+    """A frame violates the protocol: `where` in the frame, what was `expected` and what was `found`."""
 
     def __init__(self, where: str, expected: str, found: str) -> None:
         super().__init__(f"{where}: expected {expected}, found {found}")

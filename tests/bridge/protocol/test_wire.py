@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thymio_sim_ros.bridge import FrameError, wire
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import MAX_ID, StatusLevel
-from thymio_sim_ros.bridge.messages import CLIENT_JSON, SERVER_JSON
+from thymio_sim_ros.bridge import FrameError
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.protocol.constants import MAX_ID, StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import CLIENT_JSON, SERVER_JSON
 
 IDS = st.integers(0, MAX_ID)
 TEXTS = st.text(max_size=20)
@@ -187,13 +188,13 @@ def test_text_frames_have_these_keys_and_leave_out_what_is_absent(
         ('{"op":"fetchAsset","uri":1,"requestId":2}', "fetchAsset.uri: expected a string, found 1"),
     ],
 )
-def test_a_bad_frame_is_refused_with_where_expected_and_found(frame: str | bytes, text: str) -> None:
+def test_a_bad_frame_is_rejected_with_where_expected_and_found(frame: str | bytes, text: str) -> None:
     with pytest.raises(FrameError) as caught:
         wire.decode_client(frame)
     assert str(caught.value) == text
 
 
-def test_an_unknown_op_is_refused_with_the_known_ones() -> None:
+def test_an_unknown_op_is_rejected_with_the_known_ones() -> None:
     with pytest.raises(FrameError, match=r"expected op subscribe, .*fetchAsset, found 'dance'"):
         wire.decode_client('{"op":"dance"}')
 
@@ -207,7 +208,7 @@ def test_unknown_keys_are_left_to_newer_peers() -> None:
     assert wire.decode_client('{"op":"unsubscribe","subscriptionIds":[1],"mood":"good"}') == ms.Unsubscribe((1,))
 
 
-def test_text_that_utf8_cannot_carry_is_escaped() -> None:
+def test_text_that_utf8_cannot_encode_is_escaped() -> None:
     frame = wire.encode_server(ms.ParameterValues((), "\ud800"))
     assert isinstance(frame, str)
     assert frame.encode()

@@ -1,11 +1,11 @@
-"""The words of the protocol, and that importing them costs nothing but themselves."""
+"""Constants of the protocol, and the modules that their import loads."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
 
-from thymio_sim_ros.bridge.constants import ASSET_OPCODE, SUBPROTOCOLS, BinaryOpcode, ClientBinaryOpcode
+from thymio_sim_ros.bridge.protocol.constants import ASSET_OPCODE, SUBPROTOCOLS, BinaryOpcode, ClientBinaryOpcode
 
 
 def test_opcodes_are_those_of_the_specification() -> None:
@@ -25,7 +25,7 @@ def test_the_vendors_present_name_is_preferred() -> None:
     assert SUBPROTOCOLS == ("foxglove.sdk.v1", "foxglove.websocket.v1")
 
 
-def test_the_vocabulary_brings_no_deprecated_websockets_along() -> None:
+def test_the_constants_do_not_import_deprecated_websockets() -> None:
     unwanted = ("websockets.legacy", "rclpy", "foxglove_websocket.server")
     code = f"import sys, thymio_sim_ros.bridge; print([name for name in sys.modules if name.startswith({unwanted})])"
     done = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False)

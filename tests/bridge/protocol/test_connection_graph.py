@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thymio_sim_ros.bridge.graph import ConnectionGraph, Names
-from thymio_sim_ros.bridge.messages import (
+from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph, Names
+from thymio_sim_ros.bridge.protocol.messages import (
     AdvertisedService,
     ConnectionGraphUpdate,
     PublishedTopic,
@@ -25,17 +25,17 @@ def test_the_first_update_is_complete() -> None:
     )
 
 
-def test_nothing_is_told_when_nothing_changed() -> None:
+def test_equal_graphs_give_no_update() -> None:
     graph = ConnectionGraph({"/a": ("/n",)})
     assert graph.since(ConnectionGraph({"/a": ("/n",)})) is None
 
 
-def test_a_topic_is_removed_when_nobody_has_it_any_more() -> None:
+def test_a_topic_without_nodes_is_removed() -> None:
     update = EMPTY.since(ConnectionGraph({"/a": ("/n",)}, {"/a": ("/m",)}, {"/s": ("/n",)}))
     assert update == ConnectionGraphUpdate(removed_topics=("/a",), removed_services=("/s",))
 
 
-def test_a_topic_that_keeps_subscribers_is_told_without_publishers() -> None:
+def test_a_topic_that_keeps_its_subscribers_is_sent_without_publishers() -> None:
     before = ConnectionGraph({"/a": ("/n",)}, {"/a": ("/m",)})
     update = ConnectionGraph({}, {"/a": ("/m",)}).since(before)
     assert update == ConnectionGraphUpdate(published_topics=(PublishedTopic("/a", ()),))

@@ -1,7 +1,8 @@
-"""Frames ↔ messages: text frames are JSON, binary frames begin with an opcode (docs/spec/foxglove.md section 2).
+"""Conversion of frames and messages: text frames are JSON, binary frames begin with an opcode.
 
-One table per direction and form; both ends use it, the server one half and tests or clients the other. A frame that
-breaks the protocol yields one `FrameError` and nothing else.
+There is one table for each direction and form (docs/spec/foxglove.md section 2). The server uses one half of the
+functions, tests and clients the other. Decoders raise FrameError for any frame that violates the protocol, and no
+other exception.
 """
 
 from __future__ import annotations
@@ -11,11 +12,11 @@ import struct
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from thymio_sim_ros.bridge import bounded_json
-from thymio_sim_ros.bridge.constants import ASSET_OPCODE, BinaryOpcode, ClientBinaryOpcode
-from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.json_codec import describe, reader, writer
-from thymio_sim_ros.bridge.messages import (
+from thymio_sim_ros.bridge.protocol import bounded_json
+from thymio_sim_ros.bridge.protocol.constants import ASSET_OPCODE, BinaryOpcode, ClientBinaryOpcode
+from thymio_sim_ros.bridge.protocol.errors import FrameError
+from thymio_sim_ros.bridge.protocol.json_codec import describe, reader, writer
+from thymio_sim_ros.bridge.protocol.messages import (
     CLIENT_JSON,
     SERVER_JSON,
     AssetResponse,
@@ -42,33 +43,33 @@ _MESSAGE_DATA = int(BinaryOpcode.MESSAGE_DATA)
 
 
 DATA_HEAD_SIZE = _DATA.size
-"""Bytes of a `MessageData` before its payload."""
+"""Size of a `MessageData` before its payload, bytes."""
 
 
 def data_head(subscription_id: int, time_ns: int) -> bytes:
-    """The frame of a `MessageData` up to its payload, without the detour over the value: this is the hot path."""
+    """The bytes of a `MessageData` before its payload. Hot path: no `MessageData` is created."""
     return _DATA.pack(_MESSAGE_DATA, subscription_id, time_ns)
 
 
 def decode_client(frame: Frame) -> ClientMessage:
-    """What a client says; raises FrameError."""
+    """Decode a frame of a client. Raises FrameError."""
     message: ClientMessage = _decode(frame, _CLIENT_OPS, _CLIENT_BINARY)
     return message
 
 
 def decode_server(frame: Frame) -> ServerMessage:
-    """What a server says; raises FrameError."""
+    """Decode a frame of a server. Raises FrameError."""
     message: ServerMessage = _decode(frame, _SERVER_OPS, _SERVER_BINARY)
     return message
 
 
 def encode_server(message: ServerMessage) -> Frame:
-    """The frame of a server's message."""
+    """Encode a message of a server. Raises ValueError for NaN or infinity in JSON."""
     return _encode(message)
 
 
 def encode_client(message: ClientMessage) -> Frame:
-    """The frame of a client's message."""
+    """Encode a message of a client. Raises ValueError for NaN or infinity in JSON."""
     return _encode(message)
 
 

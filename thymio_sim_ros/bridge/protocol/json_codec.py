@@ -1,7 +1,7 @@
-"""Frozen dataclasses ↔ JSON objects, derived from their annotations.
+"""Conversion of frozen dataclasses and JSON objects, derived from the annotations of the fields.
 
-`reader(cls)` and `writer(cls)` are built once per class by walking its fields, so that a message is described in one
-place only. Keys are camelCase, unknown keys are ignored (newer peers may send more), None is left out.
+`reader(cls)` and `writer(cls)` are built once per class from its fields, so that a message is described in one place
+only. Keys are camelCase, unknown keys are ignored (newer peers may send more), None is left out.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import Any, get_args, get_origin, get_type_hints
 
-from thymio_sim_ros.bridge.constants import MAX_ID
-from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.messages import ParameterValue
+from thymio_sim_ros.bridge.protocol.constants import MAX_ID
+from thymio_sim_ros.bridge.protocol.errors import FrameError
+from thymio_sim_ros.bridge.protocol.messages import ParameterValue
 
 Reader = Callable[[Any, str], Any]
 Writer = Callable[[Any], Any]
@@ -25,13 +25,13 @@ _LONGEST_EXCERPT = 40
 
 
 def describe(value: object) -> str:
-    """A found value for an error message, cut to a readable length."""
+    """Text of a value for an error message, at most `_LONGEST_EXCERPT` characters and an ellipsis."""
     if isinstance(value, (str, bytes)):
         value = value[: _LONGEST_EXCERPT + 1]
     try:
         text = repr(value)
     except RecursionError:
-        text = "something nested without measure"
+        text = "a deeply nested value"
     return text if len(text) <= _LONGEST_EXCERPT else f"{text[:_LONGEST_EXCERPT]}…"
 
 
@@ -42,12 +42,15 @@ def camel_case(name: str) -> str:
 
 
 def reader(shape: Any) -> Reader:
-    """A function (JSON value, where) → value of the annotation `shape`; it raises FrameError."""
+    """Return a function that converts a JSON value to the annotation `shape`.
+
+    Its arguments are the value and its place for error messages. It raises FrameError for a value that does not fit.
+    """
     return _reader(shape)
 
 
 def writer(shape: Any) -> Writer:
-    """A function value → JSON value for the annotation `shape`."""
+    """Return a function that converts a value of the annotation `shape` to a JSON value."""
     return _writer(shape)
 
 
@@ -149,7 +152,7 @@ def _read_list(read_item: Reader, value: Any, where: str) -> tuple[Any, ...]:
 def _each(read_item: Reader, items: list[Any], where: str) -> tuple[Any, ...]:
     try:
         return tuple(read_item(item, where) for item in items)
-    except FrameError:  # once more, to name the place: making all the names takes longer than reading
+    except FrameError:  # read again to name the item: building all names would take longer than reading
         return tuple(read_item(item, f"{where}[{index}]") for index, item in enumerate(items))
 
 
