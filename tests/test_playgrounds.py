@@ -234,7 +234,7 @@ def test_the_two_robots_hear_each_other() -> None:
     programs = {name: load_program(text.format(number), name) for name, number in (("red", 5), ("blue", 7))}
     runner = Runner(loaded("two_robots"), programs)
     runner.run(2.0)
-    assert {name: device.get_variable("heard") for name, device in runner.devices.items()} == {
+    assert {name: device.variables.get("heard") for name, device in runner.devices.items()} == {
         "red": (7,),
         "blue": (5,),
     }

@@ -103,8 +103,8 @@ def test_what_is_set_survives_a_switch_off_and_on():
     robot = inside(0)
     robot.touch("backward")
     robot.touch("center")
-    robot.device.switch_off()
-    robot.device.resume()
+    robot.device.run_control.switch_off()
+    robot.device.run_control.resume()
     assert word(robot, 0) == 1
 
 

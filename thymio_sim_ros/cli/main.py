@@ -25,7 +25,7 @@ from thymio_sim_ros.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.bridge.server_thread import check_free
 from thymio_sim_ros.cli import convert, foxglove_layout
-from thymio_sim_ros.device.events import FIRMWARE, POLICIES
+from thymio_sim_ros.device.event_queue import FIRMWARE, POLICIES
 from thymio_sim_ros.device.firmware.sd_card import SdCard, SdCardError
 from thymio_sim_ros.device.firmware.settings import Settings, SettingsError
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from thymio_sim_ros.device.events import FIRMWARE, POLICIES
+from thymio_sim_ros.device.event_queue import FIRMWARE, POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.errors import ThymioSimError
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 import pytest
 
 from tests.device.handheld import HandheldRobot
-from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
+from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.firmware.behavior_host import ENTRIES, MENU, BehaviorHost, built_in, is_internal
+from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import ProgramError, load_program
 
 OWN = load_program("motor.left.target = 100\nonevent button.center\ncall leds.top(1, 2, 3)", "own.aesl")
@@ -106,10 +107,10 @@ def test_the_program_entry_starts_the_user_s_program_for_good():
 def begun_anew(robot: HandheldRobot, how: str) -> None:
     """Switched off and on again, or reset and let run; then the menu's two seconds pass."""
     if how == "switched on":
-        robot.device.switch_off()
+        robot.device.run_control.switch_off()
         robot.tick()
     else:
-        robot.device.reset()
+        robot.device.run_control.reset()
     robot.host.resume()
     robot.tick(100)
 
@@ -217,7 +218,7 @@ def test_readings_hold_through_a_change_of_program():
     robot.tick(100)
     robot.touch("center", ticks=1)
     assert robot.running == "friendly"
-    assert robot.device.get_variable("prox.ground.delta") == (900, 900)
+    assert robot.device.variables.get("prox.ground.delta") == (900, 900)
 
 
 def test_a_user_s_program_begins_with_cleared_variables():
@@ -226,7 +227,7 @@ def test_a_user_s_program_begins_with_cleared_variables():
     robot.tick(100)
     robot.touch("center", ticks=1)
     assert robot.running == "own"
-    assert robot.device.get_variable("prox.ground.delta") == (0, 0)
+    assert robot.device.variables.get("prox.ground.delta") == (0, 0)
 
 
 def test_a_restart_is_as_the_first_start():

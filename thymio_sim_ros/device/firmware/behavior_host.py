@@ -16,8 +16,9 @@ from functools import cache
 from pathlib import Path
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
+from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import OFF
 
@@ -101,7 +102,7 @@ class BehaviorHost:
     def resume(self) -> None:
         """Let events run (again); a robot that is off is switched on with what `load` or `start` gave it."""
         if self.device.status.state != OFF or self.program is self._first:
-            self.device.resume()
+            self.device.run_control.resume()
         else:
             self.device.services.settings.restart()
             self._begin()
@@ -118,7 +119,7 @@ class BehaviorHost:
     def pop_notices(self) -> list[str]:
         """Return and clear the notices for the user, including those of the device."""
         notices, self._notices = self._notices, []
-        return self.device.pop_notices() + notices
+        return self.device.notices.pop() + notices
 
     def _handle_request(self, event: EmittedEvent) -> None:
         try:

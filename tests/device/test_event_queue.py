@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.device.events import FIRMWARE, MAX_PENDING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
+from thymio_sim_ros.device.event_queue import FIRMWARE, MAX_PENDING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
 
 HELLO = GlobalEvent(0, 2, (7,))
 MILLISECOND_NS = 1_000_000
