@@ -2,7 +2,7 @@
 
 Imports cannot be interrupted by an exception: it may be raised in an extension that turns it into another one, or in a
 destructor that prints and drops it. So SIGINT ends the process at once, until nodes or a batch run install a handler
-of their own (`ros/rclpy_ext/node_runner.py`, `interruption.py`): nothing has begun by then that needs an end.
+of their own (`ros/rclpy_ext/node_runner.py`, `cli/signal_handling.py`): nothing has begun by then that needs an end.
 """
 
 from __future__ import annotations

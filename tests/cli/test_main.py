@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import importlib.util
 import json
 import os
 import pathlib
@@ -18,10 +19,10 @@ import pytest
 from tests import disk
 from tests.processes import free_port
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
-from thymio_sim_ros.cli import main
-from thymio_sim_ros.cli.replay import replay
+from thymio_sim_ros.cli import main, suite
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.runlog import run_log
+from thymio_sim_ros.runlog.replay import replay
 from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
 
 
@@ -111,11 +112,11 @@ def test_help_has_an_example(capsys, command):
 
 
 def test_without_ros_it_says_where_to_get_it(capsys, monkeypatch):
-    monkeypatch.setattr(main.importlib.util, "find_spec", lambda _name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     assert "runner" in refused(capsys, "--headless")
 
 
-def test_a_look_at_the_ports_lets_nobody_in_who_would_then_find_nobody(capsys, monkeypatch):
+def test_checking_the_ports_accepts_no_connection(capsys, monkeypatch):
     """A browser that waits for the page took the first answer of its port for the page."""
 
     class Socket(socket.socket):
@@ -123,7 +124,7 @@ def test_a_look_at_the_ports_lets_nobody_in_who_would_then_find_nobody(capsys, m
             pytest.fail("listens before there is a page")
 
     monkeypatch.setattr(socket, "socket", Socket)
-    monkeypatch.setattr(main.importlib.util, "find_spec", lambda _name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     ports = ("--port", str(free_port()), "--foxglove-port", str(free_port()))
     assert "ROS 2 is not installed" in refused(capsys, *ports)
 
@@ -363,7 +364,7 @@ def test_what_does_not_fit_of_a_file_is_told_once(capsys, tmp_path):
 def test_the_suite_takes_a_file_with_a_node_for_each_robot(capsys, tmp_path, monkeypatch):
     program = tmp_path / "two.aesl"
     program.write_text(TWO_NODES.format("red", "blue"))
-    monkeypatch.setattr(main.importlib.util, "find_spec", lambda _name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     line = refused(capsys, "--headless", "--playground", "two_robots", "--program", str(program))
     assert "ROS 2 is not installed" in line
 
@@ -412,7 +413,7 @@ def test_where_tokens_come_from(monkeypatch, arguments, environment, full, read_
     monkeypatch.delenv(READ_ONLY_VARIABLE, raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    tokens = main._tokens(main._suite_parser().parse_args(arguments))
+    tokens = suite._tokens(suite._parser().parse_args(arguments))
     for found, expected in ((tokens.full, full), (tokens.read_only, read_only)):
         assert found == expected if expected is not None else len(found) >= 20
 

@@ -10,8 +10,8 @@ import pytest
 
 from tests.device.behaviour_oracle import ARROWS, ORACLES, STOP, Investigator, Senses, Shown
 from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.behavior_host import built_in
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.firmware.behavior_host import built_in
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, PlaySystemSound, SetLeds, ShowOnLeds, StopSound

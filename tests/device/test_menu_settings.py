@@ -6,7 +6,7 @@ import pytest
 
 from tests.device.behaviour_oracle import Pulse
 from tests.device.handheld import HandheldRobot
-from thymio_sim_ros.device.firmware.behavior_host import MENU
+from thymio_sim_ros.device.behavior_host import MENU
 
 VOLUME, MOTORS, PAIRING = (32, 15, 0), (15, 32, 0), (15, 0, 32)
 ALL = (32,) * 8

@@ -15,9 +15,9 @@ from rclpy.node import Node
 from std_msgs.msg import Empty, Int16MultiArray
 from std_srvs.srv import Trigger
 
+from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program

@@ -47,7 +47,7 @@ POWER_ON_TICKS = 100
 
 _PREFIX = "menu."
 _START, _BACK, _OPEN = "menu.start", "menu.back", "menu.open"
-_FOLDER = Path(__file__).parent / "behaviors"
+_FOLDER = Path(__file__).parent / "firmware" / "behaviors"
 
 
 def is_internal(event: str) -> bool:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import pytest
 
 from tests.device.handheld import HandheldRobot
+from thymio_sim_ros.device.behavior_host import ENTRIES, MENU, BehaviorHost, built_in, is_internal
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.firmware.behavior_host import ENTRIES, MENU, BehaviorHost, built_in, is_internal
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import ProgramError, load_program
 
