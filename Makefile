@@ -50,7 +50,7 @@ lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m ruff check .
 	@git ls-files -z | xargs -0 $(PYTHON) -m codespell_lib --dictionary - --dictionary .ci/glossary.txt
-	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros
+	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros web_ui/build.py
 
 docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site
 	@rm -rf build/site docs/apidocs
@@ -58,13 +58,13 @@ docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site
 	@echo "The site is build/site/docs/index.html"
 
 web-test: $(VENV)/.created  ## run the tests of the page's modules
-	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
-	@$(PYTHON) -m thymio_sim_ros.webbuild --script test
+	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)
+	@$(PYTHON) web_ui/build.py --script test
 
 web: $(VENV)/.created  ## build the web page if its sources changed
-	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
+	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)
 	@[ -f $(PAGE) ] || echo "Building the web page (once, some seconds)."
-	@$(PYTHON) -m thymio_sim_ros.webbuild
+	@$(PYTHON) web_ui/build.py
 
 clean:  ## remove the environments and all build results
 	rm -rf .venv .venv-* web_ui/dist web_ui/node_modules build dist docs/apidocs install log .pytest_cache .mypy_cache .ruff_cache
