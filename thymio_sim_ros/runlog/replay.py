@@ -1,4 +1,4 @@
-"""Replays run logs: the same worlds are given the same, and what every tick gives is compared with what it gave."""
+"""Replays run logs: gives the same inputs to the same worlds and compares the result of each tick with the log."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ __all__ = ["ReplayResult", "replay"]
 
 @dataclass(frozen=True, slots=True)
 class ReplayResult:
-    """How a replay went: worlds, ticks that were compared, the first that differs, whether the log has its end.
+    """Number of runs and of compared ticks, first difference, and whether the log is complete.
 
-    `differs` is (number of the world or reset from 1, tick of it from 1).
+    A run is a world from its start or from a reset. `differs` has the numbers of run and tick, both from 1.
     """
 
     runs: int
@@ -28,24 +28,24 @@ class ReplayResult:
 
     @property
     def seconds(self) -> float:
-        """Simulated time that was compared."""
+        """Compared simulated time in s."""
         return self.ticks * TICK_NS * 1e-9
 
 
 @dataclass(slots=True)
 class _Run:
-    """A world from its start or a reset: inputs by the tick after which they came, and what each tick gave."""
+    """A world from its start or a reset: inputs by the tick after which they came, and digests of the ticks."""
 
     start: WorldStarted
     line: int
     inputs: dict[int, list[Input]] = field(default_factory=dict)
     last: int = 0
-    """The latest of their ticks."""
+    """Tick of the latest input."""
     crcs: list[str] = field(default_factory=list)
 
 
 def replay(path: Path) -> ReplayResult:
-    """ReplayResult a log as far as it goes the same; OSError, RunLogError."""
+    """Replay a log up to the first difference. Raises OSError or RunLogError if it cannot be read."""
     lines = list(read(path))
     is_complete = bool(lines) and isinstance(lines[-1][1], LogEnded)
     ticks = number = 0
@@ -89,7 +89,7 @@ def _runs(path: str, lines: list[tuple[int, LogEntry]]) -> Iterator[_Run]:
 
 
 def _first_difference(path: str, run: _Run) -> int | None:
-    """The first tick, counted from 1, that gives something else than it gave then."""
+    """Replay a run; return the first tick, from 1, that differs from the log, or None."""
     options = run.start.options
     periods = None if options.periods_ns is None else dict(options.periods_ns)
     try:
