@@ -276,7 +276,7 @@ def test_the_readme_explains_every_field_of_every_kind() -> None:
         assert set(re.findall(r"`(\w+)`", rows[kind.name])) == fields
 
 
-def test_the_readme_tells_the_defaults() -> None:
+def test_the_readme_states_the_defaults() -> None:
     rows = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", (FOLDER / "README.md").read_text(), re.MULTILINE))
     for kind in all_shapes():
         for field in dataclasses.fields(cast("Any", kind.form)):

@@ -58,7 +58,7 @@ def test_the_line_program_goes_round_five_times_at_any_speed(speed):
     assert farthest_in_laps(runner, 5) < 0.02
 
 
-def test_the_line_program_tells_when_it_turns():
+def test_the_line_program_emits_an_event_when_it_turns():
     runner = line_runner(0)
     told = []
     for _ in range(1000):

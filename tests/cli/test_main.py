@@ -111,7 +111,7 @@ def test_help_has_an_example(capsys, command):
     assert "example:" in capsys.readouterr().out
 
 
-def test_without_ros_it_says_where_to_get_it(capsys, monkeypatch):
+def test_without_ros_the_error_says_how_to_install_it(capsys, monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     assert "runner" in refused(capsys, "--headless")
 
@@ -243,7 +243,7 @@ def test_the_runner_lets_sensors_see_as_wanted(tmp_path):
     assert begun.options.proximity_model == "enki"
 
 
-def test_the_runner_stores_what_was_to_be_heard(capsys, tmp_path):
+def test_the_runner_stores_the_sound(capsys, tmp_path):
     program = tmp_path / "song.aesl"
     program.write_text("call sound.system(0)")
     sound = tmp_path / "sound.wav"
@@ -304,7 +304,7 @@ def test_a_full_disk_behind_the_output_is_one_line(arguments):
     assert (ended.returncode, ended.stderr) == (2, "thymio-sim: standard output: No space left on device\n")
 
 
-def test_the_runner_tells_programs_that_fail(capsys, tmp_path):
+def test_the_runner_reports_programs_that_fail(capsys, tmp_path):
     program = tmp_path / "faulty.aesl"
     program.write_text("var n\nonevent prox\n  n = 1 / n\n")
     arguments = ["--program", str(program), "--playground", "two_robots"]
@@ -318,14 +318,14 @@ def test_the_runner_tells_programs_that_fail(capsys, tmp_path):
     assert captured.err.splitlines() == [f"thymio-sim: {name}, at 0.10 s: {fault}" for name in ("red", "blue")]
 
 
-def test_the_runner_tells_a_program_that_fails_at_once(capsys, tmp_path):
+def test_the_runner_reports_a_program_that_fails_at_once(capsys, tmp_path):
     program = tmp_path / "faulty.aesl"
     program.write_text("var n\nn = 1 / n\n")
     assert main.main(["runner", "--seconds", "0", "--program", str(program)]) == 1
     assert "at 0.00 s: faulty.aesl: fault in init, line 2: division by zero" in capsys.readouterr().err
 
 
-def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path):
+def test_the_runner_reports_what_the_robot_could_not_do(capsys, tmp_path):
     program = tmp_path / "flash.aesl"
     program.write_text("onevent prox\ncall _system.settings.flash()\n")
     with disk.files_end_at(100):
@@ -354,7 +354,7 @@ def test_each_robot_of_the_runner_gets_its_program_of_a_file(capsys, tmp_path, n
     assert captured.err == ""
 
 
-def test_what_does_not_fit_of_a_file_is_told_once(capsys, tmp_path):
+def test_mismatches_of_a_file_are_reported_once(capsys, tmp_path):
     program = tmp_path / "two.aesl"
     program.write_text(TWO_NODES.format("thymio-II", "e-puck0"))
     assert main.main(["runner", "--seconds", "0", "--playground", "two_robots", "--program", str(program)]) == 0

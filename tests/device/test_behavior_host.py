@@ -64,7 +64,7 @@ def test_a_user_s_program_is_the_first_entry_and_black():
     assert robot.top == COLORS["obedient"]
 
 
-def test_the_centre_button_is_not_heard_for_two_seconds():
+def test_the_center_button_is_ignored_for_two_seconds():
     robot = HandheldRobot.switched_on(MENU)
     robot.tick(94)
     robot.touch("center")
@@ -204,7 +204,7 @@ def test_what_a_program_asks_of_the_robot_is_no_event_for_others():
     assert not is_internal("line")
 
 
-def test_an_entry_that_does_not_exist_is_told():
+def test_an_unknown_entry_is_reported():
     robot = HandheldRobot()
     robot.host.load(asking("x.aesl", "menu.start", 1, "emit menu.start 42"))
     robot.tick()
@@ -264,7 +264,7 @@ def test_lights_go_out_before_another_behaviour_begins(behaviour):
     assert not any(level for group, levels in robot.leds.items() if group != "temperature" for level in levels)
 
 
-def test_a_robot_of_the_playground_s_layout_says_which_behaviour_it_cannot_run():
+def test_a_behavior_that_does_not_fit_the_layout_is_reported():
     host = BehaviorHost(AsebaDevice(options=DeviceOptions(layout="playground")))
     host.start("obedient")
     with pytest.raises(ProgramError, match=r"menu\.aesl: line \d+"):

@@ -111,7 +111,7 @@ def test_a_button_that_is_held_while_a_program_is_loaded_raises_no_event_until_i
     assert device.variables.get("n") == (1,)
 
 
-def test_the_robot_s_own_lights_show_what_somebody_writes_to_its_variables():
+def test_indicators_show_values_written_to_variables_from_outside():
     device = device_with("")
     device.feed("temperature", (200,))
     device.advance(20_000_000)
@@ -133,7 +133,7 @@ def test_natives_of_the_lights_become_commands_in_order():
     assert device.variables.get("leds.top") == (0, -1, 5)
 
 
-def test_lights_that_are_set_to_the_same_again_are_told_once():
+def test_lights_set_to_the_same_levels_again_cause_one_command():
     device = device_with(
         "onevent prox\ncall leds.top(1, 2, 3)\ncall leds.sound(4)\nonevent motor\nleds.top = [0, 0, 0]\n"
         "onevent tap\ncall _leds.set(30, 9)"
@@ -277,7 +277,7 @@ def test_events_beyond_what_can_wait_are_lost_with_a_notice():
     assert device.notices.pop() == ["more events arrive than the program can handle: add is lost"]
 
 
-def test_a_machine_that_does_not_run_hears_no_events():
+def test_a_machine_that_does_not_run_ignores_events():
     device = device_with("var n = 0\nonevent add\nn++", [("add", 0)])
     device.run_control.stop()
     device.receive_event("add", ())
@@ -340,7 +340,7 @@ def test_a_fault_stops_machine_and_wheels_and_names_the_line():
 @pytest.mark.parametrize(
     "end", [lambda device: device.run_control.stop(), lambda device: device.run(BUDGET)], ids=["stopped", "failed"]
 )
-def test_what_waits_when_a_program_ends_is_forgotten(end):
+def test_pending_events_are_dropped_when_a_program_ends(end):
     device = device_with("var n = 0\nvar zero = 0\nonevent button.center\nn = 1 / zero\nonevent prox\nn = 7")
     device.feed("buttons", CENTER)
     device.feed("proximity", NEAR)
@@ -350,7 +350,7 @@ def test_what_waits_when_a_program_ends_is_forgotten(end):
     assert (device.status.state, device.variables.get("n")) == ("running", (0,))
 
 
-def test_who_is_paused_hears_events_between_handlers_only():
+def test_a_paused_machine_accepts_events_between_handlers_only():
     device = device_with("var n = 0\nvar m = 0\nonevent prox\nm = 1\nm = 2\nonevent add\nn++", [("add", 0)])
     device.run_control.pause()
     for within, heard in ((False, 1), (True, 1), (False, 2)):

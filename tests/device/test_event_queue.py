@@ -66,7 +66,7 @@ def test_what_waits_is_forgotten_and_timers_stop() -> None:
     assert everything(waiting) == []
 
 
-def test_timers_that_fired_unheard_are_forgotten_too() -> None:
+def test_unhandled_timer_events_are_dropped_too() -> None:
     waiting = queue(PLAYGROUND)
     waiting.advance(0)
     waiting.set_timer_periods([10, 0])

@@ -112,7 +112,7 @@ def test_every_native_and_variable_gives_what_the_program_expects(device: AsebaD
     assert device.notices.pop() == []
 
 
-def test_every_native_that_reaches_an_actuator_tells_it(device: AsebaDevice) -> None:
+def test_every_native_function_of_an_actuator_causes_its_command(device: AsebaDevice) -> None:
     assert device.pop_commands() == [
         SetVolume(0),
         SetVolume(2),

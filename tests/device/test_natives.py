@@ -113,7 +113,7 @@ def test_sounds_come_from_the_robot_or_from_the_card(
     assert told(f"call {call}", options, sounds=("p1", "r3", "s12", "s0")) == expected
 
 
-def test_a_sound_that_is_missing_is_said(options: DeviceOptions) -> None:
+def test_a_missing_sound_is_reported(options: DeviceOptions) -> None:
     device = start("call sound.play(2)", options)
     run(device)
     assert device.notices.pop() == ["there is no p2.wav on the card"]
@@ -146,14 +146,14 @@ def test_a_new_calibration_moves_wheels_that_turn_already() -> None:
     assert MotorTargets(300, 0) in run(device)
 
 
-def test_settings_survive_a_new_program_and_tell_the_volume() -> None:
+def test_settings_survive_a_new_program_and_set_the_volume() -> None:
     device = start("call _system.settings.write(0, 4)")
     run(device)
     device.load(load_program("", "test"))
     assert SetVolume(4) in device.pop_commands()
 
 
-def test_a_record_holds_what_the_microphone_told_meanwhile(options: DeviceOptions) -> None:
+def test_a_recording_contains_the_intensity_of_the_microphone(options: DeviceOptions) -> None:
     source = "var t = -1\ncall sound.record(5)\nonevent prox\ncall sound.record(-1)\ncall sound.duration(5, t)"
     device = start(source, options)
     device.advance(0)
@@ -189,7 +189,7 @@ def test_a_node_has_a_positive_number(number: int) -> None:
     assert device.node_id == 1
 
 
-def test_the_end_of_a_sound_is_heard_by_a_program_that_uses_sound() -> None:
+def test_a_program_that_uses_sound_gets_the_event_of_its_end() -> None:
     source = "var n = 0\nonevent sound.finished\nn++\nonevent prox\ncall sound.system(1)"
     device = start(source)
     for feeds, heard in (("sound_finished", 0), ("proximity", 0), ("sound_finished", 1)):
@@ -276,7 +276,7 @@ def test_a_native_takes_any_words_and_the_world_takes_what_comes_of_it(
 
 
 @pytest.mark.parametrize(("events", "heard"), [("firmware", 50), ("playground", 20)])
-def test_buttons_are_heard_as_often_as_the_policy_says(events: str, heard: int) -> None:
+def test_the_policy_sets_the_rate_of_button_events(events: str, heard: int) -> None:
     device = AsebaDevice(options=DeviceOptions(events=events))
     device.load(load_program("var n = 0\nonevent buttons\nn++", "test"))
     for tick in range(100):

@@ -267,7 +267,7 @@ def test_out_of_range_nothing_changes_any_more():
     assert runner.devices["anna"].variables.get("n") == (0,)
 
 
-def test_a_negative_value_is_heard_by_nobody():
+def test_a_negative_value_is_not_received():
     runner = Runner(pair(), load_program(TALKER.replace("100 *", "-1 *"), "test"))
     runner.run(1.0)
     assert runner.devices["anna"].variables.get("n") == (0,)

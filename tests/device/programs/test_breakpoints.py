@@ -88,7 +88,7 @@ def test_step_line_stands_at_the_first_line_of_an_event_then_goes_line_by_line(d
     assert device.variables.get("m") == (1,)
 
 
-def test_a_step_into_a_fault_tells_it():
+def test_a_step_into_a_fault_reports_it():
     device = AsebaDevice()
     device.load(load_program("var i = 9\nvar t[2]\nonevent prox\nt[i] = 1", "test"))
     device.run(1000)
@@ -114,7 +114,7 @@ def test_a_new_program_has_no_breakpoints(device):
     assert place(device) == ("running", "", None)
 
 
-def test_watched_local_events_are_told_also_without_a_handler(device):
+def test_watched_local_events_are_returned_also_without_a_handler(device):
     device.local_events.watch({"acc", "button.left", "timer0", "prox"})
     device.feed("accelerometer", [0, 0, 23])
     device.feed("buttons", [0, 1, 0, 0, 0])
@@ -128,6 +128,6 @@ def test_watched_local_events_are_told_also_without_a_handler(device):
     assert device.local_events.pop() == []
 
 
-def test_nothing_is_remembered_of_events_that_nobody_watches(device):
+def test_unwatched_events_are_not_recorded(device):
     device.feed("accelerometer", [0, 0, 23])
     assert device.local_events.pop() == []

@@ -91,7 +91,7 @@ def test_a_program_that_names_ever_new_sounds_is_not_quoted_for_each(tmp_path: P
     assert 1 < len(device.notices.pop()) <= 50
 
 
-def test_a_full_card_answers_as_the_robot_and_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_card_fails_as_on_the_robot_and_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("thymio_sim_ros.device.firmware.sd_card.MAX_FILES", 4)
     text = "var i\nvar s[8]\nwhile i < 8 do\ncall sd.open(i, s[i])\ni++\nend{}"
     device = running("", DeviceOptions(card=tmp_path), text=text)
@@ -107,7 +107,7 @@ def test_a_long_sound_is_charged_for_its_bytes(tmp_path: Path) -> None:
     assert device.load_meter.pop().calls == {"sound.play": 1}
 
 
-def test_a_load_without_faults_says_nothing() -> None:
+def test_a_load_within_the_capacity_has_no_warning() -> None:
     assert Load(MIN_CUTS - 1, 10, {"leds.top": 9}).warning == ""
     assert "leds.top: 9" in Load(1, 1, {"leds.top": 9}).warning
     assert "replaced" in Load(replaced=30).warning
