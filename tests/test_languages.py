@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from aseba_vm.languages import ENGLISH, LANGUAGES, texts
-from thymio_sim_ros import webbuild
+from web_ui import build
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "aseba_vm" / "languages"
@@ -174,16 +174,16 @@ def test_the_command_speaks_a_language_whose_folder_was_added(tmp_path: Path) ->
 
 @pytest.mark.process
 def test_the_page_offers_a_language_whose_folder_was_added(tmp_path: Path) -> None:
-    node = webbuild.find_node()
+    node = build.find_node()
     if node is None or not (PAGE / "node_modules").is_dir():
         pytest.skip("the page cannot be built here")
     ignored = shutil.ignore_patterns("node_modules", "dist")
     shutil.copytree(PAGE, tmp_path / "web_ui", ignore=ignored)
     (tmp_path / "web_ui" / "node_modules").symlink_to((PAGE / "node_modules").resolve())
     shutil.copytree(FOLDER, tmp_path / "aseba_vm" / "languages")
-    without = webbuild.digest(tmp_path / "web_ui")
+    without = build.digest(tmp_path / "web_ui")
     add_esperanto(tmp_path / "aseba_vm" / "languages")
-    assert webbuild.digest(tmp_path / "web_ui") != without
+    assert build.digest(tmp_path / "web_ui") != without
     program = """
         import { LANGUAGES, translator } from "./i18n/index.js";
         const t = translator("eo");
@@ -192,6 +192,6 @@ def test_the_page_offers_a_language_whose_folder_was_added(tmp_path: Path) -> No
     command = [str(node.folder / "node"), "--input-type=module", "--eval", program]
     done = subprocess.run(command, cwd=tmp_path / "web_ui", capture_output=True, text=True, check=True)
     assert json.loads(done.stdout) == ["Esperanto", "Haltu", "Run"]
-    assert webbuild.script(tmp_path / "web_ui", "build") == 0
+    assert build.script(tmp_path / "web_ui", "build") == 0
     scripts = list((tmp_path / "web_ui" / "dist" / "assets").glob("index-*.js"))
     assert any("Esperanto" in script.read_text(encoding="utf-8") for script in scripts)

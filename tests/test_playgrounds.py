@@ -238,7 +238,7 @@ def test_the_two_robots_hear_each_other() -> None:
     programs = {name: load_program(text.format(number), name) for name, number in (("red", 5), ("blue", 7))}
     runner = Runner(loaded("two_robots"), programs)
     runner.run(2.0)
-    assert {name: device.get_variable("heard") for name, device in runner.devices.items()} == {
+    assert {name: device.variables.get("heard") for name, device in runner.devices.items()} == {
         "red": (7,),
         "blue": (5,),
     }
@@ -280,7 +280,7 @@ def test_the_readme_explains_every_field_of_every_kind() -> None:
         assert set(re.findall(r"`(\w+)`", rows[kind.name])) == fields
 
 
-def test_the_readme_tells_the_defaults() -> None:
+def test_the_readme_states_the_defaults() -> None:
     rows = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", (FOLDER / "README.md").read_text(), re.MULTILINE))
     for kind in all_shapes():
         for field in dataclasses.fields(cast("Any", kind.form)):

@@ -100,7 +100,7 @@ def test_without_ros_its_tests_are_skipped_with_a_reason_and_the_others_run(
         ('program="motor.left.target = "', "program: line 1, column 20: expected one of"),
     ],
 )
-def test_a_wrong_mark_says_why(pytester: pytest.Pytester, run: Run, mark: str, told: str) -> None:
+def test_an_invalid_mark_is_explained(pytester: pytest.Pytester, run: Run, mark: str, told: str) -> None:
     pytester.makepyfile(f"import pytest\n@pytest.mark.thymio({mark})\ndef test_it(thymio): pass")
     result = run()
     result.assert_outcomes(errors=1)

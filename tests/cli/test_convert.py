@@ -82,7 +82,7 @@ def test_the_result_goes_into_a_file(maze: Path, capsys: pytest.CaptureFixture[s
     assert capsys.readouterr() == ("", "")
 
 
-def test_what_cannot_be_expressed_is_told_on_standard_error(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_cannot_be_converted_is_reported_on_stderr(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:
     maze.write_text(MAZE.format(FEEDER))
     assert main(["convert", str(maze)]) == 0
     told = capsys.readouterr().err

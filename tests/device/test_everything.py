@@ -108,11 +108,11 @@ def test_every_native_and_variable_gives_what_the_program_expects(device: AsebaD
     device.receive_event("told", (8, 9), source=3)
     run(device)
     assert device.status.state == "running"
-    assert {name: device.get_variable(name) for name, _ in expectations()} == dict(expectations())
-    assert device.pop_notices() == []
+    assert {name: device.variables.get(name) for name, _ in expectations()} == dict(expectations())
+    assert device.notices.pop() == []
 
 
-def test_every_native_that_reaches_an_actuator_tells_it(device: AsebaDevice) -> None:
+def test_every_native_function_of_an_actuator_causes_its_command(device: AsebaDevice) -> None:
     assert device.pop_commands() == [
         SetVolume(0),
         SetVolume(2),
@@ -147,8 +147,8 @@ def test_files_of_the_card_and_the_flash_hold_what_was_written(device: AsebaDevi
 
 def test_the_radio_has_the_number_and_network_it_was_given(device: AsebaDevice) -> None:
     assert (device.node_id, device.services.network) == (9, (1, 77))
-    device.reset()
-    assert device.get_variable("_id") == (9,)
+    device.run_control.reset()
+    assert device.variables.get("_id") == (9,)
 
 
 def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(device: AsebaDevice) -> None:
@@ -161,11 +161,11 @@ def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(devic
     assert device.status.state == "off"
     sensed(device)
     device.advance(1_000_000_000)
-    device.pause()
-    device.step()
+    device.run_control.pause()
+    device.run_control.step()
     assert run(device) == []
-    assert device.get_variable("far") == (0,) * 7
-    device.resume()
+    assert device.variables.get("far") == (0,) * 7
+    device.run_control.resume()
     assert device.status.state == "running"
     commands = run(device)
     assert StopSound() in commands
@@ -182,5 +182,5 @@ def test_a_restart_begins_anew_and_keeps_what_was_flashed(device: AsebaDevice) -
     assert commands[0] != commands[-1]
     assert SetWave(TRIANGLE) in commands
     assert device.services.settings[0] == 2
-    assert device.get_variable("far") == (0,) * 7
+    assert device.variables.get("far") == (0,) * 7
     assert device.status.state == "running"

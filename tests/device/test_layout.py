@@ -49,12 +49,12 @@ def test_natives_have_the_numbers_of_the_table(layout: str) -> None:
 @pytest.mark.parametrize(("layout", "firmware"), [(THYMIO, (14, 1)), (PLAYGROUND, (11, 0))])
 def test_a_robot_names_itself(layout: str, firmware: tuple[int, int]) -> None:
     robot = device(layout)
-    found = [robot.get_variable(name) for name in ("_id", "event.source", "_productId", "_fwversion", "sd.present")]
+    found = [robot.variables.get(name) for name in ("_id", "event.source", "_productId", "_fwversion", "sd.present")]
     assert found == [(5,), (5,), (8,), firmware, (0,)]
 
 
 def test_a_playground_s_robot_begins_at_22_degrees() -> None:
-    assert device(PLAYGROUND).get_variable("temperature") == (220,)
+    assert device(PLAYGROUND).variables.get("temperature") == (220,)
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -69,7 +69,7 @@ def test_programs_of_either_layout_see_and_move_the_same_robot(layout: str) -> N
     robot.feed("ground", (0, 0, 900, 800, 900, 800))
     robot.feed("proximity", (0, 0, 4000, 0, 0, 0, 0))
     robot.run(1000)
-    assert robot.get_variable("seen") == (4000, 800)
+    assert robot.variables.get("seen") == (4000, 800)
     told = [str(command) for command in robot.pop_commands()]
     assert told == [
         "SetLeds(group='bottom_left', levels=(1, 2, 3))",

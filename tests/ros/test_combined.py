@@ -26,7 +26,7 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     assert runtime.params.options == device
     (robot,) = runtime.robots
     assert robot.device.layout == "playground"
-    assert robot.device.get_variable("sd.present") == (1,)
+    assert robot.device.variables.get("sd.present") == (1,)
 
 
 def test_a_page_opened_from_elsewhere_reaches_the_bridge_if_its_origin_is_allowed(ros):

@@ -123,7 +123,7 @@ def test_robots_of_runtimes_in_different_processes_hear_each_other(ros, process,
 
     def is_answered():
         publisher.publish(Int16MultiArray(layout=convert_readings.layout([("ping", 1)]), data=[41]))
-        return anna.device.get_variable("got") == (42 + 1,)
+        return anna.device.variables.get("got") == (42 + 1,)
 
     ros.until(is_answered, START_S, what="the answer of the other process")
 

@@ -51,7 +51,7 @@ class FullWhen(io.StringIO):
 
 
 @pytest.mark.parametrize("method", ["flush", "close"])
-def test_a_disk_that_turns_out_to_be_full_later_is_told_once_and_the_world_goes_on(method: str) -> None:
+def test_a_disk_that_becomes_full_is_reported_once_and_the_world_continues(method: str) -> None:
     told: list[OSError] = []
     log = RunLog(FullWhen(method), on_error=told.append)
     world = World(make([FLOOR]))
@@ -93,7 +93,7 @@ def written(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_log_tells_everything_in_order(written: Path) -> None:
+def test_a_log_contains_everything_in_order(written: Path) -> None:
     lines = [line for _, line in read(written)]
     start = lines[0]
     assert isinstance(start, WorldStarted)
@@ -129,7 +129,7 @@ def test_a_full_disk_ends_the_log_and_not_the_world() -> None:
     assert [error.strerror for error in told] == ["No space left on device"]
 
 
-def test_without_anybody_to_tell_a_full_disk_is_an_error() -> None:
+def test_without_a_callback_a_full_disk_is_an_error() -> None:
     with pytest.raises(OSError, match="No space left"):
         RunLog(Full(0))
 

@@ -53,7 +53,7 @@ def test_other_programs_of_the_file_are_checked_too():
     assert answer["nodes"][1]["handlers"] == [{"name": "prox", "line": 10, "column": 9}]
 
 
-def test_events_and_constants_of_the_file_are_told():
+def test_events_and_constants_of_the_file_are_listed():
     answer = check(Question(FILE))
     assert answer["events"] == [{"name": "ping", "size": 1}]
     assert answer["constants"] == [{"name": "SPEED", "value": 200}]
@@ -64,7 +64,7 @@ def test_a_bare_program_may_bring_its_events_and_constants():
     assert answer["errors"] == []
 
 
-def test_a_program_that_compiles_tells_addresses_and_use():
+def test_a_program_that_compiles_has_addresses_and_memory_use():
     (node,) = check(Question("var a[3]\nvar b = 1\nonevent prox\nb = 2"))["nodes"]
     end = target().variables_end
     assert node["variables"] == [
@@ -75,7 +75,7 @@ def test_a_program_that_compiles_tells_addresses_and_use():
     assert node["use"]["bytecode"][1] == 1534
 
 
-def test_names_are_told_as_far_as_a_broken_text_can_be_read():
+def test_names_are_listed_as_far_as_a_broken_text_can_be_parsed():
     (node,) = check(Question("var a[3]\nsub s\n  a[0] = \nvar late = $"))["nodes"]
     assert [symbol["name"] for symbol in node["variables"]] == ["a", "late"]
     assert node["variables"][0]["address"] is None
@@ -123,7 +123,7 @@ def test_every_program_we_ship_is_without_errors_and_warnings(name):
     assert (answer["errors"], answer["warnings"]) == ([], [])
 
 
-def test_the_target_says_all_that_a_program_can_use():
+def test_the_target_lists_all_that_a_program_can_use():
     told = json.loads(json.dumps(describe_target()))
     assert {
         "name": "button.center",

@@ -114,13 +114,13 @@ def test_robots_that_answer_each_other_for_ever_let_others_have_their_turn(ros, 
     )
     anna, bert = (endpoints.device for endpoints in node.robots)
     press_left(ros, "anna")
-    ros.until(lambda: bert.get_variable("n")[0] > 0)
-    assert anna.get_variable("n")[0] + bert.get_variable("n")[0] <= MAX_ROUNDS
-    before = bert.get_variable("n")[0]
+    ros.until(lambda: bert.variables.get("n")[0] > 0)
+    assert anna.variables.get("n")[0] + bert.variables.get("n")[0] <= MAX_ROUNDS
+    before = bert.variables.get("n")[0]
     assert any(endpoints.is_busy for endpoints in node.robots)
     for endpoints in node.robots:
         endpoints.run()
-    assert bert.get_variable("n")[0] > before
+    assert bert.variables.get("n")[0] > before
     assert ros.call(Trigger, "/anna/aseba/stop").success
 
 
@@ -188,7 +188,7 @@ def test_robots_of_different_runtimes_hear_each_other_once(ros, runtime):
     carl = other.robots[0].device
     ros.until(lambda: get_variables(ros, "heard", "from", robot="/bert") == [[7, 8], [7]])
     press_left(ros, "anna")
-    ros.until(lambda: carl.get_variable("from") == (1,))
+    ros.until(lambda: carl.variables.get("from") == (1,))
     ros.until(lambda: len(air) == 2)
     times = {robot: get_variables(ros, "times", robot=f"/{robot}")[0] for robot in ("anna", "bert", "carl")}
     assert times == {"anna": [1], "bert": [2], "carl": [1]}
@@ -204,10 +204,10 @@ def test_an_event_from_ros_reaches_robots_of_other_runtimes(ros, runtime):
 
     def heard():
         publisher.publish(event("ping", 5))
-        return device.get_variable("heard") == (5, 0)
+        return device.variables.get("heard") == (5, 0)
 
     ros.until(heard)
-    assert device.get_variable("from") == (0,)
+    assert device.variables.get("from") == (0,)
 
 
 def test_robots_of_another_radio_network_do_not_hear(ros, runtime):
@@ -216,9 +216,9 @@ def test_robots_of_another_radio_network_do_not_hear(ros, runtime):
     other, third = second(ros, "carl", 7, setup), second(ros, "dora", 9, setup)
     ros.until(lambda: ros.node.count_subscribers(TOPIC) == 3)
     press_left(ros, "carl")
-    ros.until(lambda: third.robots[0].device.get_variable("times") == (1,))
+    ros.until(lambda: third.robots[0].device.variables.get("times") == (1,))
     assert get_variables(ros, "times", robot="/anna") == [[0]]
-    assert other.robots[0].device.get_variable("times") == (0,)
+    assert other.robots[0].device.variables.get("times") == (0,)
 
 
 @pytest.mark.parametrize(("values", "heard"), [([1, 2, 3, 4], [1, 2, 0, 0]), ([5], [5, 0, 0, 0])])

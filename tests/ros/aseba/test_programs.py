@@ -159,7 +159,7 @@ def test_the_last_of_path_and_text_counts(ros, runtime):
 
 def test_the_same_text_again_changes_nothing_and_a_reset_begins_anew(ros, runtime):
     robot = runtime("var me = 1\nonevent button.left\nme = 7").robots[0]
-    robot.device.set_variable("me", (9,))
+    robot.device.variables.set("me", (9,))
     assert set_parameters(ros, {"script.source": "var me = 1\nonevent button.left\nme = 7"}).successful
     assert get_variables(ros, "me") == [[9]]
     for verb in ("reset", "run"):
@@ -187,7 +187,7 @@ def test_a_file_that_was_written_anew_is_read_again(ros, runtime, tmp_path):
     path = tmp_path / "counts.aesl"
     path.write_text("var me = 1\nonevent button.left\nme = 7")
     robot = runtime(path=str(path)).robots[0]
-    robot.device.set_variable("me", (9,))
+    robot.device.variables.set("me", (9,))
     assert set_parameters(ros, {"script.path": str(path)}).successful
     assert get_variables(ros, "me") == [[9]]
     path.write_text("var me = 2\nonevent button.left\nme = 7")
@@ -223,7 +223,7 @@ def state(*robots):
 def test_robots_that_stay_go_on_when_others_come_and_go(ros, runtime):
     node = runtime("var me = 1", robots=["anna"])
     simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
-    node.robots[0].device.set_variable("me", (42,))
+    node.robots[0].device.variables.set("me", (42,))
     simulator.publish(state("anna", "bert"))
     ros.until(lambda: len(node.robots) == 2)
     assert (me(ros, "anna"), me(ros, "bert")) == ([42], [1])

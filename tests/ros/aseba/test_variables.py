@@ -131,4 +131,4 @@ def test_all_variables_come_in_one_table_while_somebody_listens(ros, runtime):
     ros.until(lambda: table()["count"] == [99])
     told = len(tables)
     ros.until(lambda: len(tables) > told, what="the table again, for those who have just come")
-    assert node.robots[0].device.get_variable("count") == (99,)
+    assert node.robots[0].device.variables.get("count") == (99,)

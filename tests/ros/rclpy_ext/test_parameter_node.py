@@ -102,7 +102,7 @@ def test_what_was_dumped_starts_a_node_with_the_same_values(ros, node, tmp_path)
 def test_loading_restarts_no_program_and_no_world(ros, simulation, tmp_path):
     sim = simulation(playground="two_robots")
     runtime = ros.live(MAKERS["aseba_runtime"](ros.context))
-    runtime.robots[0].device.set_variable("count", (42,))
+    runtime.robots[0].device.variables.set("count", (42,))
     sim.step(0.5)
     world = sim.world
     for node in ("simulator", "aseba_runtime"):

@@ -9,7 +9,7 @@ import socket
 
 import pytest
 
-from thymio_sim_ros import banner, resources
+from thymio_sim_ros import addresses, resources
 from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.web import node
@@ -144,7 +144,7 @@ def test_without_aiohttp_the_error_says_what_to_install(ros, monkeypatch):
 
 
 def test_tokens_are_in_the_access_urls_and_not_in_the_startup_message(ros, built_page, monkeypatch):
-    monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
+    monkeypatch.setattr(addresses, "own_address", lambda: "10.1.2.3")
     page = ros.live(WebPage(ros.context, WebParams(port=0, address="0.0.0.0"), Tokens("fulltoken", "looktoken")))
     assert page.access_urls.splitlines() == [
         f"Page      http://localhost:{page.port}/#token=fulltoken, from other computers "

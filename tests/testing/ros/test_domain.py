@@ -30,7 +30,7 @@ def test_the_user_s_own_domain_is_left_alone(monkeypatch):
         pass
 
 
-def test_a_domain_in_which_somebody_speaks_is_left_alone(monkeypatch):
+def test_a_domain_in_use_is_skipped(monkeypatch):
     context = Context()
     with reserved() as busy:
         rclpy.init(args=[], context=context, domain_id=busy)

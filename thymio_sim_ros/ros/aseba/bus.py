@@ -15,7 +15,7 @@ from math import inf
 
 from rclpy.node import Node
 
-from thymio_sim_ros.device.firmware.behavior_host import is_internal
+from thymio_sim_ros.device.behavior_host import is_internal
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.network import AsebaNetwork, NetworkEvent
 

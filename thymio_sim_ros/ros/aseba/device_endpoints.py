@@ -15,9 +15,9 @@ from rclpy.node import Node
 from std_msgs.msg import Empty, Int16MultiArray
 from std_srvs.srv import Trigger
 
+from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
@@ -115,11 +115,11 @@ class DeviceEndpoints:
         self._sensor_subscriptions = self._subscribe_sensors()
         controls = {
             "run": self._host.resume,
-            "pause": self.device.pause,
-            "step": self.device.step,
-            "step_line": self.device.step_line,
-            "stop": self.device.stop,
-            "reset": self.device.reset,
+            "pause": self.device.run_control.pause,
+            "step": self.device.run_control.step,
+            "step_line": self.device.run_control.step_line,
+            "stop": self.device.run_control.stop,
+            "reset": self.device.run_control.reset,
         }
         self._services = [
             node.create_service(Trigger, names.topic(f"aseba/{word}"), self._controller(word, act))
@@ -219,7 +219,7 @@ class DeviceEndpoints:
         events = self._host.pop_events()
         commands = self.device.pop_commands()
         self._replaced += self._outputs.send_all(commands, latest=is_cut or len(commands) > MAX_COMMANDS)
-        for name in self.device.pop_local_events():
+        for name in self.device.local_events.pop():
             self._events.publish(name, ())
         for event in events:
             self._events.publish(event.name, event.args)
@@ -233,7 +233,7 @@ class DeviceEndpoints:
 
     def observe_load(self) -> None:
         """Report whether the program exceeded the capacity since the last call."""
-        load = replace(self.device.pop_load(), replaced=self._replaced)
+        load = replace(self.device.load_meter.pop(), replaced=self._replaced)
         self._replaced = 0
         overload = load.warning if self.device.status.state == RUNNING else ""
         if overload and not self._overload:
@@ -258,7 +258,7 @@ class DeviceEndpoints:
         if not self._is_closed:
             self._is_closed = True
             self._bus.remove(self)
-            self.device.stop()
+            self.device.run_control.stop()
             self._outputs.send_all(self.device.pop_commands(), latest=True)
 
     def close(self) -> None:
@@ -279,12 +279,12 @@ class DeviceEndpoints:
         local_events = local if ALL in debug_options.local_events else local & set(debug_options.local_events)
         self._outputs.start_program()
         if with_events:
-            self.device.watch_events(local_events)
+            self.device.local_events.watch(local_events)
             self._events.open(program, sorted(local_events))
         self._program = program
         self._variables.language = debug_options.language
         self._variables.set_program(debug_options.watch)
-        points = self.device.set_breakpoints(debug_options.breakpoints if is_own else ())
+        points = self.device.run_control.set_breakpoints(debug_options.breakpoints if is_own else ())
         notes = self.share.notes if is_own and self.share is not None else ()
         self.status.set_program(Loaded(program, self._events.words, notes, points), debug_options.language)
 
@@ -308,7 +308,7 @@ class DeviceEndpoints:
         self.run()
 
     def _on_shutdown(self, _message: Empty) -> None:
-        self.device.switch_off()
+        self.device.run_control.switch_off()
         self.run()
 
     def _controller(

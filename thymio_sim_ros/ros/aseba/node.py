@@ -26,8 +26,8 @@ from rclpy.parameter import Parameter
 from std_msgs.msg import Int16MultiArray, String
 
 from thymio_sim_ros import resources
+from thymio_sim_ros.device.behavior_host import MENU
 from thymio_sim_ros.device.bindings import sensor_names
-from thymio_sim_ros.device.firmware.behavior_host import MENU
 from thymio_sim_ros.device.firmware.sd_card import SdCardError
 from thymio_sim_ros.device.firmware.settings import SettingsError
 from thymio_sim_ros.device.layout import THYMIO

@@ -24,7 +24,7 @@ from rclpy.executors import Executor
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
-from thymio_sim_ros.banner import access, places, urls
+from thymio_sim_ros.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Tokens
 from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 from thymio_sim_ros.bridge.protocol.messages import AssetResponse
@@ -121,7 +121,7 @@ class FoxgloveBridge:
         place = self._scheme, self.address, self.port
         is_open = not self.tokens.is_required
         how = f"or {_app_link(urls(*place)[0])}" if is_open else "with the token on standard output"
-        return f"Foxglove: {places(*place)} {how}; access: {access(self.address, self.tokens)}"
+        return f"Foxglove: {describe_urls(*place)} {how}; access: {describe_access(self.address, self.tokens)}"
 
     @property
     def access_urls(self) -> str:
@@ -130,7 +130,7 @@ class FoxgloveBridge:
             return ""
         place = self._scheme, self.address, self.port
         full = urls(*place, "/", self.tokens.full)
-        read_only = places(*place, "/", self.tokens.read_only)
+        read_only = describe_urls(*place, "/", self.tokens.read_only)
         return f"Foxglove  {', from other computers '.join(full)} or {_app_link(full[0])}\nRead only {read_only}"
 
     @property

@@ -17,7 +17,7 @@ from rclpy.executors import Executor
 
 import thymio_sim_ros
 from thymio_sim_ros import resources
-from thymio_sim_ros.banner import places
+from thymio_sim_ros.addresses import describe_urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
@@ -96,7 +96,7 @@ class WebPage:
     @property
     def startup_message(self) -> str:
         """Where to open the page, as text for the log."""
-        return f"Page: {places('http', self.params.address, self.port, '/')}"
+        return f"Page: {describe_urls('http', self.params.address, self.port, '/')}"
 
     @property
     def access_urls(self) -> str:
@@ -104,7 +104,8 @@ class WebPage:
         if not self.tokens.is_required:
             return ""
         place = "http", self.params.address, self.port, "/"
-        return f"Page      {places(*place, self.tokens.full)}\nRead only {places(*place, self.tokens.read_only)}"
+        full, read_only = (describe_urls(*place, token) for token in (self.tokens.full, self.tokens.read_only))
+        return f"Page      {full}\nRead only {read_only}"
 
     def run_once(self, executor: Executor) -> None:
         """Spin the executor once, for the services of parameters."""

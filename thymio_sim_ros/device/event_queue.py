@@ -21,16 +21,16 @@ MAX_PENDING = 100
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """Whether pending local events of one kind coalesce, and whether an event interrupts the running handler.
-
-    `turn`: instructions of a handler before something else may happen. `periods_ns`: sensors that are heard less often
-    than they measure.
-    """
+    """How pending events are handled."""
 
     coalesces: bool
+    """Whether several occurrences of a pending local event count as one."""
     interrupts: bool
+    """Whether an event interrupts the running handler."""
     handler_budget: int
+    """Instructions of a handler before a global event, or with `interrupts` the next robot, has its turn."""
     periods_ns: Mapping[str, int] = field(default_factory=dict)
+    """Shortest time between two readings that reach the program, by sensor; the others are not limited."""
 
 
 FIRMWARE, PLAYGROUND = "firmware", "playground"
@@ -71,6 +71,10 @@ class EventQueue:
     def has_global(self) -> bool:
         """Whether a global event is pending."""
         return bool(self._global)
+
+    def is_timer(self, index: int) -> bool:
+        """Whether a local event is that of a timer."""
+        return index in self._timer_events
 
     def add_local(self, index: int) -> None:
         """Add a local event that occurs now."""

@@ -8,8 +8,9 @@ from __future__ import annotations
 import pytest
 
 from tests.device.handheld import HandheldRobot
-from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
-from thymio_sim_ros.device.firmware.behavior_host import ENTRIES, MENU, BehaviorHost, built_in, is_internal
+from thymio_sim_ros.device.behavior_host import ENTRIES, MENU, BehaviorHost, built_in, is_internal
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import ProgramError, load_program
 
 OWN = load_program("motor.left.target = 100\nonevent button.center\ncall leds.top(1, 2, 3)", "own.aesl")
@@ -63,7 +64,7 @@ def test_a_user_s_program_is_the_first_entry_and_black():
     assert robot.top == COLORS["obedient"]
 
 
-def test_the_centre_button_is_not_heard_for_two_seconds():
+def test_the_center_button_is_ignored_for_two_seconds():
     robot = HandheldRobot.switched_on(MENU)
     robot.tick(94)
     robot.touch("center")
@@ -106,10 +107,10 @@ def test_the_program_entry_starts_the_user_s_program_for_good():
 def begun_anew(robot: HandheldRobot, how: str) -> None:
     """Switched off and on again, or reset and let run; then the menu's two seconds pass."""
     if how == "switched on":
-        robot.device.switch_off()
+        robot.device.run_control.switch_off()
         robot.tick()
     else:
-        robot.device.reset()
+        robot.device.run_control.reset()
     robot.host.resume()
     robot.tick(100)
 
@@ -203,7 +204,7 @@ def test_what_a_program_asks_of_the_robot_is_no_event_for_others():
     assert not is_internal("line")
 
 
-def test_an_entry_that_does_not_exist_is_told():
+def test_an_unknown_entry_is_reported():
     robot = HandheldRobot()
     robot.host.load(asking("x.aesl", "menu.start", 1, "emit menu.start 42"))
     robot.tick()
@@ -217,7 +218,7 @@ def test_readings_hold_through_a_change_of_program():
     robot.tick(100)
     robot.touch("center", ticks=1)
     assert robot.running == "friendly"
-    assert robot.device.get_variable("prox.ground.delta") == (900, 900)
+    assert robot.device.variables.get("prox.ground.delta") == (900, 900)
 
 
 def test_a_user_s_program_begins_with_cleared_variables():
@@ -226,7 +227,7 @@ def test_a_user_s_program_begins_with_cleared_variables():
     robot.tick(100)
     robot.touch("center", ticks=1)
     assert robot.running == "own"
-    assert robot.device.get_variable("prox.ground.delta") == (0, 0)
+    assert robot.device.variables.get("prox.ground.delta") == (0, 0)
 
 
 def test_a_restart_is_as_the_first_start():
@@ -263,7 +264,7 @@ def test_lights_go_out_before_another_behaviour_begins(behaviour):
     assert not any(level for group, levels in robot.leds.items() if group != "temperature" for level in levels)
 
 
-def test_a_robot_of_the_playground_s_layout_says_which_behaviour_it_cannot_run():
+def test_a_behavior_that_does_not_fit_the_layout_is_reported():
     host = BehaviorHost(AsebaDevice(options=DeviceOptions(layout="playground")))
     host.start("obedient")
     with pytest.raises(ProgramError, match=r"menu\.aesl: line \d+"):

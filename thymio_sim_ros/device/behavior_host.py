@@ -1,13 +1,13 @@
 """Selects the program of a robot: the menu, a behavior chosen in it, or a program loaded by a user.
 
-The firmware's menu and behaviours (docs/spec/thymio-behaviors.md section 1) are programs of the folder `behaviours`
-here. One asks for another by an event that stays inside the robot, so that neither other robots nor ROS hear it:
+The menu and the behaviors of the firmware (docs/spec/thymio-behaviors.md section 1) are programs of the folder
+`firmware/behaviors`. They request another program by an event that neither other robots nor ROS receive:
 
-- `menu.start [entry]`: run the program of this entry (`ENTRIES`; 0 is the user's own program),
-- `menu.back`: open the menu, which shows the entry that was running.
+- `menu.start [entry]`: run the program of this entry (`ENTRIES`; 0 is the program of the user),
+- `menu.back`: open the menu at the entry that was running.
 
-A program that declares `menu.open` is a menu. It is told [entry to show, 1 if the user has a program, ticks of 20 ms
-during which the center button is not to be heard].
+A program that declares `menu.open` is a menu. The arguments of that event are the entry to show, 1 if the user has a
+program, and the number of ticks of 20 ms during which the center button is ignored.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from functools import cache
 from pathlib import Path
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
+from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import OFF
 
@@ -39,14 +40,14 @@ ENTRIES = {
     10: "thesis_explorer",
     11: "thesis_track_follower",
 }
-"""Entry → built-in program: the firmware's numbers up to 8, then what the menu does not show."""
+"""Built-in program of each entry: the numbers of the firmware up to 8, then programs that the menu does not show."""
 
 POWER_ON_TICKS = 100
 """Ticks of 20 ms after switching on in which the center button is ignored."""
 
 _PREFIX = "menu."
 _START, _BACK, _OPEN = "menu.start", "menu.back", "menu.open"
-_FOLDER = Path(__file__).parent / "behaviors"
+_FOLDER = Path(__file__).parent / "firmware" / "behaviors"
 
 
 def is_internal(event: str) -> bool:
@@ -56,9 +57,9 @@ def is_internal(event: str) -> bool:
 
 @cache
 def built_in(name: str, layout: str = THYMIO) -> ThymioProgram:
-    """The built-in program of this name, or that of another package; FileNotFoundError when there is none.
+    """Load the built-in program of this name, or that of another package.
 
-    ProgramError: it uses what a robot of this layout does not have.
+    Raises FileNotFoundError if there is none, ProgramError if it uses what a robot of this layout does not have.
     """
     paths = [folder / f"{name}.aesl" for folder in (_FOLDER, *registry.folders("behaviours"))]
     path = next((path for path in paths if path.is_file()), paths[0])
@@ -84,9 +85,9 @@ class BehaviorHost:
         self._run(program, warm=False)
 
     def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
-        """Switch the robot on with a built-in program, such as the menu; `own` is a program that waits in its menu.
+        """Switch the robot on with a built-in program, such as the menu, from which `user_program` can be started.
 
-        Errors are those of `built_in`; the old program goes on.
+        Raises the exceptions of `built_in`; the previous program then continues.
         """
         program = built_in(name, self.device.layout)
         self._first, self._user_program = name, _unless_empty(user_program)
@@ -99,9 +100,9 @@ class BehaviorHost:
         self._begin()
 
     def resume(self) -> None:
-        """Let events run (again); a robot that is off is switched on with what `load` or `start` gave it."""
+        """Continue execution; switch a robot that is off on, as the last `load` or `start` did."""
         if self.device.status.state != OFF or self.program is self._first:
-            self.device.resume()
+            self.device.run_control.resume()
         else:
             self.device.services.settings.restart()
             self._begin()
@@ -118,7 +119,7 @@ class BehaviorHost:
     def pop_notices(self) -> list[str]:
         """Return and clear the notices for the user, including those of the device."""
         notices, self._notices = self._notices, []
-        return self.device.pop_notices() + notices
+        return self.device.notices.pop() + notices
 
     def _handle_request(self, event: EmittedEvent) -> None:
         try:
