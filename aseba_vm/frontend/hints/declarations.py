@@ -10,7 +10,7 @@ from aseba_vm.frontend.hints.context import ErrorContext
 
 
 def late_declaration(context: ErrorContext) -> Hint | None:
-    """Recognize ``var`` after the first statement; the edit declares it above and assigns the value in its original place."""
+    """Recognize ``var`` after the first statement; the edit declares it above and leaves the assignment in place."""
     keyword = context.kind()
     is_refused = context.error.kind == "misplaced-var" or context.is_statement_expected
     if keyword not in ("var", "const") or not is_refused:
