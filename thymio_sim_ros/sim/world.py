@@ -80,7 +80,9 @@ class World:
             ValueError: A model or sensor is unknown, or a period is not above 0.
         """
         if proximity_model not in PROXIMITY_MODELS:
-            raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
+            raise ValueError(
+                f"proximity model: found {proximity_model!r}, expected one of {', '.join(PROXIMITY_MODELS)}"
+            )
         self._motor_model = SetMotorModel(motor_model)
         self._sensors = _chosen(all_sensors(), periods_ns)
         self.playground = playground
@@ -305,7 +307,7 @@ def _finite(name: str, pose: Pose) -> Pose:
     """The pose; raises ValueError if it is not finite."""
     if not all(map(math.isfinite, (pose.x_m, pose.y_m, pose.yaw_rad))):
         at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
-        raise ValueError(f"'{name}' cannot stand at {at}: expected finite numbers")
+        raise ValueError(f"'{name}' cannot be placed at {at}: expected finite numbers")
     return pose
 
 
@@ -316,7 +318,7 @@ def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -
     names = [sensor.name for sensor in sensors]
     for name, period_ns in periods_ns.items():
         if name not in names:
-            raise ValueError(f"sensor {name!r}: expected one of {', '.join(names)}")
+            raise ValueError(f"sensor: found {name!r}, expected one of {', '.join(names)}")
         if period_ns <= 0:
             raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
     return tuple(sensor.with_period(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)

@@ -148,7 +148,7 @@ def test_an_effect_as_an_attribute_is_refused(effect: str) -> None:
 
 def test_an_attribute_in_the_name_space_of_svg_is_refused() -> None:
     body = '<g xmlns:s="http://www.w3.org/2000/svg" s:style="filter:blur(9px)"/>'
-    assert refused(svg_uri(body)).found == "the attribute svg:style with a name space"
+    assert refused(svg_uri(body)).found == "the attribute svg:style with a namespace"
 
 
 def test_a_mask_is_refused() -> None:
@@ -196,7 +196,7 @@ def test_an_svg_that_repeats_itself_without_end_is_refused(kind: str) -> None:
     ],
 )
 def test_an_svg_that_is_too_deep_is_refused(body: str) -> None:
-    assert refused(svg_uri(body)).found == "elements more than 40 deep"
+    assert refused(svg_uri(body)).found == "elements nested more than 40 deep"
 
 
 @pytest.mark.parametrize(
@@ -306,7 +306,7 @@ def test_the_pictures_of_a_playground_share_a_budget_of_pixels() -> None:
     with image_io.budgeted() as budget:
         budget.pixels = 19_000_000
         error = refused(picture)
-        assert error.found == "5000 x 4000 pixels, where 19000000 of the playground's 32000000 are left for pictures"
+        assert error.found == "5000 x 4000 pixels, with 19000000 of 32000000 left for images of this playground"
         assert budget.pixels == 19_000_000
         image_io.decode(png_uri([[WHITE] * 3] * 2), key="image", width_m=0.1)
     assert budget.pixels == 19_000_000 - 6

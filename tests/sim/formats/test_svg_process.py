@@ -37,8 +37,8 @@ def test_the_process_draws_what_the_package_draws() -> None:
 def test_a_picture_that_takes_too_long_is_refused_in_time() -> None:
     error = refused(LAYERS, seconds=0.5)
     assert (error.found, error.expected) == (
-        "SVG pictures that take longer than 2 s to draw",
-        "simpler ones, or PNG pictures",
+        "SVG images that take longer than 2 s to draw",
+        "simpler SVG images, or PNG images",
     )
 
 
@@ -67,13 +67,13 @@ def test_a_program_that_embeds_python_is_not_started(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(sys, "executable", executable)
     monkeypatch.setattr(subprocess, "run", None)
     error = refused(PLAIN)
-    assert "a program without a Python of its own" in error.found
+    assert "a program that embeds Python" in error.found
     assert "PNG" in error.expected
 
 
 def test_an_interpreter_that_is_gone_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python3"))
-    assert "no process to draw it in" in refused(PLAIN).found
+    assert "no process could be started" in refused(PLAIN).found
 
 
 def test_the_worker_imports_neither_the_package_nor_ros() -> None:

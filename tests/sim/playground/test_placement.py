@@ -52,7 +52,7 @@ def test_an_added_robot_is_driven_pushed_and_seen_like_any_other() -> None:
 )
 def test_a_robot_is_refused_where_something_stands(x_m: float, y_m: float, blocker: str) -> None:
     world = build()
-    text = rf"'late' cannot stand at {x_m:.3f}, {y_m:.3f} m: '{blocker}' is in its way"
+    text = rf"'late' cannot be placed at {x_m:.3f}, {y_m:.3f} m: occupied by '{blocker}'"
     with pytest.raises(PlacementError, match=text):
         world.spawn(RobotStart("late", x_m, y_m))
     assert list(world.robots) == ["thymio"]
@@ -153,21 +153,21 @@ def test_a_moved_thing_may_fall_over_the_edge_and_come_back() -> None:
 
 
 def test_a_thing_is_refused_where_something_stands() -> None:
-    with pytest.raises(PlacementError, match=r"'crate' cannot stand at 0\.050, 0\.000 m: 'thymio' is in its way"):
+    with pytest.raises(PlacementError, match=r"'crate' cannot be placed at 0\.050, 0\.000 m: occupied by 'thymio'"):
         build().post("crate", MoveObject(0.05, 0.0, 0.0))
 
 
 def test_a_round_thing_is_refused_where_a_round_one_stands() -> None:
     can = {**POST, "name": "can", "x_m": 1.0, "mass_kg": 0.1}
     world = World(make([FLOOR, POST, can]))
-    with pytest.raises(PlacementError, match="'post' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'post'"):
         world.post("can", MoveObject(0.05, 0.5, 0.0))
     world.post("can", MoveObject(0.11, 0.5, 0.0))
 
 
 def test_a_robot_is_not_moved_into_something() -> None:
     world = build()
-    with pytest.raises(PlacementError, match="'wall' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'wall'"):
         send(world, MoveRobot(0.5, 0.0, 0.0))
 
 
@@ -193,9 +193,9 @@ def test_a_robot_may_be_turned_on_its_own_place() -> None:
 def test_a_place_where_something_will_stand_in_the_next_step_is_not_free() -> None:
     world = build()
     world.post("crate", MoveObject(-1.0, 1.0, 0.0))
-    with pytest.raises(PlacementError, match="'crate' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'crate'"):
         world.post("thymio", MoveRobot(-1.0, 1.0, 0.0))
-    with pytest.raises(PlacementError, match="'crate' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'crate'"):
         world.spawn(RobotStart("late", -1.0, 1.0))
     world.spawn(RobotStart("late", -0.5, 0.0))
     world.step()
@@ -211,7 +211,7 @@ def test_nor_is_one_where_what_has_fallen_is_going_to_stand(name: str) -> None:
     run(world, 0.1)
     world.post("thymio", MoveRobot(5.0, 0.0, 0.0))
     world.post(name, move(1.0, 1.0, 0.0))
-    with pytest.raises(PlacementError, match=f"'{name}' is in its way"):
+    with pytest.raises(PlacementError, match=f"occupied by '{name}'"):
         world.post("thymio", MoveRobot(1.0, 1.0, 0.0))
 
 

@@ -104,18 +104,18 @@ def decode(uri: str, *, key: str, width_m: float) -> Pixels:
     head, _, body = uri.partition(",")
     media_type = head.removeprefix("data:").removesuffix(";base64")
     if media_type not in MEDIA_TYPES.values():
-        raise FieldError(key, f"'{media_type[:40]}'", "a data URI of a PNG, JPEG or SVG")
+        raise FieldError(key, f"'{media_type[:40]}'", "a data URI of a PNG, JPEG or SVG image")
     try:
         data = base64.b64decode(body, validate=True)
     except (binascii.Error, ValueError) as error:
         raise FieldError(key, "characters that are not base64", "base64") from error
     if len(data) > MAX_PICTURE_BYTES:
-        raise FieldError(key, f"{len(data)} bytes", f"a picture of at most {MAX_PICTURE_BYTES}")
+        raise FieldError(key, f"{len(data)} bytes", f"an image of at most {MAX_PICTURE_BYTES} bytes")
     if media_type == MEDIA_TYPES[".svg"]:
         budget.svg_bytes -= len(data)
         if budget.svg_bytes < 0:
             found = f"more than {MAX_SVG_BYTES_IN_ALL} bytes of SVG so far"
-            raise FieldError(key, found, "fewer or simpler ones, or PNG pictures")
+            raise FieldError(key, found, "fewer or simpler SVG images, or PNG images")
         data, seconds = svg.draw(data, key, width_m, seconds=budget.svg_seconds)
         budget.svg_seconds -= seconds
     return _unpack(data, key, budget)
@@ -169,19 +169,19 @@ def _unpack(data: bytes, key: str, budget: Budget) -> Pixels:
             image = imported("PIL.ImageOps", "Pillow", key).exif_transpose(image)
         return _rgba(image, image_module)
     except image_module.DecompressionBombError as error:
-        raise FieldError(key, "pixels without measure", f"at most {MAX_PIXELS} pixels") from error
+        raise FieldError(key, "too many pixels", f"at most {MAX_PIXELS} pixels") from error
     except _PILLOW_ERRORS as error:
-        raise FieldError(key, "a picture that cannot be read", "a whole PNG or JPEG") from error
+        raise FieldError(key, "an image that cannot be read", "a complete PNG or JPEG file") from error
 
 
 def _check_size(columns: int, rows: int, key: str, budget: Budget) -> None:
     """Refuse a picture by what its header says, before it is unpacked; charge the budget for it."""
     size = f"{columns} x {rows} pixels"
     if max(columns, rows) > MAX_SIDE or columns * rows > MAX_PIXELS:
-        raise FieldError(key, size, f"at most {MAX_SIDE} a side and {MAX_PIXELS} in all")
+        raise FieldError(key, size, f"at most {MAX_SIDE} per side and {MAX_PIXELS} in all")
     if columns * rows > budget.pixels:
-        found = f"{size}, where {budget.pixels} of the playground's {MAX_PIXELS_IN_ALL} are left for pictures"
-        raise FieldError(key, found, "fewer or smaller pictures; one pixel for each millimeter is enough")
+        found = f"{size}, with {budget.pixels} of {MAX_PIXELS_IN_ALL} left for images of this playground"
+        raise FieldError(key, found, "fewer or smaller images; one pixel per millimeter is enough")
     budget.pixels -= columns * rows
 
 
@@ -189,7 +189,7 @@ def _check_scans(data: bytes, key: str) -> None:
     """Refuse a progressive JPEG that goes over its pixels again and again."""
     scans = data.count(b"\xff\xda")
     if scans > MAX_SCANS:
-        raise FieldError(key, f"a JPEG of {scans} scans", f"at most {MAX_SCANS}")
+        raise FieldError(key, f"a JPEG with {scans} scans", f"at most {MAX_SCANS}")
 
 
 def _rgba(image: Any, image_module: ModuleType) -> Pixels:

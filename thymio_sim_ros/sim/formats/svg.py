@@ -32,31 +32,31 @@ MAX_DEPTH = 40
 """Elements inside one another, references counted; each may hold a picture of its own while it is drawn."""
 
 _REFUSED = {
-    "text": "paths (in Inkscape: Path, Object to Path)",
+    "text": "paths (in Inkscape: Path > Object to Path)",
     "image": "shapes and paths, or a PNG instead of the SVG",
     "foreignObject": "shapes and paths",
-    "script": "no programs",
-    "marker": "no markers, or markers turned into paths",
+    "script": "no scripts",
+    "marker": "no markers (convert them to paths)",
     "filter": "no filters",
-    "mask": "no masks, or clip paths in their place",
-    "animate": "nothing that moves",
-    "animateTransform": "nothing that moves",
-    "set": "nothing that moves",
+    "mask": "no masks (clip paths are allowed)",
+    "animate": "no animation",
+    "animateTransform": "no animation",
+    "set": "no animation",
 }
 _EFFECTS = {
     "filter": "no filters",
     "backdrop-filter": "no filters",
-    "mask": "no masks, or clip paths in their place",
-    "mask-image": "no masks, or clip paths in their place",
-    "mask-border": "no masks, or clip paths in their place",
-    "mask-border-source": "no masks, or clip paths in their place",
-    "mask-box-image": "no masks, or clip paths in their place",
+    "mask": "no masks (clip paths are allowed)",
+    "mask-image": "no masks (clip paths are allowed)",
+    "mask-border": "no masks (clip paths are allowed)",
+    "mask-border-source": "no masks (clip paths are allowed)",
+    "mask-box-image": "no masks (clip paths are allowed)",
     "mix-blend-mode": "no blend modes",
     "isolation": "no isolated groups",
-    "marker": "no markers, or markers turned into paths",
-    "marker-start": "no markers, or markers turned into paths",
-    "marker-mid": "no markers, or markers turned into paths",
-    "marker-end": "no markers, or markers turned into paths",
+    "marker": "no markers (convert them to paths)",
+    "marker-start": "no markers (convert them to paths)",
+    "marker-mid": "no markers (convert them to paths)",
+    "marker-end": "no markers (convert them to paths)",
 }
 """Properties that are refused, as attributes and in CSS, but with a value of `_WITHOUT_EFFECT`."""
 _WITHOUT_EFFECT = frozenset({"none", "auto", "normal", "initial", "unset"})
@@ -102,7 +102,7 @@ def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[byte
     try:
         text = _resized(data.decode("utf-8"), root, size, columns, rows)
     except ValueError as error:
-        raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a whole SVG in UTF-8") from error
+        raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a complete SVG in UTF-8") from error
     try:
         return svg_process.draw(text, resvg, seconds=seconds)
     except DrawError as error:
@@ -119,7 +119,7 @@ def _check(root: Element, key: str) -> None:
             raise FieldError(where, f"<{element.tag}>", _REFUSED[element.tag])
         for target in _targets(element):
             if not target.startswith("#"):
-                raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
+                raise FieldError(where, f"a reference to '{target[:40]}'", "references within the image")
         _check_style(element, styles, where)
     by_id: dict[str, list[Element]] = {}
     for element in root.walk():
@@ -156,18 +156,18 @@ def _check_style(element: Element, styles: _Styles, where: str) -> None:
     """Refuse what an element's attributes or its style sheet ask for that has no limit or lies elsewhere."""
     for name, value in element.attributes.items():
         if name.startswith("svg:"):
-            raise FieldError(where, f"the attribute {name} with a name space", "attributes without one")
+            raise FieldError(where, f"the attribute {name} with a namespace", "attributes without a namespace")
         if name in _EFFECTS and value.strip().lower() not in _WITHOUT_EFFECT:
             raise FieldError(where, f'{name}="{value[:40]}"', _EFFECTS[name])
     for target in styles.urls(element):
         if not target.startswith("#"):
-            raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
+            raise FieldError(where, f"a reference to '{target[:40]}'", "references within the image")
     texts = [element.attributes["style"]] if "style" in element.attributes else []
     if element.tag == "style":
         texts.append(element.text)
         sheet = styles.parse(element.text)
         if "import" in sheet.rules:
-            raise FieldError(where, "@import in <style>", "styles inside the picture")
+            raise FieldError(where, "@import in <style>", "styles within the image")
         if sheet.urls:
             raise FieldError(where, "url(…) in <style>", "references in the attributes of elements")
     for text in texts:
@@ -191,7 +191,7 @@ def _weigh(
     both could grow without measure. A circle of references has no end at all.
     """
     if above > MAX_DEPTH:
-        raise FieldError(key, f"elements more than {MAX_DEPTH} deep", "a simpler picture")
+        raise FieldError(key, f"elements nested more than {MAX_DEPTH} deep", "a simpler image")
     weight = known.get(id(element))
     if weight is None:
         known[id(element)] = _ENDLESS
@@ -201,9 +201,9 @@ def _weigh(
             1 + sum(one.parts for one in inner), 1 + max((one.depth for one in inner), default=0)
         )
     if weight.parts > MAX_PARTS:
-        raise FieldError(key, f"more than {MAX_PARTS} elements to draw", "a simpler picture")
+        raise FieldError(key, f"more than {MAX_PARTS} elements to draw", "a simpler image")
     if above + weight.depth > MAX_DEPTH:
-        raise FieldError(key, f"elements more than {MAX_DEPTH} deep", "a simpler picture")
+        raise FieldError(key, f"elements nested more than {MAX_DEPTH} deep", "a simpler image")
     return weight
 
 
@@ -234,7 +234,7 @@ def _size(root: Element, key: str) -> tuple[float, float]:
     if not (math.isfinite(ratio) and ratio > 0.0):
         raise FieldError(key, "an SVG without a size", "viewBox, or width and height, in <svg>")
     if not 0.01 <= ratio <= 100:
-        raise FieldError(key, f"{width:g} x {height:g} px", "a width and a height of at most 100 to 1")
+        raise FieldError(key, f"{width:g} x {height:g} px", "an aspect ratio of at most 100 to 1")
     return width, height
 
 
@@ -252,7 +252,7 @@ def _resized(text: str, root: Element, size: tuple[float, float], columns: int, 
     data = text.encode("utf-8")
     match = _ROOT.match(data, root.offset)
     if match is None:
-        raise ValueError("its first element is not where it seems to be")
+        raise ValueError("its root element was not found")
     attributes = _SIDES.sub(b"", match[2]) + f' width="{columns}" height="{rows}"'.encode()
     if "viewBox" not in root.attributes:
         attributes += f' viewBox="0 0 {size[0]!r} {size[1]!r}"'.encode()

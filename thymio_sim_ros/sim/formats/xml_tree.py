@@ -87,7 +87,7 @@ class _Builder:
         except expat.ExpatError as error:
             raise XmlError(error.lineno, expat.ErrorString(error.code), "XML") from error
         except (ValueError, LookupError) as error:
-            raise XmlError(1, "an encoding that is not known here", "UTF-8") from error
+            raise XmlError(1, "an unknown encoding", "UTF-8") from error
         assert self._root is not None
         return self._root
 
@@ -95,7 +95,7 @@ class _Builder:
         line = self._parser.CurrentLineNumber
         self._count += 1
         if len(self._open) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
-            raise XmlError(line, "elements without measure", f"at most {MAX_ELEMENTS}, {MAX_DEPTH} deep")
+            raise XmlError(line, "too many or too deeply nested elements", f"at most {MAX_ELEMENTS}, {MAX_DEPTH} deep")
         named = ((_attribute(key), value) for key, value in attributes.items())
         own = {key: value for key, value in named if key is not None}
         element = Element(name.rpartition(_SPACE)[2], own, line, self._parser.CurrentByteIndex)
@@ -113,10 +113,12 @@ class _Builder:
         self._texts[-1].append(data)
 
     def _entity(self, name: str, *_declaration: object) -> None:
-        raise XmlError(self._parser.CurrentLineNumber, f"a declaration of the entity '{name}'", "no entities")
+        raise XmlError(
+            self._parser.CurrentLineNumber, f"a declaration of the entity '{name}'", "no entity declarations"
+        )
 
     def _external(self, *_reference: object) -> int:
-        raise XmlError(self._parser.CurrentLineNumber, "a reference to something outside", "a file that stands alone")
+        raise XmlError(self._parser.CurrentLineNumber, "an external reference", "a self-contained file")
 
 
 def _attribute(key: str) -> str | None:

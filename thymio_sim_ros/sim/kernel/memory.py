@@ -94,7 +94,9 @@ class KernelMemory:
     def _place(self, array: npt.NDArray[Any], kind: str) -> int:
         place = array.ctypes.data - self._base
         if array.dtype != _TYPES[kind] or not array.flags.c_contiguous or not 0 <= place <= len(self._bytes):
-            raise KernelError(f"an array of {array.dtype}, expected {_TYPES[kind]} in one piece in this memory")
+            raise KernelError(
+                f"an array of {array.dtype}, expected {_TYPES[kind]} contiguous in the memory of this kernel"
+            )
         return place
 
 

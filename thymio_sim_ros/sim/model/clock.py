@@ -89,7 +89,7 @@ class Pacer:
 
     def __init__(self, real_time_factor: float, *, max_batch: int = 10) -> None:
         if not 0.0 <= real_time_factor < float("inf"):
-            raise ValueError(f"real-time factor {real_time_factor}: expected a number from 0 up")
+            raise ValueError(f"real-time factor: found {real_time_factor}, expected a number of at least 0")
         self.achieved = 0.0
         self.dropped_ticks = 0
         self._factor = real_time_factor

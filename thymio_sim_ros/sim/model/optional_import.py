@@ -15,4 +15,6 @@ def imported(name: str, package: str, key: str) -> ModuleType:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise FieldError(key, f"a picture that needs the package {package}", f"`pip install {package}`") from error
+        raise FieldError(
+            key, f"an image that needs the missing package {package}", f"`pip install {package}`"
+        ) from error

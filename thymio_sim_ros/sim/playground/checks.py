@@ -23,7 +23,7 @@ def check_names(shapes: Iterable[NamedShape], robots: Iterable[RobotStart]) -> N
     named += [(f"robots[{index}]", robot.name) for index, robot in enumerate(robots)]
     for key, name in named:
         if name in seen:
-            raise FieldError(f"{key}.name", f"'{name}' as in {seen[name]}", "a name of its own")
+            raise FieldError(f"{key}.name", f"'{name}', the name of {seen[name]}", "a unique name")
         seen[name] = key
 
 
@@ -31,8 +31,8 @@ def check_ground(floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
     """Refuse a ground that is painted over so often that nothing else could be done for long."""
     cost = raster.cost(floors, paints)
     if cost > raster.MAX_COST:
-        found = f"a ground that takes {cost / raster.MAX_COST:.3g} times as long to paint as is allowed"
-        raise FieldError("shapes", found, "fewer or smaller floors and pictures, or a smaller ground")
+        found = f"a ground that takes {cost / raster.MAX_COST:.3g} times the allowed time to paint"
+        raise FieldError("shapes", found, "fewer or smaller floors and images, or a smaller ground")
 
 
 def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:
@@ -42,7 +42,7 @@ def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:
         footprint = footprint_of_robot(robot.name, robot.pose)
         blocker = occupied.blocker(footprint)
         if blocker is not None:
-            raise FieldError(f"robots[{index}]", f"'{robot.name}' inside '{blocker}'", "a free place")
+            raise FieldError(f"robots[{index}]", f"'{robot.name}' inside '{blocker}'", "a free position")
         occupied.add(footprint)
 
 
@@ -70,5 +70,7 @@ def check_doors(shapes: tuple[NamedShape, ...], primitives: Iterable[Primitive])
     keys = {shape.name: f"shapes[{index}].door" for index, shape in enumerate(shapes)}
     for primitive in primitives:
         if isinstance(primitive, Trigger) and primitive.door not in doors:
-            expected = "one of the doors " + ", ".join(doors) if doors else "the name of a door; there is none"
+            expected = (
+                "one of the doors " + ", ".join(doors) if doors else "the name of a door; the playground has none"
+            )
             raise FieldError(keys[primitive.name], describe(primitive.door), expected)

@@ -95,7 +95,7 @@ def read_source(data: bytes, name: str, beside: Beside) -> Source:
     try:
         parsed = _parse_json(data.decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise FieldError("", f"a wrong byte at {error.start}", "UTF-8 text") from error
+        raise FieldError("", f"an invalid byte at offset {error.start}", "UTF-8 text") from error
     if isinstance(parsed, Mapping) and "format" not in parsed and parsed.keys() & {"playground", *thesis.KEYS}:
         converted = thesis.convert(parsed, name)
         return Source(converted.data(), beside, tuple(converted.notes), converted.places)
@@ -114,7 +114,7 @@ def is_recognized(data: bytes) -> bool:
 
 def nothing_beside(name: str) -> bytes:
     """Of a text that came without a folder."""
-    raise FieldError("", f"the file '{name}'", "the picture itself as a data URI, or a zip that holds both")
+    raise FieldError("", f"the file '{name}'", "the image as a data URI, or a zip archive with both files")
 
 
 def folder(path: Path) -> Beside:
@@ -140,9 +140,9 @@ def unpacked_svg(data: bytes) -> bytes:
     try:
         unpacked = unpacker.decompress(data, MAX_PICTURE_BYTES + 1)
     except zlib.error as error:
-        raise FieldError("", "an .svgz file that cannot be unpacked", "an SVG packed with gzip") from error
+        raise FieldError("", "an .svgz file that cannot be decompressed", "an SVG compressed with gzip") from error
     if not unpacker.eof and len(unpacked) <= MAX_PICTURE_BYTES:
-        raise FieldError("", "an .svgz file that is cut off", "a whole one")
+        raise FieldError("", "a truncated .svgz file", "a complete file")
     return unpacked
 
 
@@ -160,7 +160,7 @@ def _unzip(data: bytes) -> tuple[bytes, Beside]:
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
     except _CANNOT_UNPACK as error:
-        raise FieldError("", "a broken zip archive", "a whole one") from error
+        raise FieldError("", "a damaged zip archive", "a complete zip archive") from error
     names = [entry.filename for entry in archive.infolist() if entry.filename and not entry.is_dir()]
     if len(names) > MAX_ARCHIVE_FILES:
         raise FieldError("", f"{len(names)} files in the archive", f"at most {MAX_ARCHIVE_FILES}")
@@ -168,7 +168,7 @@ def _unzip(data: bytes) -> tuple[bytes, Beside]:
     chosen = [name for name in fitting if PurePosixPath(name).name == "world.xml"] or fitting
     if len(chosen) != 1:
         found = ", ".join(chosen[:5]) or "no playground"
-        raise FieldError("", f"{found} in the archive", "one world.xml with its pictures")
+        raise FieldError("", f"{found} in the archive", "one world.xml with its images")
     (inner,) = chosen
     home = PurePosixPath(inner).parent
 
@@ -191,13 +191,13 @@ def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
         with archive.open(name) as file:
             return file.read(most)
     except _CANNOT_UNPACK as error:
-        raise FieldError(describe(name), "an entry that cannot be unpacked", "a plain zip archive") from error
+        raise FieldError(describe(name), "an entry that cannot be extracted", "a plain zip archive") from error
 
 
 def _check_parts(data: bytes) -> None:
     """Refuse JSON that would take far more memory than its bytes: it is neither decoded nor parsed before."""
     if sum(map(data.count, (b",", b"[", b"{"))) > MAX_PARTS or data.count(b'"') > 2 * MAX_PARTS:
-        raise FieldError("", f"more than {MAX_PARTS} values", "a playground")
+        raise FieldError("", f"more than {MAX_PARTS} values", "fewer values")
     for match in _STRINGS.finditer(data):
         begin, size = match.start(), match.end() - match.start()
         if size <= MAX_TEXT:
@@ -206,7 +206,7 @@ def _check_parts(data: bytes) -> None:
         most = MAX_PICTURE_TEXT if is_picture else MAX_TEXT
         if size > most:
             line, column = data.count(b"\n", 0, begin) + 1, begin - data.rfind(b"\n", 0, begin)
-            raise FieldError(f"line {line}, column {column}", f"a text of {size} bytes", f"at most {most}")
+            raise FieldError(f"line {line}, column {column}", f"a string of {size} bytes", f"at most {most}")
 
 
 def _parse_json(text: str) -> object:
@@ -220,7 +220,7 @@ def _parse_json(text: str) -> object:
             raise _TwiceError
         half = next(filter(_HALVES.search, members), None)
         if half is not None:
-            raise FieldError("", f"half a character in the key {describe(half)}", "whole characters")
+            raise FieldError("", f"an unpaired surrogate in the key {describe(half)}", "valid Unicode")
         return members
 
     try:
@@ -229,10 +229,12 @@ def _parse_json(text: str) -> object:
         found = repr(text[error.pos : error.pos + _SHOWN]) if error.pos < len(text) else "the end of the text"
         raise FieldError(_line_and_column(text, error.pos), found, f"JSON ({error.msg})") from error
     except (RecursionError, ValueError) as error:
-        raise FieldError("", "numbers or nesting without measure", "a playground") from error
+        raise FieldError(
+            "", "numbers that are too long or values nested too deeply", "shorter or flatter data"
+        ) from error
     except _TwiceError as error:
         place, key = _second(text)
-        raise FieldError(_line_and_column(text, place), f"the key {describe(key)} twice", "every key once") from error
+        raise FieldError(_line_and_column(text, place), f"the duplicate key {describe(key)}", "unique keys") from error
 
 
 class _TwiceError(ThymioSimError):

@@ -21,7 +21,7 @@ class PlacementError(ThymioSimError, ValueError):
     """A thing that cannot stand where it is wanted: its name, and the name of what is there."""
 
     def __init__(self, thing: str, pose: Pose, blocker: str) -> None:
-        super().__init__(f"'{thing}' cannot stand at {pose.x_m:.3f}, {pose.y_m:.3f} m: '{blocker}' is in its way")
+        super().__init__(f"'{thing}' cannot be placed at {pose.x_m:.3f}, {pose.y_m:.3f} m: occupied by '{blocker}'")
         self.thing = thing
         self.blocker = blocker
 

@@ -95,7 +95,7 @@ def loads(text: str | bytes, name: str) -> Playground:
     try:
         data = text if isinstance(text, bytes) else text.encode("utf-8")
     except UnicodeEncodeError as error:
-        raise PlaygroundError(name, "", f"half a character at {error.start}", "UTF-8 text") from error
+        raise PlaygroundError(name, "", f"an unpaired surrogate at {error.start}", "UTF-8 text") from error
     return _read(data, Path(name).stem, name, format_detection.nothing_beside)
 
 
@@ -141,7 +141,7 @@ def _members(data: object) -> dict[str, object]:
         raise FieldError("format", describe(version), str(FORMAT))
     editor = members.pop("$schema", "")
     if not isinstance(editor, str):
-        raise FieldError("$schema", describe(editor), "a text; only editors read it")
+        raise FieldError("$schema", describe(editor), "a string (only editors read it)")
     return members
 
 
@@ -238,8 +238,8 @@ def _check_pictures(shapes: tuple[NamedShape, ...]) -> None:
         for image in fields.image_keys(type(named.shape)):
             size += len(getattr(named.shape, image) or "")
             if size > MAX_PICTURES_BYTES:
-                found = f"more than {MAX_PICTURES_BYTES} bytes of pictures so far, in base64"
-                raise FieldError(f"shapes[{index}].{image}", found, "fewer or smaller ones")
+                found = f"more than {MAX_PICTURES_BYTES} bytes of images as base64"
+                raise FieldError(f"shapes[{index}].{image}", found, "fewer or smaller images")
 
 
 def _embedded(value: object, key: str, beside: Beside) -> object:
@@ -271,10 +271,10 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
         except FieldError as error:
             raise FieldError(f"shapes[{index}].{error.key}", error.found, error.expected) from error
         except ValueError as error:
-            raise FieldError(f"shapes[{index}]", str(error), f"a {named.kind} that can be built") from error
+            raise FieldError(f"shapes[{index}]", str(error), f"a valid {named.kind}") from error
         except Exception as error:  # of a shape that another package added
             found_error = f"{type(error).__name__}: {error}"
-            raise FieldError(f"shapes[{index}]", found_error, f"a {named.kind} that can be built") from error
+            raise FieldError(f"shapes[{index}]", found_error, f"a valid {named.kind}") from error
         if len(found) > MAX_PRIMITIVES:
-            raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts so far", "a simpler playground")
+            raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts", "a simpler playground")
     return found

@@ -51,7 +51,7 @@ def set_free(
         freed[index] = moved
         occupied.add(footprint_of_robot(moved.name, moved.pose))
         place = f"{moved.x_m:.3f}, {moved.y_m:.3f} m"
-        notes.append(f"robots[{index}]: '{robot.name}' started inside '{blocker}', it was set free at {place}")
+        notes.append(f"robots[{index}]: '{robot.name}' starts inside '{blocker}', moved to {place}")
     return tuple(freed), tuple(notes)
 
 

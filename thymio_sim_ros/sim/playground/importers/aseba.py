@@ -37,7 +37,7 @@ _SILENT = {"author", "thanks", "externalLink", "color", "area", "description", "
 _NOT_EXPRESSED = {
     "camera": "the view is chosen in the page",
     "feeder": "energy feeders are for e-pucks only",
-    "process": "no program is started beside the simulation",
+    "process": "no other program is started with the simulation",
 }
 
 
@@ -86,7 +86,7 @@ class _Reader:
                 reader(element)
         for element in self._root.children:
             if element.tag not in readers and element.tag not in _SILENT:
-                self._note(element, _NOT_EXPRESSED.get(element.tag, "it is not known here"))
+                self._note(element, _NOT_EXPRESSED.get(element.tag, "unknown element"))
         self._out.notes = [text for _, text in sorted(self._remarks, key=lambda remark: remark[0])]
         return self._out
 
@@ -96,7 +96,7 @@ class _Reader:
         for element in self._elements("description"):
             language = (element.attributes.get("lang", "").strip() or "en").lower().replace("_", "-")
             if not re.fullmatch(LANGUAGE, language):
-                self._note(element, f"'{language}' is no language code")
+                self._note(element, f"'{language}' is not a language code")
                 continue
             text = "".join(part.text for part in element.walk())
             found.setdefault(language, " ".join(text.split())[:2000])
@@ -109,12 +109,12 @@ class _Reader:
         self._remarks.append((element.line, f"{_place(element)}{text}"))
 
     def _note(self, element: Element, why: str) -> None:
-        self._remark(element, f" left out: {why}")
+        self._remark(element, f" skipped: {why}")
 
     def _world(self) -> None:
         worlds = list(self._elements("world"))
         if len(worlds) != 1:
-            raise FieldError(f"line {self._root.line}", f"{len(worlds)} <world>", "one <world>")
+            raise FieldError(f"line {self._root.line}", f"{len(worlds)} <world> elements", "exactly one")
         (world,) = worlds
         width, height = _length(world, "w"), _length(world, "h")
         if min(width, height) <= 0.0:
@@ -148,7 +148,7 @@ class _Reader:
                 },
             )
         if world.attributes.get("energyScoringSystemEnabled", "false").lower() in ("true", "1"):
-            self._remark(world, ": the energy score is left out, it is for e-pucks only")
+            self._remark(world, ": energy score skipped, as it is for e-pucks only")
 
     def _wall(self, element: Element) -> None:
         self._out.add_shape(
@@ -205,9 +205,13 @@ class _Reader:
     def _activation(self, element: Element) -> None:
         area, door = element.attributes.get("area", ""), element.attributes.get("door", "")
         if area not in self._areas:
-            raise FieldError(_place(element), f"the area '{area}'", f"one of {', '.join(self._areas) or 'none'}")
+            raise FieldError(
+                _place(element), f"the area '{area}'", f"a declared area ({', '.join(self._areas) or 'there is none'})"
+            )
         if door not in self._doors:
-            raise FieldError(_place(element), f"the door '{door}'", f"one of {', '.join(self._doors) or 'none'}")
+            raise FieldError(
+                _place(element), f"the door '{door}'", f"a declared door ({', '.join(self._doors) or 'there is none'})"
+            )
         self._out.add_shape(
             _place(element),
             {
@@ -225,7 +229,7 @@ class _Reader:
     def _robot(self, element: Element) -> None:
         kind = element.attributes.get("type", "thymio2")
         if kind != "thymio2":
-            self._note(element, f"a robot of type '{kind}', only Thymios are simulated")
+            self._note(element, f"robot type '{kind}', only the Thymio II is simulated")
             return
         index = len(self._out.robots)
         self._out.add_robot(
@@ -239,12 +243,12 @@ class _Reader:
         )
         for attribute in ("port", "nodeId"):
             if attribute in element.attributes:
-                self._remark(element, f": {attribute} left out, robots are found by their names")
+                self._remark(element, f": {attribute} skipped, as robots are identified by name")
 
     def _color_of(self, element: Element) -> str:
         name = element.attributes.get("color", "")
         if name not in self._colors:
-            self._remark(element, f": no color '{name}' is declared, so it is gray")
+            self._remark(element, f": color '{name}' is not declared, gray is used")
         return self._colors.get(name, DEFAULT_COLOR)
 
 

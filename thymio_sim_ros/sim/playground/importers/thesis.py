@@ -102,7 +102,7 @@ class _Reader:
         self._robots()
         for key in self._data:
             if key not in (*KEYS, "playground"):
-                self._out.notes.append(f"{key} left out: it is not known here")
+                self._out.notes.append(f"{key} skipped: unknown key")
         return self._out
 
     def _items(self, key: str) -> list[_Item]:
@@ -114,7 +114,7 @@ class _Reader:
         return [_Item(item, f"{key}[{index}]") for index, item in enumerate(value)]
 
     def _note_unknown(self, item: _Item) -> None:
-        self._out.notes.extend(f"{item.key}.{name} left out: it is not known here" for name in item.unknown())
+        self._out.notes.extend(f"{item.key}.{name} skipped: unknown key" for name in item.unknown())
 
     def _plane(self, item: _Item) -> dict[str, Any]:
         size = {"size_x_m": item.length("width"), "size_y_m": item.length("height")}
@@ -140,7 +140,7 @@ class _Reader:
     def _cylinder(self, item: _Item) -> dict[str, Any]:
         top, bottom = item.length("topRadius"), item.length("botRadius")
         if top != bottom:
-            self._out.notes.append(f"{item.key}: a cone became a cylinder of its larger radius")
+            self._out.notes.append(f"{item.key}: cone replaced by a cylinder of its larger radius")
         size = {"radius_m": max(top, bottom), "height_m": item.length("height")}
         return {"kind": "cylinder", **item.place(), **size, "color": _color(item)}
 
@@ -157,7 +157,7 @@ class _Reader:
             self._out.add_robot(item.key, {"name": name, **item.place(otherwise=0.0), "yaw_rad": yaw_rad})
             self._note_unknown(item)
         if not items:
-            self._out.notes.append("thymios: none given, so one robot starts at the origin")
+            self._out.notes.append("thymios: none found, one robot starts at the origin")
             name = self._names.take("thymio", "thymio")
             self._out.add_robot("thymios", {"name": name, "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0})
 
