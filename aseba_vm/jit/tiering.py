@@ -218,7 +218,10 @@ class Tiering:
             self._host = None
 
     def run(self, limit: int) -> int:
-        """Execute the active event up to ``limit``; return the budget used."""
+        """Execute the active event up to ``limit``; return the budget used.
+
+        Raises the exception of a native that raised one, and RuntimeError if translated code trapped (a bug).
+        """
         machine = self._machine
         ready = self._ready.get(machine.pc)
         left = limit

@@ -196,7 +196,7 @@ class World:
         return result
 
     def snapshot(self) -> Snapshot:
-        """The visible state of the world now."""
+        """Return the visible state of the world now."""
         return Snapshot(
             self._clock.now_ns,
             tuple(robot.snapshot() for robot in self._robots.values()),
@@ -220,7 +220,7 @@ class World:
         self._batch = RobotBatch(self._robots.values(), self._shared) if len(self._robots) >= MIN_BATCH_ROBOTS else None
 
     def _names(self) -> set[str]:
-        """All names in use."""
+        """Return all names in use."""
         return {*self._robots, *(shape.name for shape in self.playground.shapes)}
 
     def _check_place(self, wanted: Footprint) -> None:
@@ -304,7 +304,7 @@ class World:
 
 
 def _finite(name: str, pose: Pose) -> Pose:
-    """The pose; raises ValueError if it is not finite."""
+    """Return the pose. Raises ValueError if it is not finite."""
     if not all(map(math.isfinite, (pose.x_m, pose.y_m, pose.yaw_rad))):
         at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
         raise ValueError(f"'{name}' cannot be placed at {at}: expected finite numbers")
@@ -312,7 +312,7 @@ def _finite(name: str, pose: Pose) -> Pose:
 
 
 def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
-    """The sensors that measure; raises ValueError for an unknown name or a period that is not above 0."""
+    """Return the sensors that measure. Raises ValueError for an unknown name or a period that is not above 0."""
     if periods_ns is None:
         return sensors
     names = [sensor.name for sensor in sensors]

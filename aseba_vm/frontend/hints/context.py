@@ -134,7 +134,10 @@ class ErrorContext:
 
 
 def locate_error(source: str, target: TargetDescription, attempt: Attempt) -> ErrorContext | None:
-    """Return the context of the error of an attempt, None if the position of the error is not that of a token."""
+    """Return the context of the error of an attempt, None if the position of the error is not that of a token.
+
+    Raises no error: a text whose beginning cannot be tokenized has no context.
+    """
     error, offset = attempt.error, attempt.offset
     is_token = attempt.stage == TOKENS
     try:

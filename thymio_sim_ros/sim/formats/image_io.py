@@ -1,4 +1,4 @@
-"""Ground pictures: a data URI of a PNG, JPEG or SVG → pixels; and pixels → PNG. The only user of Pillow.
+"""Ground images: pixels of a data URI of a PNG, JPEG or SVG, and PNG files of pixels. The only user of Pillow.
 
 Pictures come from strangers: sizes are checked before anything is unpacked, those of one picture and those of all
 pictures of a playground together (`Budget`). Why Pillow and resvg: docs/decisions.md.
@@ -73,7 +73,7 @@ _budget: ContextVar[Budget] = ContextVar("budget of pictures")
 
 @contextmanager
 def budgeted() -> Iterator[Budget]:
-    """Meanwhile every `decode` of this thread draws on one budget."""
+    """Within this context every `decode` of the thread is charged to one budget."""
     token = _budget.set(Budget())
     try:
         yield _budget.get()
@@ -91,12 +91,14 @@ class Pixels:
 
 
 def data_uri(data: bytes, media_type: str) -> str:
-    """A file's content as a data URI."""
+    """Return the content of a file as a data URI."""
     return f"data:{media_type};base64,{base64.b64encode(data).decode('ascii')}"
 
 
 def decode(uri: str, *, key: str, width_m: float) -> Pixels:
-    """The pixels of a data URI; an SVG is drawn finely enough for `width_m`. FieldError names `key`.
+    """Return the pixels of a data URI; an SVG is drawn with the resolution of the ground for `width_m`.
+
+    Raises FieldError, with this key, for anything but a PNG, JPEG or SVG image within the limits.
 
     Within `budgeted`, pictures share its limits; elsewhere each has them for itself.
     """
@@ -122,7 +124,7 @@ def decode(uri: str, *, key: str, width_m: float) -> Pixels:
 
 
 def css_color(value: object, *, key: str) -> str:
-    """'#rrggbb' for a color as CSS writes it, or as a number 0xrrggbb; FieldError names `key`."""
+    """Return '#rrggbb' for a CSS color or a number 0xrrggbb. Raises FieldError, with this key, for anything else."""
     if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 0xFFFFFF:
         return f"#{value:06x}"
     if isinstance(value, str) and re.fullmatch(r"#[0-9A-Fa-f]{6}", value):
@@ -137,7 +139,7 @@ def css_color(value: object, *, key: str) -> str:
 
 
 def _plain_css(text: str) -> str:
-    """A color as Pillow has it, with commas and without opacity: of `rgb(1 2 3 / 50%)`, `hsla(120deg, 50%, 50%, 1)`."""
+    """Return a color as Pillow expects it, without opacity: `rgb(1, 2, 3)` for `rgb(1 2 3 / 50%)`."""
     match = re.fullmatch(r"(rgb|hsl)a?\((.*)\)", text.strip(), re.IGNORECASE)
     if match is None:
         return text.strip()
@@ -146,7 +148,10 @@ def _plain_css(text: str) -> str:
 
 
 def encode_png(pixels: Pixels, *, most: int = MAX_SIDE) -> bytes:
-    """The pixels as a PNG file, made smaller where a side has more than `most`."""
+    """Return the pixels as a PNG file, scaled down if a side has more than `most` pixels.
+
+    Raises FieldError if Pillow is missing.
+    """
     # frombuffer copies nothing
     image = _pillow("").frombuffer("RGBA", (pixels.columns, pixels.rows), pixels.rgba, "raw", "RGBA", 0, 1)
     image.thumbnail((most, most))
@@ -175,7 +180,7 @@ def _unpack(data: bytes, key: str, budget: Budget) -> Pixels:
 
 
 def _check_size(columns: int, rows: int, key: str, budget: Budget) -> None:
-    """Refuse a picture by what its header says, before it is unpacked; charge the budget for it."""
+    """Check the size in the header, before anything is decompressed, and charge the budget for it."""
     size = f"{columns} x {rows} pixels"
     if max(columns, rows) > MAX_SIDE or columns * rows > MAX_PIXELS:
         raise FieldError(key, size, f"at most {MAX_SIDE} per side and {MAX_PIXELS} in all")
@@ -186,14 +191,14 @@ def _check_size(columns: int, rows: int, key: str, budget: Budget) -> None:
 
 
 def _check_scans(data: bytes, key: str) -> None:
-    """Refuse a progressive JPEG that goes over its pixels again and again."""
+    """Raise FieldError for a progressive JPEG with too many scans."""
     scans = data.count(b"\xff\xda")
     if scans > MAX_SCANS:
         raise FieldError(key, f"a JPEG with {scans} scans", f"at most {MAX_SCANS}")
 
 
 def _rgba(image: Any, image_module: ModuleType) -> Pixels:
-    """The pixels of a picture of Pillow, a band of rows at a time: Pillow's own ways hold them three times over."""
+    """Return the pixels of a Pillow image, converted in bands of rows: Pillow itself needs three times the memory."""
     columns, rows = image.size
     rgba = io.BytesIO()
     height = max(1, _BAND_PIXELS // columns)

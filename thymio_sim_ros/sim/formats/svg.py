@@ -1,4 +1,4 @@
-"""An SVG picture as pixels, drawn by resvg; refused where its cost or its look would depend on something else.
+"""SVG images as pixels, drawn by resvg; rejected if their cost has no limit or their look depends on the machine.
 
 It may hold neither text (fonts differ from machine to machine, and with them the readings), nor pictures and references
 to elsewhere, nor filters, masks, blend modes and markers (their cost has no limit), whether by elements, by attributes
@@ -84,7 +84,7 @@ _ENDLESS = _Weight(MAX_PARTS + 1, 1)
 
 
 def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[bytes, float]:
-    """An SVG as the PNG that resvg draws, finely enough for `width_m`, and the seconds that it took.
+    """Return an SVG as the PNG that resvg draws, with the resolution of the ground for `width_m`, and the time it took.
 
     FieldError names `key`, also for one that cannot be drawn within `seconds`.
     """
@@ -136,7 +136,7 @@ class _Styles:
         self._size = 0
 
     def parse(self, text: str) -> Style:
-        """What a text of CSS says; FieldError when all texts together are too long."""
+        """Parse a text of CSS. Raises FieldError if all texts together are too long."""
         found = self._known.get(text)
         if found is None:
             self._size += len(text)
@@ -146,14 +146,14 @@ class _Styles:
         return found
 
     def urls(self, element: Element) -> Iterator[str]:
-        """Targets of every `url(…)` in the attributes of an element."""
+        """Iterate over the targets of every `url(…)` in the attributes of an element."""
         for name, value in element.attributes.items():
             if name == "style" or "\\" in value or "url" in value.lower():
                 yield from self.parse(value).urls
 
 
 def _check_style(element: Element, styles: _Styles, where: str) -> None:
-    """Refuse what an element's attributes or its style sheet ask for that has no limit or lies elsewhere."""
+    """Raise FieldError for effects of unlimited cost and external references in attributes or a style sheet."""
     for name, value in element.attributes.items():
         if name.startswith("svg:"):
             raise FieldError(where, f"the attribute {name} with a namespace", "attributes without a namespace")
@@ -185,7 +185,7 @@ def _weigh(
     key: str,
     above: int = 0,
 ) -> _Weight:
-    """What it costs to draw an element, with all that it repeats, fills or cuts itself with.
+    """Return the cost of drawing an element with everything that it references.
 
     Each thing is drawn anew for each reference to it, and what lies inside one another is held at the same time;
     both could grow without measure. A circle of references has no end at all.
@@ -208,7 +208,7 @@ def _weigh(
 
 
 def _references(element: Element, styles: _Styles) -> list[str]:
-    """Ids of the elements that this one is drawn with."""
+    """Return the ids of the elements that this one is drawn with."""
     found = [target[1:] for target in styles.urls(element)]
     if element.tag == "use":
         found += (target[1:] for target in _targets(element))
@@ -216,12 +216,12 @@ def _references(element: Element, styles: _Styles) -> list[str]:
 
 
 def _targets(element: Element) -> list[str]:
-    """What it refers to; where both ways of saying so are used, renderers differ in which they take."""
+    """Return the references of an element; if it has both attributes, renderers differ in which one they use."""
     return [element.attributes[key] for key in _HREFS if key in element.attributes]
 
 
 def _size(root: Element, key: str) -> tuple[float, float]:
-    """Width and height in px; of what is not given in absolute units, as much as the view box says."""
+    """Return width and height in px; from the view box if they are not given in absolute units."""
     width, height = (_pixels(root.attributes.get(side, "")) for side in ("width", "height"))
     box = re.split(r"[\s,]+", root.attributes.get("viewBox", "").strip())
     across, down = map(_pixels, box[2:]) if len(box) == 4 else (math.nan, math.nan)
@@ -239,7 +239,7 @@ def _size(root: Element, key: str) -> tuple[float, float]:
 
 
 def _pixels(length: str) -> float:
-    """An absolute length; not a number for what is none."""
+    """Return an absolute length in px; NaN for anything else."""
     match = _LENGTH.fullmatch(length)
     try:
         return math.nan if match is None else float(match[1]) * CSS_DPI * _INCHES[(match[2] or "px").lower()]
@@ -248,7 +248,7 @@ def _pixels(length: str) -> float:
 
 
 def _resized(text: str, root: Element, size: tuple[float, float], columns: int, rows: int) -> str:
-    """The SVG so that it is drawn on so many pixels: resvg rounds sizes up before it makes them larger."""
+    """Return the SVG with its size set to this number of pixels: resvg rounds a size up before it scales."""
     data = text.encode("utf-8")
     match = _ROOT.match(data, root.offset)
     if match is None:

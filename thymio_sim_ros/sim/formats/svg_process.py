@@ -39,7 +39,7 @@ class DrawError(ThymioSimError):
 
 
 def draw(text: str, resvg: ModuleType, *, seconds: float) -> tuple[bytes, float]:
-    """The PNG of an SVG, and the seconds that it took; DrawError for one that cannot be drawn within `seconds`."""
+    """Return the PNG of an SVG, and the seconds it took. Raises DrawError if it cannot be drawn within `seconds`."""
     begin = time.monotonic()
     too_long = DrawError(
         f"SVG images that take longer than {MAX_SECONDS:g} s to draw", "simpler SVG images, or PNG images"
@@ -93,7 +93,7 @@ def _folder(resvg: ModuleType) -> str:
 
 
 def _apart() -> dict[str, Any]:
-    """A process that Ctrl-C in the terminal does not reach, and that opens no window."""
+    """Return the options for a process that does not get Ctrl-C of the terminal and opens no window."""
     if sys.platform == "win32":
         return {"creationflags": subprocess.CREATE_NO_WINDOW | subprocess.CREATE_NEW_PROCESS_GROUP}
     return {"start_new_session": True}

@@ -1,4 +1,4 @@
-"""XML text as a small tree that knows its lines; whatever could grow or fetch something is refused.
+"""XML text as a small tree with line numbers; entities and external references are rejected.
 
 Used for `.playground` files and SVG pictures, which come from strangers: a document type that declares entities
 is an error, nothing is ever loaded from elsewhere, and depth and number of elements have a limit.
@@ -51,7 +51,7 @@ class Element:
     text: str = ""
 
     def walk(self) -> Iterator[Element]:
-        """This element and everything below it, in the order of the text."""
+        """Iterate over this element and everything below it, in the order of the text."""
         waiting = [self]
         while waiting:
             element = waiting.pop()
@@ -60,7 +60,7 @@ class Element:
 
 
 def parse(data: bytes | str) -> Element:
-    """The root of a document; XmlError for text that is no XML or declares entities."""
+    """Return the root of a document. Raises XmlError for text that is not XML, declares entities, or is too large."""
     return _Builder().build(data)
 
 
@@ -122,7 +122,7 @@ class _Builder:
 
 
 def _attribute(key: str) -> str | None:
-    """The name of an attribute in `Element.attributes`; None for one that means nothing here."""
+    """Return the name of an attribute in `Element.attributes`; None for one that is ignored."""
     if _SPACE not in key:
         return key
     return f"svg:{key.removeprefix(_SVG)}" if key.startswith(_SVG) else _KNOWN.get(key)

@@ -11,7 +11,7 @@ __all__ = ["imported"]
 
 
 def imported(name: str, package: str, key: str) -> ModuleType:
-    """A module of a package; FieldError names `key` and how to install it."""
+    """Import a module of an optional package. Raises FieldError, with this key, if it is missing."""
     try:
         return importlib.import_module(name)
     except ImportError as error:

@@ -1,4 +1,4 @@
-"""From the bytes of a file to the data of a playground: which format it is, and the files that belong to it.
+"""Detects the format of a playground file, reads it as data, and gives access to the files beside it.
 
 Ours is JSON with "format"; the thesis' JSON has other keys; a text that begins with "<" is Aseba's XML; a zip holds
 one of these and its pictures. Everything here comes from strangers: sizes are limited before anything is unpacked,
@@ -82,7 +82,10 @@ class Source:
 
 
 def read_source(data: bytes, name: str, beside: Beside) -> Source:
-    """The playground in a file's bytes; `name` is its title if it has none. Raises FieldError."""
+    """Return the playground in the bytes of a file; `name` is its title if it has none.
+
+    Raises FieldError if it is too large, damaged, or in none of the formats.
+    """
     name = " ".join(name.encode("utf-8", "replace").decode("utf-8").split()) or "Playground"
     if len(data) > MAX_BYTES:
         raise FieldError("", f"more than {MAX_BYTES} bytes", "a smaller file")
@@ -103,7 +106,7 @@ def read_source(data: bytes, name: str, beside: Beside) -> Source:
 
 
 def is_recognized(data: bytes) -> bool:
-    """Whether a file that cannot be read looks like a playground nevertheless, so that an error may quote from it."""
+    """Return whether a rejected file looks like a playground, so that an error may quote from it. Never raises."""
     if data.startswith(_ZIP):
         try:
             data, _ = _unzip(data)
@@ -113,12 +116,12 @@ def is_recognized(data: bytes) -> bool:
 
 
 def nothing_beside(name: str) -> bytes:
-    """Of a text that came without a folder."""
+    """Raise FieldError: there is no file beside a text without a folder."""
     raise FieldError("", f"the file '{name}'", "the image as a data URI, or a zip archive with both files")
 
 
 def folder(path: Path) -> Beside:
-    """Reads files of a folder, and of no other."""
+    """Return a function that reads files of a folder and its subfolders, and of no other."""
 
     def read_file(name: str) -> bytes:
         try:
@@ -156,7 +159,7 @@ def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
 
 
 def _unzip(data: bytes) -> tuple[bytes, Beside]:
-    """The playground's own file in an archive, and the files beside it there."""
+    """Return the playground's file in an archive, and a function that reads the files beside it."""
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
     except _CANNOT_UNPACK as error:
@@ -186,7 +189,7 @@ def _unzip(data: bytes) -> tuple[bytes, Beside]:
 
 
 def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
-    """The first bytes of an entry; never more are unpacked, whatever the archive says about its size."""
+    """Return the first bytes of an entry; no more are decompressed, whatever size the archive declares."""
     try:
         with archive.open(name) as file:
             return file.read(most)
@@ -195,7 +198,7 @@ def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
 
 
 def _check_parts(data: bytes) -> None:
-    """Refuse JSON that would take far more memory than its bytes: it is neither decoded nor parsed before."""
+    """Raise FieldError for JSON that would need far more memory than its bytes; it is not decoded or parsed before."""
     if sum(map(data.count, (b",", b"[", b"{"))) > MAX_PARTS or data.count(b'"') > 2 * MAX_PARTS:
         raise FieldError("", f"more than {MAX_PARTS} values", "fewer values")
     for match in _STRINGS.finditer(data):
@@ -238,11 +241,11 @@ def _parse_json(text: str) -> object:
 
 
 class _TwiceError(ThymioSimError):
-    """An object has a key twice."""
+    """A JSON object has a duplicate key."""
 
 
 def _second(text: str) -> tuple[int, str]:
-    """Where a key stands that its object has already, and the key; there is one."""
+    """Return offset and name of the first duplicate key; there is one."""
     keys: list[set[str]] = []
     for token in _PARTS.finditer(text):
         match token.group():

@@ -42,14 +42,14 @@ _NOT_EXPRESSED = {
 
 
 def convert(root: Element, name: str) -> Conversion:
-    """The playground below <aseba-playground>; FieldError names the line of what is wrong."""
+    """Convert the playground below <aseba-playground>. Raises FieldError with the line of an error."""
     if root.tag != ROOT:
         raise FieldError(f"line {root.line}", f"<{root.tag}>", f"<{ROOT}>")
     return _Reader(root, name).read()
 
 
 class _Reader:
-    """One conversion."""
+    """Converts one playground."""
 
     def __init__(self, root: Element, name: str) -> None:
         self._root = root
@@ -91,7 +91,7 @@ class _Reader:
         return self._out
 
     def _descriptions(self) -> dict[str, str]:
-        """Language code → description in one line; one without a language is English, `de_CH` is `de-ch`."""
+        """Return descriptions by language code, each in one line; the default is English, `de_CH` becomes `de-ch`."""
         found: dict[str, str] = {}
         for element in self._elements("description"):
             language = (element.attributes.get("lang", "").strip() or "en").lower().replace("_", "-")
@@ -262,7 +262,7 @@ def _color(element: Element) -> str:
 
 
 def _mass_kg(element: Element) -> float | None:
-    """Of a thing that can be moved; None for one that cannot."""
+    """Return the mass of a movable object; None for a fixed one."""
     mass = _number(element, "mass", default=-1.0)
     return None if mass < 0 else max(LEAST_MASS_KG, min(MOST_MASS_KG, rounded(mass * KG_PER_MASS)))
 
@@ -273,7 +273,7 @@ def _height(element: Element) -> float:
 
 
 def _length(element: Element, attribute: str) -> float:
-    """Centimeters as meters."""
+    """Return an attribute in centimeters as meters."""
     return rounded(_number(element, attribute) / 100)
 
 

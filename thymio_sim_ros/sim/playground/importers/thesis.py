@@ -1,4 +1,4 @@
-"""JSON playgrounds of the web simulation of the bachelor thesis, as data of our format.
+"""Converter of JSON playgrounds of the web simulation of the bachelor thesis.
 
 Source: docs/spec/playground-formats.md section 2.
 
@@ -28,7 +28,7 @@ KEYS = ("planes", "octagons", "boxes", "cylinders", "uShapes", "tracks", "thymio
 
 
 def convert(data: Mapping[str, object], name: str) -> Conversion:
-    """The playground; FieldError names the key of what is wrong."""
+    """Convert the playground. Raises FieldError with the key of an error."""
     title = data.get("playground", name)
     if not isinstance(title, str):
         raise FieldError("playground", describe(title), "a title")
@@ -49,7 +49,7 @@ class _Item:
         self._known = {"props", "name"}
 
     def number(self, name: str, default: float | None = None) -> float:
-        """A finite number; with a default it may be missing."""
+        """Return a member that is a finite number; it may be missing if there is a default. Raises FieldError."""
         self._known.add(name)
         value = self._members.get(name, default)
         if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e9:
@@ -57,26 +57,26 @@ class _Item:
         return float(value)
 
     def length(self, name: str, default: float | None = None) -> float:
-        """Units as meters."""
+        """Return a member in units as meters. Raises FieldError."""
         return rounded(self.number(name, default) * UNIT_M)
 
     def place(self, *, otherwise: float | None = None) -> dict[str, float]:
-        """Its position in our frame."""
+        """Return its position in the world's frame in m. Raises FieldError."""
         x, z = self.number("positionX", otherwise), self.number("positionZ", otherwise)
         return {"x_m": rounded(x * UNIT_M), "y_m": rounded(-z * UNIT_M)}
 
     def get(self, name: str) -> object:
-        """Any member, or None."""
+        """Return any member, or None."""
         self._known.add(name)
         return self._members.get(name)
 
     def unknown(self) -> list[str]:
-        """Keys that nobody asked for."""
+        """Return the keys that were not read."""
         return [str(name) for name in self._members if name not in self._known]
 
 
 class _Reader:
-    """One conversion."""
+    """Converts one playground."""
 
     def __init__(self, data: Mapping[str, object], title: str) -> None:
         self._data = data
