@@ -30,7 +30,7 @@ def test_a_full_memory_says_so() -> None:
         KernelMemory(1000).array(9000, np.float64)
 
 
-def test_arrays_of_elsewhere_are_refused() -> None:
+def test_arrays_of_another_memory_are_refused() -> None:
     memory = KernelMemory(1000)
     for array in (np.zeros(1), memory.array(2, np.int32), memory.array((2, 2), np.float64)[:, 0]):
         with pytest.raises(KernelError, match="expected a contiguous array of float64 in the kernel's memory"):

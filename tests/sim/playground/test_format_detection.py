@@ -63,13 +63,13 @@ def test_an_archive_is_read_by_its_path_too(tmp_path: Path) -> None:
     assert reader.load(path).title == "maze"
 
 
-def test_a_playground_file_finds_its_picture_in_its_folder(tmp_path: Path) -> None:
+def test_a_playground_file_finds_its_image_in_its_folder(tmp_path: Path) -> None:
     (tmp_path / "maze.playground").write_text(WORLD)
     (tmp_path / "ground.png").write_bytes(PICTURE)
     assert len(reader.load(tmp_path / "maze.playground").paints) == 1
 
 
-def test_a_text_alone_cannot_have_a_picture_beside_it() -> None:
+def test_a_text_alone_cannot_have_an_image_beside_it() -> None:
     with pytest.raises(PlaygroundError, match=r"groundTexture \(shapes\[1\].image\): found the file 'ground.png'"):
         reader.loads(WORLD, "mine.playground")
 
@@ -92,17 +92,17 @@ def test_an_archive_without_one_playground_is_refused(files: dict[str, str]) -> 
 
 
 @pytest.mark.parametrize("name", ["../secret.png", "/etc/secret.png", "..\\secret.png", "folder/../ground.png"])
-def test_a_picture_outside_the_archive_is_refused(name: str) -> None:
+def test_an_image_outside_the_archive_is_refused(name: str) -> None:
     data = archive(**{"world.xml": WORLD.replace("ground.png", name), name: PICTURE, "ground.png": PICTURE})
     assert "shapes[1].image" in refused(data).key
 
 
-def test_a_picture_that_is_missing_in_the_archive_is_named() -> None:
+def test_an_image_that_is_missing_in_the_archive_is_named() -> None:
     error = refused(archive(**{"world.xml": WORLD}))
     assert (error.found, error.expected) == ("'ground.png'", "a file in the archive")
 
 
-def test_an_archive_that_unpacks_without_measure_is_not_unpacked() -> None:
+def test_an_archive_that_decompresses_without_limit_is_not_extracted() -> None:
     assert "more than 32000000 bytes" in refused(archive(**{"world.xml": " " * 50_000_000})).found
     bomb = archive(**{"world.xml": WORLD, "ground.png": b"\0" * 50_000_000})
     assert "expected" in str(refused(bomb))

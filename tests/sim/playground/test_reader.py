@@ -200,7 +200,7 @@ def with_picture(image: str) -> str:
     return json.dumps({**GOOD, "shapes": [FLOOR, {"kind": "picture", "image": image, "size_x_m": 0.2}]})
 
 
-def test_a_picture_beside_the_file_becomes_part_of_the_playground(tmp_path: Path) -> None:
+def test_an_image_beside_the_file_becomes_part_of_the_playground(tmp_path: Path) -> None:
     (tmp_path / "pictures").mkdir()
     (tmp_path / "pictures" / "track.png").write_bytes(png([[WHITE, BLACK]]))
     path = tmp_path / "mine.json"
@@ -222,7 +222,7 @@ def test_a_picture_beside_the_file_becomes_part_of_the_playground(tmp_path: Path
         ("", "a file that ends in"),
     ],
 )
-def test_a_picture_elsewhere_is_refused(tmp_path: Path, image: str, expected: str) -> None:
+def test_an_image_elsewhere_is_refused(tmp_path: Path, image: str, expected: str) -> None:
     (tmp_path / "secret.png").write_bytes(png([[WHITE]]))
     folder = tmp_path / "playgrounds"
     folder.mkdir()
@@ -239,7 +239,7 @@ def test_a_text_has_no_file_beside_it() -> None:
     assert (error.key, error.found) == ("shapes[1].image", "the file 'track.png'")
 
 
-def test_a_picture_that_cannot_be_read_is_refused_at_its_key() -> None:
+def test_an_image_that_cannot_be_read_is_refused_at_its_key() -> None:
     assert refused(with_picture("data:image/png;base64,AAAA")).key == "shapes[1].image"
 
 
@@ -272,7 +272,7 @@ def test_a_ground_that_is_painted_over_and_over_is_refused() -> None:
     assert refused_with(shapes=floors).key == "shapes"
 
 
-def test_the_pixels_of_all_pictures_together_are_limited() -> None:
+def test_the_pixels_of_all_images_together_are_limited() -> None:
     sheet = {"kind": "picture", "size_x_m": 1.0, "image": png_uri([[WHITE] * 4000] * 900)}
     error = refused_with(shapes=[FLOOR, *[sheet] * 9])
     left = image_io.MAX_PIXELS_IN_ALL - 8 * 4000 * 900

@@ -1,7 +1,7 @@
 """Ground images: pixels of a data URI of a PNG, JPEG or SVG, and PNG files of pixels. The only user of Pillow.
 
-Pictures come from strangers: sizes are checked before anything is unpacked, those of one picture and those of all
-pictures of a playground together (`Budget`). Why Pillow and resvg: docs/decisions.md.
+Images are untrusted: sizes are checked before anything is decompressed, those of one image and those of all images of a
+playground together (`Budget`). The reasons for Pillow and resvg are in docs/decisions.md.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ __all__ = [
 ]
 
 MAX_PICTURE_BYTES = 4_000_000
-"""Largest picture as a file."""
+"""Largest size of an image file."""
 MAX_SIDE = 8192
 MAX_PIXELS = 25_000_000
-"""Of one picture: as many as a ground has at most (sim/ground/raster.py)."""
+"""Largest number of pixels of an image: that of a ground (sim/ground/raster.py)."""
 MAX_PIXELS_IN_ALL = 32_000_000
-"""Of all pictures of a playground; each pixel takes four bytes for as long as the playground is there."""
+"""Largest number of pixels of all images of a playground; each takes four bytes as long as the playground exists."""
 MAX_SVG_BYTES_IN_ALL = 6_000_000
 MAX_SCANS = 40
-"""Passes over a JPEG; cameras and drawing programs write one to ten, and each costs as much as the whole picture."""
+"""Largest number of scans of a JPEG; cameras write one to ten, and each costs as much as the whole image."""
 
 MEDIA_TYPES = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".svg": "image/svg+xml"}
 """Ending of a file → media type of its data URI."""
@@ -60,7 +60,7 @@ _PILLOW_ERRORS = (OSError, SyntaxError, ValueError, EOFError, OverflowError, str
 
 @dataclass(slots=True)
 class Budget:
-    """What the pictures of one playground may still cost together. Invariant: only `decode` reduces it."""
+    """What the images of one playground may still cost together. Invariant: only `decode` reduces it."""
 
     pixels: int = MAX_PIXELS_IN_ALL
     svg_bytes: int = MAX_SVG_BYTES_IN_ALL
@@ -68,7 +68,7 @@ class Budget:
 
 
 _budget: ContextVar[Budget] = ContextVar("budget of pictures")
-"""Shapes of other packages decode pictures too, so it is not handed through their interface."""
+"""A context variable and not an argument, as shapes of other packages decode images, too."""
 
 
 @contextmanager
@@ -83,7 +83,7 @@ def budgeted() -> Iterator[Budget]:
 
 @dataclass(frozen=True, slots=True)
 class Pixels:
-    """Pixels row by row from the top, each red, green, blue, opacity from 0 to 255."""
+    """Pixels row by row from the top: bytes red, green, blue, opacity of each."""
 
     columns: int
     rows: int
@@ -100,7 +100,7 @@ def decode(uri: str, *, key: str, width_m: float) -> Pixels:
 
     Raises FieldError, with this key, for anything but a PNG, JPEG or SVG image within the limits.
 
-    Within `budgeted`, pictures share its limits; elsewhere each has them for itself.
+    Within `budgeted`, all images share its limits; elsewhere each image has them for itself.
     """
     budget = _budget.get(None) or Budget()
     head, _, body = uri.partition(",")
@@ -170,7 +170,7 @@ def _unpack(data: bytes, key: str, budget: Budget) -> Pixels:
         _check_size(columns, rows, key, budget)
         if image.format == "JPEG":
             _check_scans(data, key)
-            # a camera was held upright, perhaps
+            # apply the orientation of the camera
             image = imported("PIL.ImageOps", "Pillow", key).exif_transpose(image)
         return _rgba(image, image_module)
     except image_module.DecompressionBombError as error:
@@ -205,7 +205,7 @@ def _rgba(image: Any, image_module: ModuleType) -> Pixels:
     for top in range(0, rows, height):
         band = image.crop((0, top, columns, min(rows, top + height)))
         if band.mode.startswith("I"):
-            # Pillow would cut 16 bit grays off at 255.
+            # Pillow would clip 16-bit grays at 255.
             band = image_module.fromarray((np.asarray(band).astype(np.uint32) >> 8).clip(0, 255).astype(np.uint8))
         rgba.write(band.convert("RGBA").tobytes())
     image.close()

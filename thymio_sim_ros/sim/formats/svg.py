@@ -1,8 +1,8 @@
 """SVG images as pixels, drawn by resvg; rejected if their cost has no limit or their look depends on the machine.
 
-It may hold neither text (fonts differ from machine to machine, and with them the readings), nor pictures and references
-to elsewhere, nor filters, masks, blend modes and markers (their cost has no limit), whether by elements, by attributes
-or by CSS. These checks give clear messages; the limits of the process that draws (`svg_process`) hold for all the rest.
+An SVG may contain no text (fonts, and with them readings, differ between machines), no images and external references,
+and no filters, masks, blend modes and markers (their cost has no limit), be it as elements, attributes or CSS. These
+checks give clear messages; everything else is limited by the drawing process (`svg_process`).
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from thymio_sim_ros.sim.model.optional_import import imported
 __all__ = ["draw"]
 
 PIXEL_M = 0.001
-"""An SVG is drawn this fine, like the ground; its edges are smooth all the same."""
+"""Size of a pixel of a drawn SVG in m, that of the ground; edges are anti-aliased."""
 MAX_SIDE = 4096
 MAX_PIXELS = 6_000_000
 MAX_PARTS = 20_000
-"""Elements that are drawn, repeated ones counted each time."""
+"""Largest number of elements that are drawn, repeated ones counted each time."""
 MAX_DEPTH = 40
-"""Elements inside one another, references counted; each may hold a picture of its own while it is drawn."""
+"""Largest depth of nested elements, references included; each may need a buffer while it is drawn."""
 
 _REFUSED = {
     "text": "paths (in Inkscape: Path > Object to Path)",
@@ -58,11 +58,11 @@ _EFFECTS = {
     "marker-mid": "no markers (convert them to paths)",
     "marker-end": "no markers (convert them to paths)",
 }
-"""Properties that are refused, as attributes and in CSS, but with a value of `_WITHOUT_EFFECT`."""
+"""Properties that are rejected, as attributes and in CSS, except with a value of `_WITHOUT_EFFECT`."""
 _WITHOUT_EFFECT = frozenset({"none", "auto", "normal", "initial", "unset"})
 """Inkscape writes `filter:none;mix-blend-mode:normal;isolation:auto` into every style."""
 MAX_STYLES = 300_000
-"""Characters of CSS, equal styles counted once."""
+"""Largest number of characters of CSS, equal styles counted once."""
 _HREFS = ("href", "xlink:href")
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(px|pt|pc|mm|cm|in|q)?\s*", re.IGNORECASE)
 _INCHES = {"px": 1 / 96, "pt": 1 / 72, "pc": 1 / 6, "in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "q": 1 / 101.6}
@@ -74,7 +74,7 @@ _SIDES = re.compile(rb"""\s(?:width|height)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 @dataclass(frozen=True, slots=True)
 class _Weight:
-    """Elements that are drawn, and how many of them lie inside one another."""
+    """Number of elements that are drawn, and their depth of nesting."""
 
     parts: int
     depth: int
@@ -86,7 +86,7 @@ _ENDLESS = _Weight(MAX_PARTS + 1, 1)
 def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[bytes, float]:
     """Return an SVG as the PNG that resvg draws, with the resolution of the ground for `width_m`, and the time it took.
 
-    FieldError names `key`, also for one that cannot be drawn within `seconds`.
+    Raises FieldError, with this key, for an SVG that is rejected or cannot be drawn within `seconds`.
     """
     try:
         root = xml_tree.parse(data)
@@ -128,7 +128,7 @@ def _check(root: Element, key: str) -> None:
 
 
 class _Styles:
-    """The CSS of one picture. Equal texts are parsed once: drawing programs repeat their styles on each element."""
+    """The CSS of one image. Equal texts are parsed once: drawing programs repeat their styles on each element."""
 
     def __init__(self, key: str) -> None:
         self._key = key
@@ -187,8 +187,9 @@ def _weigh(
 ) -> _Weight:
     """Return the cost of drawing an element with everything that it references.
 
-    Each thing is drawn anew for each reference to it, and what lies inside one another is held at the same time;
-    both could grow without measure. A circle of references has no end at all.
+    An element is drawn anew for each reference to it, and nested elements are in memory at the same time, so both the
+    number and the depth could grow exponentially. Weights are computed once per element (`known`); an element that is
+    being weighed counts as endless, which detects cycles of references. Raises FieldError above the limits.
     """
     if above > MAX_DEPTH:
         raise FieldError(key, f"elements nested more than {MAX_DEPTH} deep", "a simpler image")

@@ -1,7 +1,7 @@
 """XML text as a small tree with line numbers; entities and external references are rejected.
 
-Used for `.playground` files and SVG pictures, which come from strangers: a document type that declares entities
-is an error, nothing is ever loaded from elsewhere, and depth and number of elements have a limit.
+Used for `.playground` files and SVG images, which are untrusted: a document type that declares entities is an error,
+nothing is ever loaded from elsewhere, and depth and number of elements are limited.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ MAX_ELEMENTS = 100_000
 
 
 _SPACE = " "
-"""Between a name space and a name; no name holds one."""
+"""Separates namespace and name; no name contains a space."""
 _KNOWN = {f"http://www.w3.org/1999/xlink{_SPACE}href": "xlink:href"}
 _SVG = f"http://www.w3.org/2000/svg{_SPACE}"
 
 
 class XmlError(ThymioSimError):
-    """XML that is refused: its line (1 is the first), what was found, what was expected."""
+    """Rejected XML: the line (from 1), what was found, what was expected."""
 
     def __init__(self, line: int, found: str, expected: str) -> None:
         super().__init__(f"line {line}: found {found}, expected {expected}")
@@ -36,17 +36,17 @@ class XmlError(ThymioSimError):
 
 @dataclass(slots=True)
 class Element:
-    """An element: its name without its name space, attributes, children, text directly in it.
+    """An element: its name without namespace, attributes, children, text directly in it.
 
-    Attributes are those without a name space, `xlink:href`, whatever its prefix is, and those in the name space of SVG
-    as `svg:name`; others mean nothing here.
+    Attributes are those without a namespace, `xlink:href` with any prefix, and those in the namespace of SVG as
+    `svg:name`; others are ignored.
     """
 
     tag: str
     attributes: Mapping[str, str]
     line: int
     offset: int
-    """Of its first character, in bytes, where the text is UTF-8."""
+    """Offset of its first character in bytes, if the text is UTF-8."""
     children: list[Element] = field(default_factory=list)
     text: str = ""
 
@@ -65,7 +65,7 @@ def parse(data: bytes | str) -> Element:
 
 
 class _Builder:
-    """One reading of one document."""
+    """Parses one document."""
 
     def __init__(self) -> None:
         self._parser = expat.ParserCreate(namespace_separator=_SPACE)
@@ -73,7 +73,7 @@ class _Builder:
         self._root: Element | None = None
         self._count = 0
         self._texts: list[list[str]] = []
-        """Text of each open element so far, in the pieces that the parser gives."""
+        """Text of each open element so far, in the pieces from the parser."""
         self._parser.buffer_text = True
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end

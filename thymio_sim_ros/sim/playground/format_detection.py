@@ -1,8 +1,8 @@
 """Detects the format of a playground file, reads it as data, and gives access to the files beside it.
 
-Ours is JSON with "format"; the thesis' JSON has other keys; a text that begins with "<" is Aseba's XML; a zip holds
-one of these and its pictures. Everything here comes from strangers: sizes are limited before anything is unpacked,
-and a file is looked for in one folder, or in one archive, and nowhere else.
+The project's own format is JSON with "format"; the JSON of the thesis has other keys; a text that begins with "<" is
+Aseba's XML; a zip archive contains one of these and its images. All files are untrusted: sizes are limited before
+anything is decompressed, and files are read from one folder or archive only.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ from thymio_sim_ros.sim.playground.importers import aseba, thesis
 __all__ = ["MAX_BYTES", "Beside", "Source", "folder", "is_recognized", "nothing_beside", "read_source", "unpacked_svg"]
 
 MAX_BYTES = 32_000_000
-"""Largest file; pictures inside it count."""
+"""Largest size of a file, images inside it included."""
 MAX_ARCHIVE_FILES = 200
 MAX_TEXT = 100_000
-"""Bytes of a text in JSON, as it is written there; what a playground says is far shorter."""
+"""Largest size of a string in JSON, as written; the texts of a playground are far shorter."""
 MAX_PICTURE_TEXT = 8_000_000
-"""Bytes of a picture in JSON, a data URI in ASCII; with room for `\\/`, as some write the slash."""
+"""Largest size of an image in JSON, a data URI in ASCII; with room for slashes that are written as `\\/`."""
 MAX_PARTS = 1_000_000
-"""Values in JSON: each takes some fifty bytes, be it written with two."""
+"""Largest number of values in JSON: each takes about fifty bytes of memory, even if written with two."""
 
 Beside = Callable[[str], bytes]
-"""A file beside the playground by its name, or FieldError; one byte more than `MAX_PICTURE_BYTES` at most."""
+"""Reads a file beside the playground by its name, at most one byte more than `MAX_PICTURE_BYTES`; raises FieldError."""
 
 _ZIP = b"PK\x03\x04"
 _BOM = b"\xef\xbb\xbf"
@@ -49,29 +49,34 @@ _PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
 _CANNOT_UNPACK = (
     zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError,
 )  # fmt: skip
-"""What a damaged, encrypted or exotic archive raises; of places before its begin the file says ValueError."""
+"""Exceptions for a damaged, encrypted or unusual archive; ValueError for offsets before its beginning."""
 _WORDS = re.compile(r'"(?:[^"\\]++|\\.)*+"|NaN|-?Infinity')
 """Strings of JSON, and words that Python takes for numbers outside them."""
 _PARTS = re.compile(r'"(?:[^"\\]++|\\.)*+"|[{}]')
 _STRINGS = re.compile(rb'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _COLON = re.compile(r"\s*:")
-"""What makes a string a key."""
+"""Follows a string that is a key."""
 _MARKS = re.compile(
     rb'"format"\s*:\s*\d|"(?:%s)"\s*:|<aseba-playground' % "|".join(("playground", *thesis.KEYS)).encode()
 )
-"""What tells a playground from any other JSON or XML."""
+"""Distinguishes a playground from any other JSON or XML."""
 _HALVES = re.compile(r"[\ud800-\udfff]")
-"""Halves of characters: escapes may hold them, UTF-8 may not, and keys are told in errors and notes."""
+"""Surrogates: JSON escapes may contain them, UTF-8 may not, and keys are quoted in errors and notes."""
 _SHOWN = 12
-"""Characters that an error shows."""
+"""Number of characters that an error quotes."""
 _IN_FOLDER = "a file in the playground's folder"
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Data of our format, unchecked; the files beside it; for a converted file what was lost, and places in it.
+    """A playground as unchecked data.
 
-    `sets_free`: the simulator that the file is for pushes robots out of the things in which they start.
+    Attributes:
+        data: data of a JSON playground, converted from another format if necessary.
+        beside: reads the files beside it.
+        notes: what a conversion has lost.
+        places: positions in the original by key, for errors in a converted file.
+        sets_free: whether robots that start inside something are moved, as the simulator of the original does.
     """
 
     data: object

@@ -75,7 +75,7 @@ def test_a_mass_makes_it_movable_in_proportion_to_the_robot() -> None:
 
 
 @pytest.mark.parametrize("height", ["", 'h="0"', 'h="0.01"'])
-def test_a_thing_without_a_height_stands_in_the_way_unseen(height: str) -> None:
+def test_an_object_without_a_height_stands_in_the_way_unseen(height: str) -> None:
     things = f'<wall x="70" y="30" l1="2" l2="20" {height} color="white"/>'
     things += f'<cylinder x="20" y="30" r="2" {height} color="white"/>'
     things += f'<door closedX="70" closedY="5" openedX="70" openedY="5" l1="2" l2="2" {height} color="white"/>'
@@ -350,7 +350,7 @@ def test_a_converted_world_is_an_ordinary_one() -> None:
     assert (loaded.solids, loaded.floors, loaded.robots) == (again.solids, again.floors, again.robots)
 
 
-def test_movable_things_and_doors_come_to_life() -> None:
+def test_movable_objects_and_doors_come_to_life() -> None:
     body = (
         '<wall x="20" y="20" l1="6" l2="6" h="5" mass="20" color="orange"/>'
         '<cylinder x="40" y="20" r="3" h="5" mass="20" color="orange"/>'
