@@ -65,7 +65,10 @@ class _UseError(Exception):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Execute a command line and return the exit code."""
+    """Execute a command line and return the exit code.
+
+    Errors are printed, not raised, except SystemExit for `--help` and invalid options.
+    """
     open_standard_streams()
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command

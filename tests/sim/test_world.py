@@ -266,7 +266,7 @@ def test_robots_stand_in_the_order_of_the_playground() -> None:
     assert list(World(make([FLOOR], TWO[::-1])).robots) == ["b", "a"]
 
 
-def test_a_command_for_nobody_is_refused() -> None:
+def test_a_command_for_an_unknown_robot_is_refused() -> None:
     with pytest.raises(KeyError):
         World(make([FLOOR])).post("nobody", MotorTargets(0, 0))
 

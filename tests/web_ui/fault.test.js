@@ -12,9 +12,9 @@ const FOREIGN = [
   "a.json: line 1, column 14: found the end of the text, expected JSON (Expecting property name enclosed in double quotes)",
   "a.json: found [], expected an object",
   "a.json: format: found None, expected 1",
-  "a.json: found a wrong byte at 0, expected UTF-8 text",
+  "a.json: found an invalid byte at offset 0, expected UTF-8 text",
   "a.json: line 1: found <html>, expected <aseba-playground>",
-  "a.json: found a broken zip archive, expected a whole one",
+  "a.json: found a damaged zip archive, expected a complete zip archive",
   "a.json: line 1: found no element found, expected XML",
 ];
 

@@ -336,7 +336,7 @@ def test_the_state_tells_what_a_file_could_not_express(ros, simulation):
     states = ros.collect(String, "/simulator/_state", latched=True)
     ros.until(lambda: states)
     (note,) = json.loads(states[-1].data)["notes"]
-    assert note.startswith("line 1: <feeder> left out")
+    assert note.startswith("line 1: <feeder> skipped")
 
 
 def set_parameter(ros, name, value):

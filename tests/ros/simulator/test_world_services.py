@@ -92,7 +92,7 @@ def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
     [
         ("thymio", numbers(-0.5, 0.5), "the name 'thymio' is taken"),
         ("crate", numbers(-0.5, 0.5), "the name 'crate' is taken"),
-        ("anna", numbers(0.0, 0.5), "'anna' cannot stand at 0.000, 0.500 m: 'post' is in its way"),
+        ("anna", numbers(0.0, 0.5), "'anna' cannot be placed at 0.000, 0.500 m: occupied by 'post'"),
         ("anna", numbers(1.0), "anna: found [1.0], expected [x, y, yaw] in m and rad"),
         ("anna", ParameterValue(), "anna: found nothing, expected [x, y, yaw] in m and rad"),
         ("an na", numbers(-0.5, 0.5), "name: found 'an na', expected a ROS name"),
@@ -137,7 +137,7 @@ def test_a_place_that_is_none_is_refused_and_the_world_goes_on(ros, simulation, 
 def test_two_are_not_put_into_one_another_by_one_request(ros, simulation):
     simulation(playground=ROOM)
     reasons = ask(ros, "set_poses", thymio=numbers(-0.5, 0.5), crate=numbers(-0.5, 0.5))
-    assert reasons == {"thymio": "", "crate": "'crate' cannot stand at -0.500, 0.500 m: 'thymio' is in its way"}
+    assert reasons == {"thymio": "", "crate": "'crate' cannot be placed at -0.500, 0.500 m: occupied by 'thymio'"}
 
 
 def transform(child, x, y, yaw=0.0, frame="map"):

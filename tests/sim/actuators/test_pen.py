@@ -196,7 +196,7 @@ def test_a_reset_world_is_clean_again() -> None:
     assert measure_one(world, "ground").words[2:4] == (938, 938)
 
 
-def test_the_trail_is_told_when_it_grew_and_not_otherwise() -> None:
+def test_the_trail_is_published_only_when_it_has_grown() -> None:
     world = World(make([FLOOR]), noise=False)
     assert readings(run(world, 1.0), "pen") == []
     send(world, SetPen(down=True, color=RED))

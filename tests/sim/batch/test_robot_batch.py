@@ -123,7 +123,7 @@ def test_one_robot_may_be_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
     assert_same(*runs)
 
 
-def test_things_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_objects_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     door = {
         "kind": "door", "name": "gate", "closed_x_m": 0.14, "closed_y_m": -1.0, "opened_x_m": 0.14, "opened_y_m": -1.6,
         "move_s": 1.0, "size_x_m": 0.02, "size_y_m": 0.3, "height_m": 0.1, "color": "#808080",

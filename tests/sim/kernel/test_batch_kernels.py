@@ -54,7 +54,7 @@ def steps(monkeypatch: pytest.MonkeyPatch, scene: Playground, elsewhere: Pose, *
 
 @pytest.mark.usefixtures("kernels")
 @pytest.mark.parametrize("scene", ["busy", "classroom"])
-def test_a_crowd_drives_bit_for_bit(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_batch_drives_bit_for_bit(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
     playground, elsewhere = (
         (busy(random.Random(4), 18), Pose(0.02, 0.95, 1.0))
         if scene == "busy"

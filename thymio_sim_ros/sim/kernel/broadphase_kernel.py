@@ -11,11 +11,11 @@ KERNELS = ("first_from", "near")
 COUNTS = ("robots", "fixed", "objects")
 _ROBOTS, _FIXED, _OBJECTS = range(len(COUNTS))
 _ROBOT_REACH, _OBJECT_REACH = 0, 1
-"""Places in `sizes`: between two robots; beyond a thing's radius."""
+"""Indices in `sizes`: reach between two robots, and beyond the radius of an object."""
 
 
 def first_from(count: int, order: Ints, xs: Floats, least: float) -> int:
-    """The first place in the order whose x is not less."""
+    """Return the first index in the order whose x is not below `least`: binary search."""
     low = 0
     high = count
     while low < high:
@@ -31,10 +31,23 @@ def near(
     counts: Ints, sizes: Floats, xs: Floats, ys: Floats, stands: Ints, fixed: Floats, bounds: Floats, objects: Floats,
     order: Ints, found: Ints,
 ) -> None:  # fmt: skip
-    """`order` is that of last time, and is put right; rows of `fixed`, `bounds` and `objects` are values."""
+    """Write to `found` whether each robot may reach anything.
+
+    Args:
+        counts: see `COUNTS`.
+        sizes: see `_ROBOT_REACH` and `_OBJECT_REACH`.
+        xs: x of the centers of the robots' circles; `ys`: y.
+        stands: whether each robot stands, shape (robots,).
+        fixed: x, y, cosine, sine, half size along and across, reach of the obstacles, shape (7, fixed).
+        bounds: left, right, middle and half width in y of the obstacles, shape (4, fixed).
+        objects: x, y and radius of the objects, shape (3, objects).
+        order: robots sorted by x; on entry the order of the last call.
+        found: result, shape (robots,).
+    """
     robots = counts[_ROBOTS]
     for robot in range(robots):
         found[robot] = 0
+    # Insertion sort: robots hardly change their order between two calls, so this is nearly linear.
     for place in range(1, robots):
         robot = order[place]
         at = place
@@ -43,6 +56,7 @@ def near(
             at = at - 1
         order[at] = robot
 
+    # Pairs of robots: compare each with its successors, as long as they are within reach in x.
     reach = sizes[_ROBOT_REACH]
     for place in range(robots):
         robot = order[place]

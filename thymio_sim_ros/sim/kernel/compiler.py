@@ -1,11 +1,16 @@
-"""Restricted Python → WebAssembly text: one definition of a kernel, run by Python as it stands or compiled.
+"""Compiles kernels, functions in restricted Python, to WebAssembly text; Python can run the same functions.
 
-A kernel is a plain function of numbers and flat arrays. Every parameter has one of the types below, locals take the
-type of their first value. There are assignments, `if`, `while`, `for … in range(…)`, `break`, `continue`, `return`; the
-operators of numbers, comparisons, `and`, `or`, `not`, conditional expressions; `min`, `max`, `abs`, `int`, `float`,
-`round`, `math.sqrt`, `math.floor`; numbers of the module, and its other kernels. Floats are IEEE doubles and every
-operation is rounded as Python's is, so that both give the same bits; integers have 32 bits. NaN and the sign of 0 do
-not count.
+A kernel is a plain function of numbers and flat arrays. Every parameter has one of the types below; a local variable
+has the type of the first value that is assigned to it. Allowed are:
+
+- assignment, `if`, `while`, `for … in range(…)`, `break`, `continue`, `return`;
+- arithmetic, comparison, `and`, `or`, `not`, conditional expressions;
+- `min`, `max`, `abs`, `int`, `float`, `round`, `math.sqrt`, `math.floor`;
+- number constants of the module, and its other kernels.
+
+Floats are IEEE doubles and every operation is rounded as in Python, so both give the same bits, except for NaN and the
+sign of 0. Integers have 32 bits and wrap. There are no bounds checks: an index outside of an array reads or writes
+other arrays of the memory.
 """
 
 from __future__ import annotations
@@ -29,7 +34,7 @@ Words = Any
 
 _ARRAYS = {"Floats": ("f64", "f64.load", "f64.store", 3), "Ints": ("i32", "i32.load", "i32.store", 2),
            "Words": ("i32", "i32.load16_u", "i32.store16", 1)}  # fmt: skip
-"""Type of an element, how it is read and written, and by how many bits its number is shifted."""
+"""WebAssembly type of an element, instructions that load and store it, and the binary logarithm of its size."""
 _SCALARS = {"int": "i32", "float": "f64", "None": ""}
 _ARITHMETIC = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 _BITS = {ast.LShift: "shl", ast.RShift: "shr_s", ast.BitAnd: "and", ast.BitOr: "or"}
@@ -37,15 +42,18 @@ _COMPARISONS = {ast.Lt: "lt", ast.LtE: "le", ast.Gt: "gt", ast.GtE: "ge", ast.Eq
 
 Kernel = Callable[..., Any]
 Typed = tuple[str, str]
-"""An expression's text and type."""
+"""Text and WebAssembly type of an expression."""
 
 
 class KernelError(ThymioSimError):
-    """A function uses what kernels have not; says where."""
+    """A function uses something that kernels do not support; the message says where."""
 
 
 def translate(kernels: Iterable[Kernel]) -> str:
-    """The text of a module with its memory as the import "" "memory", and each kernel exported by its name."""
+    """Return the text of a module that imports its memory as "" "memory" and exports each kernel by its name.
+
+    Raises KernelError if a function is not a kernel.
+    """
     kernels = tuple(kernels)
     signatures = {kernel.__name__: parameters(kernel) for kernel in kernels}
     functions = "\n".join(_Function(kernel, signatures).text for kernel in kernels)
@@ -53,7 +61,10 @@ def translate(kernels: Iterable[Kernel]) -> str:
 
 
 def parameters(kernel: Kernel) -> tuple[dict[str, str], str]:
-    """The type of each parameter of a kernel as it is written, and that of its result; KernelError for others."""
+    """Return the annotation of each parameter of a kernel by name, and that of its result.
+
+    Raises KernelError for a type that kernels do not support. Annotations must be strings (`from __future__`).
+    """
     found = {name: str(kind) for name, kind in kernel.__annotations__.items()}
     result = found.pop("return", "missing")
     for name, kind in found.items():
@@ -65,7 +76,11 @@ def parameters(kernel: Kernel) -> tuple[dict[str, str], str]:
 
 
 class _Function:
-    """One kernel on its way to text."""
+    """Translates one kernel: `text` is the function.
+
+    A method returns the text of a statement, or the text and the type of an expression. WebAssembly text may nest
+    expressions, so the syntax tree maps to it node by node.
+    """
 
     def __init__(self, kernel: Kernel, signatures: dict[str, tuple[dict[str, str], str]]) -> None:
         self._kernel, self._signatures = kernel, signatures
@@ -88,6 +103,7 @@ class _Function:
         assert isinstance(tree, ast.FunctionDef)
         body = self._block(tree.body)
         local = "".join(f"(local ${name} {kind})" for name, kind in self._types.items() if name not in own)
+        # A function with a result must end with a value, even if all paths return before.
         if self._result:
             head.append(f"(result {self._result})")
             body += f"\n({self._result}.const 0)"
@@ -127,6 +143,8 @@ class _Function:
 
     def _for(self, name: str, limits: list[ast.expr], body: list[ast.stmt]) -> str:
         first, last = (ast.Constant(0), limits[0]) if len(limits) == 1 else limits
+        # As in Python: the limits are evaluated once, and an assignment to the variable does not change the iteration,
+        # so count and end are locals of their own.
         number = self._loops
         count, end = f"_count{number}", f"_end{number}"
         for own in (count, end, name):
@@ -141,6 +159,8 @@ class _Function:
         return begin + loop
 
     def _loop(self, is_over: str, before: str, body: list[ast.stmt], after: str) -> str:
+        # A branch to a block continues after it, a branch to a loop repeats it. `break` branches to $out, `continue` to
+        # $next, whose end is followed by the step of the loop (`after`).
         number = self._loops
         self._loops += 1
         self._open.append(number)
@@ -172,7 +192,7 @@ class _Function:
         return text
 
     def _as(self, value: Typed, kind: str, node: ast.AST) -> str:
-        """A value as a type; an integer may become a float, as in Python."""
+        """Return the text of a value as a type; an integer is converted to a float, as in Python."""
         text, found = value
         if found == kind:
             return text
@@ -187,6 +207,7 @@ class _Function:
                 sign = "_s" if kind == "i32" and not isinstance(op, ast.Eq | ast.NotEq) else ""
                 return f"({kind}.{_COMPARISONS[type(op)]}{sign} {a} {b})"
             case ast.Compare(left=left, ops=[first, *ops], comparators=[right, *others]) if ops:
+                # a < b < c is a < b and b < c; b is evaluated twice, which has no effect as expressions have none.
                 one = ast.copy_location(ast.Compare(left, [first], [right]), node)
                 rest = ast.copy_location(ast.Compare(right, ops, others), node)
                 return self._condition(ast.copy_location(ast.BoolOp(ast.And(), [one, rest]), node))
@@ -201,7 +222,7 @@ class _Function:
         raise self._refuse(node)
 
     def _alike(self, left: ast.expr, right: ast.expr) -> tuple[tuple[str, str], str]:
-        """Two values as one type."""
+        """Return two values as one type, and this type: a float if one of them is."""
         a, b = self._value(left), self._value(right)
         kind = "f64" if "f64" in (a[1], b[1]) else "i32"
         return (self._as(a, kind, left), self._as(b, kind, right)), kind
@@ -247,7 +268,7 @@ class _Function:
         match node.func, node.args:
             case ast.Name(id="min" | "max" as name), [left, right]:
                 (a, b), kind = self._alike(left, right)
-                if kind == "f64":
+                if kind == "f64":  # WebAssembly has no minimum of integers
                     return f"(f64.{name} {a} {b})", kind
             case ast.Name(id="abs"), [value]:
                 return f"(f64.abs {self._as(self._value(value), 'f64', node)})", "f64"
@@ -291,7 +312,7 @@ def _constant(number: float) -> Typed:
 
 
 def _loaded(target: ast.expr) -> ast.expr:
-    """A place that is assigned to, as a value."""
+    """Return the target of an assignment as an expression that reads it."""
     if isinstance(target, ast.Subscript):
         return ast.copy_location(ast.Subscript(target.value, target.slice, ast.Load()), target)
     return ast.copy_location(ast.Name(getattr(target, "id", ""), ast.Load()), target)

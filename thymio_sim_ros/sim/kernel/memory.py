@@ -29,15 +29,19 @@ A = TypeVar("A", bound=np.generic)
 
 
 def is_available() -> bool:
-    """Whether kernels can be compiled here."""
+    """Return whether kernels can be compiled and run here."""
     return is_usable()
 
 
 class KernelMemory:
-    """So many bytes, of which arrays are taken. Invariant: an array keeps its place as long as its memory is open."""
+    """A WebAssembly memory that numpy arrays and kernels share.
+
+    Arrays are allocated one after the other and never freed alone. Invariant: the memory never grows, so an array keeps
+    its address until `close`. An array does not keep the memory alive: its owner must.
+    """
 
     def __init__(self, size: int) -> None:
-        """Needs wasmtime."""
+        """Allocate `size` bytes, rounded up to pages of 64 kB. Needs wasmtime (`is_available`)."""
         runtime = WasmRuntime.get()
         self._wasmtime = wasmtime = runtime.wasmtime
         self._store = wasmtime.Store(runtime.engine)
@@ -52,7 +56,7 @@ class KernelMemory:
 
     @classmethod
     def holding(cls, floats: Sequence[Shape], ints: Sequence[Shape] = ()) -> tuple[KernelMemory, list[Any], list[Any]]:
-        """A memory for just these arrays, and the arrays: of float64, and of int32."""
+        """Allocate a memory for arrays of these shapes; returns it, the float64 arrays and the int32 arrays."""
         kinds = [(shape, np.float64) for shape in floats], [(shape, np.int32) for shape in ints]
         memory = cls(sum(cls.room(shape, kind) for part in kinds for shape, kind in part))
         found = [[memory.array(shape, kind) for shape, kind in part] for part in kinds]
@@ -60,20 +64,26 @@ class KernelMemory:
 
     @staticmethod
     def room(shape: Shape, kind: type[np.generic]) -> int:
-        """Bytes that an array takes at most."""
+        """Return the largest number of bytes that an array takes, with alignment."""
         return int(np.prod(shape)) * np.dtype(kind).itemsize + _ALIGNMENT
 
     def array(self, shape: Shape, kind: type[A]) -> npt.NDArray[A]:
-        """An array of zeros; MemoryError when there is no room."""
+        """Allocate an array of zeros. Raises MemoryError if there is no room."""
         start = -(-self._used // _ALIGNMENT) * _ALIGNMENT
         end = start + int(np.prod(shape)) * np.dtype(kind).itemsize
         if end > len(self._bytes):
-            raise MemoryError(f"an array of {shape}: found {len(self._bytes) - start} bytes, expected {end - start}")
+            raise MemoryError(
+                f"an array of {shape}: found {len(self._bytes) - start} free bytes, expected {end - start}"
+            )
         self._used = end
         return self._bytes[start:end].view(kind).reshape(shape)
 
     def bind(self, module: ModuleType, kernel: Kernel, *arguments: npt.NDArray[Any] | float) -> Callable[[], object]:
-        """What calls a kernel of a module, always with these numbers and these arrays of this memory."""
+        """Return a function that calls a kernel of a module with these numbers and arrays.
+
+        Arrays are passed as addresses, so they must be of this memory; what is in them may change between calls, as
+        numbers may not. Raises KernelError for a wrong number of arguments or an array of another type or memory.
+        """
         kinds = parameters(kernel)[0]
         if len(kinds) != len(arguments):
             raise KernelError(f"{kernel.__name__}: found {len(arguments)} arguments, expected {len(kinds)}")
@@ -94,12 +104,14 @@ class KernelMemory:
     def _place(self, array: npt.NDArray[Any], kind: str) -> int:
         place = array.ctypes.data - self._base
         if array.dtype != _TYPES[kind] or not array.flags.c_contiguous or not 0 <= place <= len(self._bytes):
-            raise KernelError(f"an array of {array.dtype}, expected {_TYPES[kind]} in one piece in this memory")
+            raise KernelError(
+                f"found an array of {array.dtype}, expected a contiguous array of {_TYPES[kind]} in the kernel's memory"
+            )
         return place
 
 
 @cache
 def _compiled(module: ModuleType) -> Any:
-    """All kernels of a module, compiled once."""
+    """Compile all kernels of a module, once per process."""
     kernels = [module.__dict__[name] for name in module.KERNELS]
     return WasmRuntime.get().compile(translate(kernels))

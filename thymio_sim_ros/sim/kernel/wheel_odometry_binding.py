@@ -14,7 +14,7 @@ Values = npt.NDArray[np.float64]
 
 
 class WheelOdometryBinding:
-    """What is counted on wheels: `odometry` and `angles`, which `roll` changes."""
+    """The state of the wheels: `odometry`, shape (3, robots), and `angles`, shape (2, robots); `roll` changes both."""
 
     def __init__(self, robots: int, dt_s: float, track_m: float, radius_m: float) -> None:
         pair, lone = (2, robots), (robots,)
@@ -52,7 +52,10 @@ class WheelOdometryBinding:
         )
 
     def roll(self, covered: Values, ground: Values, commanded: Values) -> tuple[Values, Values, Values]:
-        """A tick, as `WheelArrays.roll`; the speeds at the rim, odometry and angles after it."""
+        """Advance by a tick; returns copies of the speeds at the rim, the odometry and the angles after it.
+
+        All arguments are in m/s, shape (2, robots), as in `Wheels`.
+        """
         self._covered[:], self._ground[:], self._commanded[:] = covered, ground, commanded
         self._turn()
         np.cos(self._headings, out=self._cosines)

@@ -1,6 +1,7 @@
-"""Kernels: the wheels of many robots roll. The sums of `WheelArrays.roll`, operation by operation; sines are numpy's.
+"""Kernels: wheel odometry of many robots. They compute what `WheelArrays.roll` does, operation by operation.
 
-Arrays have a row for each value, a column for each robot.
+Sines and cosines are numpy's, computed between `turn` and `roll`. Arrays have shape (values, robots); speeds, angles
+and the like have the values of the left wheels, then of the right wheels.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ def turn(
     count: int, dt_s: float, track_m: float, covered: Floats, ground: Floats, commanded: Floats, odometry: Floats,
     speeds: Floats, headings: Floats,
 ) -> None:  # fmt: skip
-    """Speeds at the rim, and the mean heading of the tick by the odometry."""
+    """Compute the speeds at the rim, and the mean heading of the tick by odometry."""
     for wheel in range(2 * count):
         speeds[wheel] = covered[wheel] - ground[wheel] + commanded[wheel]
     for robot in range(count):
@@ -27,7 +28,7 @@ def roll(
     count: int, dt_s: float, track_m: float, radius_m: float, speeds: Floats, cosines: Floats, sines: Floats,
     odometry: Floats, angles: Floats,
 ) -> None:  # fmt: skip
-    """Odometry and how far the wheels have turned."""
+    """Advance the odometry (x, y, yaw) and the angles of the wheels by a tick."""
     for robot in range(count):
         left = speeds[robot]
         right = speeds[count + robot]

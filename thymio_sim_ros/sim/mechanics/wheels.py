@@ -62,6 +62,8 @@ class Wheels:
 
     def roll(self, covered_m_s: tuple[float, float], dt_s: float) -> None:
         """Advance angles and odometry by a tick, given the mean speed over ground at each wheel."""
+        # The rim turns as commanded, less what an obstacle took from the ground speed. The equal case is separate so
+        # that undisturbed wheels have exactly the commanded speed.
         if covered_m_s == self.ground:
             self.speeds_m_s = self.commanded
         else:
@@ -72,6 +74,7 @@ class Wheels:
         left, right = self.speeds_m_s
         if left == 0.0 and right == 0.0:
             return
+        # Midpoint rule: the displacement lies along the mean heading of the tick.
         distance, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s
         x_m, y_m, yaw_rad = self.place
         heading = yaw_rad + turn / 2
@@ -86,7 +89,7 @@ class Wheels:
 
 
 def twist_of(left_m_s: float, right_m_s: float) -> Twist:
-    """The motion of a body whose wheels roll at these speeds."""
+    """Return the velocity of a body whose wheels roll at these speeds (m/s)."""
     return Twist((left_m_s + right_m_s) / 2, (right_m_s - left_m_s) / WHEEL_TRACK_M)
 
 
@@ -107,49 +110,49 @@ class WheelArrays:
         self._is_compiled = is_available() if is_compiled is None else is_compiled
         self._odometry_binding: WheelOdometryBinding | None = None
         self.is_written_back = True
-        """Whether the wheels are the truth just now."""
+        """Whether the `Wheels` are authoritative until the next `load`."""
         self._given: Values | None = None
-        """What was commanded last, beyond the limit perhaps."""
+        """The array that was commanded last, not clamped; `_allowed` is the same clamped."""
         self._allowed: Values = np.zeros((2, 0))
         self.load()
 
     @property
     def ground(self) -> Values:
-        """Speeds that reach the floor, m/s."""
+        """Speeds that reach the floor in m/s, shape (2, robots)."""
         self.load()
         return self._ground
 
     @property
     def speeds(self) -> Values:
-        """Speeds at the rim, m/s."""
+        """Speeds at the rim in m/s, shape (2, robots)."""
         self.load()
         return self._speeds
 
     @property
     def commanded(self) -> Values:
-        """Speeds that the motors aim at, m/s."""
+        """Target speeds of the motors in m/s, shape (2, robots)."""
         self.load()
         return self._commanded
 
     @property
     def angles(self) -> Values:
-        """How far they have turned, rad."""
+        """Angles of the wheels in rad, shape (2, robots)."""
         self.load()
         return self._angles
 
     @property
     def odometry(self) -> Values:
-        """Where they have brought the robots by their count: rows x, y, yaw."""
+        """Poses by wheel odometry, shape (3, robots): x, y in m, yaw in rad."""
         self.load()
         return self._odometry
 
     @property
     def controls(self) -> dict[int, tuple[WheelControl, WheelControl]]:
-        """The loops that motors follow, by robot; those that follow at once have none."""
+        """Control loops of the motors by robot number; motors that follow at once have none."""
         return {number: wheels.control for number, wheels in enumerate(self._wheels) if wheels.control is not None}
 
     def set_control(self, number: int, control: tuple[WheelControl, WheelControl] | None) -> None:
-        """The loops that one robot's motors follow."""
+        """Set the control loops of one robot's motors; None: they follow at once."""
         self._wheels[number].control = control
 
     def write_back(self) -> None:
@@ -177,8 +180,12 @@ class WheelArrays:
             self._odometry_binding.odometry[:], self._odometry_binding.angles[:] = self._odometry, self._angles
 
     def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
-        """Set target speeds, shape (2, robots); `commanded` must not be modified afterwards."""
+        """Set target speeds, shape (2, robots); `commanded` must not be modified afterwards.
+
+        The speeds over ground are these times `slip`; both are clamped to the limit.
+        """
         self.load()
+        # Commands change seldom, so the same array is clamped only once.
         if commanded is not self._given:
             self._given = commanded
             self._allowed = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded))

@@ -27,17 +27,17 @@ class ActiveBodies:
     """
 
     def __init__(self, bodies: Sequence[RobotBody], numbers: Indices, setter: BodyWriter) -> None:
-        """The bodies with these numbers; the writer writes to them from now on."""
+        """Choose the bodies with these numbers, shape (active,); `setter` writes to them from now on."""
         self.numbers = numbers
         self._bodies = [bodies[number].body for number in numbers.tolist()]
         self._rows: Indices = np.zeros(0, dtype=np.intp)
         self._order = 0
-        """Where the reader has them, and in which order of its own."""
+        """Rows of the bodies in `BodyReader.state`, and the `order` of the reader for which these are valid."""
         count = len(numbers)
         self._setter = setter
         setter.choose(self._bodies)
         self._state = np.zeros((6, count))
-        """Rows x, y, yaw, vx, vy, turn rate, as in pymunk; valid for robots in contact."""
+        """Rows x, y, yaw, vx, vy, turn rate, as in pymunk; valid only for robots in contact."""
         for column, number in enumerate(numbers.tolist()):
             if bodies[number].touching:
                 body = bodies[number].body
@@ -52,10 +52,13 @@ class ActiveBodies:
         return len(self.numbers)
 
     def begin_tick(self, driven: Values, rolling: Values, yaw: Values, touching: Flags | None) -> None:
-        """Start a tick with the state of all robots of the batch. `touching` is None if no robot is in contact.
+        """Start a tick with the state of all robots of the batch.
 
-        Rows of `driven`: what each wheel wants; of `rolling`: speed, rate of turn, the turn in half a sub-step and in
-        a whole one.
+        Args:
+            driven: speed over ground of the left and right wheel, m/s, shape (2, robots).
+            rolling: speed, rate of turn, turn in half a sub-step and in a whole one, shape (4, robots).
+            yaw: yaws before the tick, shape (robots,).
+            touching: whether each robot is in contact, shape (robots,); None if none is.
         """
         numbers = self.numbers
         self._driven = driven[:, numbers]
@@ -71,6 +74,7 @@ class ActiveBodies:
     def push(self) -> None:
         """Before a sub-step: write speeds, and in contact forces, to pymunk (`RobotBody.push` on arrays)."""
         speed, _, half_turn, _ = self._rolling
+        # In contact, the body turns by its own rate first (see `RobotBody.push`); elsewhere the factor is 0.
         heading = self._yaw + half_turn
         if self._is_any_touching:
             heading += self._touching * self._state[5] * SUB_STEP_S
@@ -83,18 +87,24 @@ class ActiveBodies:
             self._setter.set(SPEEDS, target.T)
             return
         motion, wanted = self._state[3:], self._wanted
+        # Force and torque for what is missing to the target velocity, 0 without contact. The force is limited to the
+        # grip of the tires: DRIVE_FORCE_N / max(DRIVE_FORCE_N, force).
         lack = (target - motion) * self._touching
         push = lack[:2] * PUSH_N_S_M
         force = np.hypot(push[0], push[1])
         np.maximum(force, robot_constants.DRIVE_FORCE_N, out=force)
         np.multiply(push, robot_constants.DRIVE_FORCE_N / force, out=wanted[3:5])
         np.multiply(lack[2], MOMENT_KG_M2 / SUB_STEP_S, out=wanted[5])
+        # Without contact pymunk gets the target velocity; in contact its own velocity, so that nothing changes.
         wanted[:3] = target
         np.copyto(wanted[:3], motion, where=self._touching)
         self._setter.set(FORCES, wanted.T)
 
     def finish_sub_step(self, earlier: int, reader: BodyReader, touching: Flags | None) -> None:
-        """After a sub-step: read back the held robots. `touching`, of all robots, is None if it has not changed."""
+        """After a sub-step, which follows `earlier` ones of this tick: read back the held robots.
+
+        `touching` is whether each robot of the batch is in contact, shape (robots,), or None if that has not changed.
+        """
         if touching is not None:
             self._touching = touching[self.numbers]
             self._is_any_touching = bool(np.count_nonzero(self._touching))
@@ -108,6 +118,7 @@ class ActiveBodies:
             self.is_any_held = True
             self._held = np.zeros(len(self), dtype=bool)
         if touching is not None:
+            # Contacts that began in this sub-step: the earlier sub-steps were driven freely.
             begun = self._touching & ~self._held
             self._covered[:, begun] = self._driven[:, begun] * (earlier / SUB_STEPS)
             self._held |= begun
@@ -119,9 +130,9 @@ class ActiveBodies:
         self._covered[1] += (speed + half) / SUB_STEPS
 
     def write_held(self, now: Values) -> Indices:
-        """Write the state of the held robots to their columns of `now`; returns their numbers.
+        """Write the state of the held robots to their columns of `now`, shape (7, robots); returns their numbers.
 
-        Rows x, y, yaw, speed along the heading, rate of turn, speed over ground at the left and the right wheel.
+        Rows are x, y, yaw, speed along the heading, rate of turn, speed over ground at the left and the right wheel.
         """
         state, held = self._state, self._held.nonzero()[0]
         found = np.concatenate((state[:3], self._speed[None], state[5:], self._covered))

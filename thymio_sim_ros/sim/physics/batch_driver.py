@@ -35,13 +35,18 @@ Indices = npt.NDArray[np.intp]
 
 _NONE: Indices = np.zeros(0, dtype=np.intp)
 _CHECKS_TO_DEACTIVATE = 4
-"""Checks after which robots may be deactivated."""
+"""Robots are activated at every check, but deactivated only at every fourth."""
 _PLACE, _SPEED, _SPIN, _COVERED = slice(0, 3), 3, 4, slice(5, 7)
-"""Rows of what is known of the robots: x, y, yaw; speed, rate of turn; speed over ground at each wheel."""
+"""Rows of the state of the robots: x, y, yaw; speed, rate of turn; speed over ground at each wheel (m, rad, s)."""
 
 
 class BatchDriver:
-    """Moves a fixed set of robots of one space. Between ticks their state is in arrays, in bodies, or in both."""
+    """Moves a fixed set of robots of one space; the calls of a tick are those of `ScalarDriver`.
+
+    Two flags say where the state after the last tick is. `is_written_back` is False: only in the arrays. `_is_released`
+    is True: the bodies are authoritative, and `_load` reads them before the arrays are used again. Otherwise arrays and
+    bodies agree.
+    """
 
     def __init__(
         self,
@@ -65,7 +70,7 @@ class BatchDriver:
         self._begun: set[RobotBody] = set()
         """Robots that may have a new contact."""
         self._contacts: tuple[Contact, ...] | None = None
-        """None when they may have changed."""
+        """The contacts of all robots; None if they may have changed."""
         self._index = {body: index for index, body in enumerate(self._bodies)}
         self._is_touching = np.zeros(count, dtype=bool)
         self._touching = self._held = self._fallen = _NONE
@@ -82,11 +87,11 @@ class BatchDriver:
         self._ticks_to_check = self._checks = 0
         self._was_unpredictable = False
         self._loads: list[MovableBody] = []
-        """Things that have not fallen."""
+        """Movable objects that have not fallen."""
         self._objects = np.zeros((3, 0))
-        """Their x, y and reach."""
+        """Their x, y and reach in m, shape (3, objects)."""
         self._load_rows, self._load_order = _NONE, 0
-        """Where the reader has them, and in which order of its own."""
+        """Their rows in `BodyReader.state`, and the `order` of the reader for which these are valid."""
         self._load_state = np.zeros((0, 6))
         self._is_load_moving = self._is_load_fast = False
         self._is_released = True
@@ -96,26 +101,26 @@ class BatchDriver:
             body.batch_driver = self
 
     def dissolve(self) -> None:
-        """End the batch: every body is moved on its own again."""
+        """End the batch: the bodies become authoritative, and the driver must not be used any more."""
         self.write_back()
         for body in self._bodies:
             body.batch_driver = None
 
     @property
     def poses(self) -> Values:
-        """Where the robots are: rows x, y, yaw. Not to be changed; the next tick makes a new one."""
+        """Poses of the robots, shape (robots, 3): x, y in m, yaw in rad. Read only; each tick makes a new array."""
         if self._is_released:
             self._load()
         return self._now[_PLACE].T
 
     @property
     def covered(self) -> Values:
-        """Speed over ground at each wheel, mean of the last tick, m/s: left, then right."""
+        """Speed over ground at the left and right wheel, mean of the last tick, in m/s, shape (2, robots)."""
         return self._now[_COVERED]
 
     @property
     def motion(self) -> tuple[Values, Values]:
-        """Speeds along the headings, m/s, and rates of turn, rad/s."""
+        """Speeds along the headings in m/s and rates of turn in rad/s, shape (robots,) each."""
         if self._is_released:
             self._load()
         return self._now[_SPEED], self._now[_SPIN]
@@ -129,7 +134,7 @@ class BatchDriver:
 
     @property
     def needs_engine(self) -> bool:
-        """Whether there is anything for the engine to do in this tick."""
+        """Whether pymunk has to step in this tick."""
         return len(self._active) > 0 or self._is_load_moving or self._was_unpredictable
 
     def write_back(self) -> None:
@@ -153,6 +158,7 @@ class BatchDriver:
         if self._is_released:
             self._load()
         self._update_contacts()
+        # The broadphase assumes doors at rest and slow objects; otherwise all robots are active.
         is_unpredictable = do_doors_move or self._is_load_fast
         if self._ticks_to_check == 0 or is_unpredictable != self._was_unpredictable:
             self._update_active(is_unpredictable=is_unpredictable)
@@ -205,6 +211,8 @@ class BatchDriver:
 
     def _move_freely(self) -> Values:
         """Integrate all robots as if nothing were in their way; returns the yaws before, shape (robots,)."""
+        # Robots in contact are integrated as well; `end_tick` overwrites them with what pymunk computed. The operations
+        # are those of `RobotBody.move_freely`, in its order, so that all paths give the same bits.
         if self._binding is not None:
             self._binding.driven[:] = self.driven
             self._binding.start_tick()
@@ -225,6 +233,8 @@ class BatchDriver:
         before, self._now = self._now, np.empty_like(self._now)
         start: Values = before[2]
         yaw = start
+        # First the headings in the middle of each sub-step, then the displacements along them: x, y by sub-step and
+        # robot, computed in place.
         ways = np.empty((2, SUB_STEPS, len(self._bodies)))
         for sub_step in range(SUB_STEPS):
             np.add(yaw, half_turn, out=ways[0, sub_step])
@@ -253,7 +263,7 @@ class BatchDriver:
                 self._binding.is_touching[:] = self._is_touching
 
     def _update_active(self, *, is_unpredictable: bool) -> None:
-        """Activate the robots that may reach something, or all; deactivate others, but not each time."""
+        """Activate the robots that may reach something, or all; deactivate the others at every fourth check."""
         self._ticks_to_check = CHECK_INTERVAL_TICKS
         is_active, self._checks = self._is_active, self._checks + 1
         may_go = self._checks % _CHECKS_TO_DEACTIVATE == 0 or is_unpredictable != self._was_unpredictable
@@ -273,6 +283,7 @@ class BatchDriver:
             return
         for number in differs:
             body = self._bodies[number]
+            # A robot that is activated takes its state from the arrays; the body may be many ticks old.
             if is_active[number]:
                 body.deactivate(self._space)
             else:
@@ -283,7 +294,7 @@ class BatchDriver:
         self._active = self._make_active(np.flatnonzero(is_wanted))
 
     def _load(self) -> None:
-        """Read what the bodies are."""
+        """Read the state of all bodies into the arrays: the arrays are authoritative again."""
         self._is_released = False
         self._ticks_to_check = 0
         self._stands = np.array([not body.is_fallen for body in self._bodies], dtype=bool)
@@ -301,12 +312,12 @@ class BatchDriver:
         objects = [(load.pose.x_m, load.pose.y_m, load.reach_m) for load in loads]
         self._objects = np.array(objects).reshape(-1, 3).T
         self._load_order = 0
-        self._load_state = np.full((len(self._loads), 6), np.nan)
+        self._load_state = np.full((len(self._loads), 6), np.nan)  # NaN equals nothing: all count as changed
         self._is_load_moving = any(load.is_moving for load in self._loads)
         self._is_load_fast = any(load.is_fast for load in self._loads)
 
     def _make_active(self, numbers: Indices) -> ActiveBodies | CompiledActiveBodies:
-        """Those with these numbers."""
+        """Return the active bodies with these numbers, by kernels if there are any."""
         if self._binding is not None:
             return CompiledActiveBodies(self._binding, self._bodies, numbers, self._setter)
         return ActiveBodies(self._bodies, numbers, self._setter)

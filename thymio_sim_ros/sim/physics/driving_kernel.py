@@ -30,7 +30,7 @@ KERNELS = (
 )
 
 COUNTS = ("robots", "engaged", "earlier", "is_any_touching", "is_any_held")
-"""What each of `counts` is: `earlier` sub-steps of this tick are done; the last two are answers, too."""
+"""Meaning of each element of `counts`: `earlier` sub-steps of this tick are done; the last two are results, too."""
 _ROBOTS, _ACTIVE, _EARLIER, _TOUCHING, _HELD = range(len(COUNTS))
 
 _SUB_STEPS = SUB_STEPS
@@ -46,7 +46,7 @@ _TURN_N_M_S = MOMENT_KG_M2 / SUB_STEP_S
 def compute_headings(
     counts: Ints, driven: Floats, now: Floats, stands: Ints, rolling: Floats, headings: Floats
 ) -> None:
-    """What the wheels give in this tick, and where each robot heads in each sub-step; the last row: its yaw now."""
+    """Compute the motion that the wheels give, and the heading in the middle of each sub-step; last row: yaw now."""
     count = counts[_ROBOTS]
     for robot in range(count):
         left = driven[robot]
@@ -95,7 +95,7 @@ def begin_tick(
     counts: Ints, headings: Floats, is_touching: Ints, numbers: Ints, touching: Ints, held: Ints, yaws: Floats,
     covered: Floats,
 ) -> None:  # fmt: skip
-    """Start a tick of the active robots; those in contact are held."""
+    """Start a tick of the active robots; those in contact are held (`ActiveBodies`)."""
     count = counts[_ROBOTS]
     counts[_TOUCHING] = 0
     for index in range(counts[_ACTIVE]):
@@ -113,7 +113,7 @@ def begin_tick(
 def update_aims(
     counts: Ints, rolling: Floats, numbers: Ints, touching: Ints, yaws: Floats, state: Floats, aims: Floats
 ) -> None:
-    """Headings of the active robots in the middle of a sub-step."""
+    """Compute the headings of the active robots in the middle of a sub-step; in contact see `RobotBody.push`."""
     count = counts[_ROBOTS]
     for index in range(counts[_ACTIVE]):
         heading = yaws[index] + rolling[2 * count + numbers[index]]
@@ -137,7 +137,10 @@ def missing_speeds(
     counts: Ints, rolling: Floats, numbers: Ints, touching: Ints, state: Floats, ways_x: Floats, ways_y: Floats,
     speeds: Floats, pushes_x: Floats, pushes_y: Floats,
 ) -> None:  # fmt: skip
-    """Target velocities of the active robots, and the unlimited forces of those in contact."""
+    """Compute target velocities of the active robots, and the forces of those in contact, not yet limited.
+
+    The binding computes the magnitude of the forces with numpy's hypot, for the bits of the numpy path.
+    """
     count = counts[_ROBOTS]
     for index in range(counts[_ACTIVE]):
         speed = rolling[numbers[index]]
@@ -157,7 +160,7 @@ def push(
     counts: Ints, touching: Ints, state: Floats, speeds: Floats, pushes_x: Floats, pushes_y: Floats, forces: Floats,
     wanted: Floats,
 ) -> None:  # fmt: skip
-    """Velocity, turn rate, force and torque of each active robot, as `BodyWriter` expects them."""
+    """Compute velocity, turn rate, force and torque of each active robot, as `BodyWriter` expects them."""
     for index in range(counts[_ACTIVE]):
         share = _DRIVE_N / max(forces[index], _DRIVE_N)
         wanted[6 * index + 3] = pushes_x[index] * share
@@ -176,7 +179,11 @@ def read_back(
     ways_x: Floats, ways_y: Floats, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     along: Floats,
 ) -> None:  # fmt: skip
-    """Read back the motion that contacts allowed. `bodies`, as pymunk has them, are read only if a robot is held."""
+    """Read back the motion that contacts allowed.
+
+    `bodies` is the state of all bodies in pymunk's space, and `rows` the row in it of each active robot. They are
+    read only if a robot is held; otherwise they may be stale.
+    """
     count = counts[_ROBOTS]
     counts[_TOUCHING] = 0
     for index in range(counts[_ACTIVE]):
@@ -188,6 +195,7 @@ def read_back(
             yaws[index] = yaws[index] + rolling[3 * count + numbers[index]]
         return
     counts[_HELD] = 1
+    # From here on as in `RobotBody.finish_sub_step`, for all active robots; `write_held` uses only the held ones.
     part = float(counts[_EARLIER]) / _SUB_STEPS
     for index in range(counts[_ACTIVE]):
         if touching[index] != 0 and held[index] == 0:

@@ -32,7 +32,7 @@ class DrivingKernelBinding:
     """The arrays of a batch in the memory of kernels, by the names of the parameters of the kernels."""
 
     def __init__(self, robots: int, bodies: int) -> None:
-        """`bodies`: how many there may be in the engine's space."""
+        """Allocate the arrays for `robots` robots and at most `bodies` bodies in pymunk's space."""
         floats = {
             "driven": (2, robots), "now": (7, robots), "rolling": (4, robots), "headings": (SUB_STEPS + 1, robots),
             "cosines": (SUB_STEPS, robots), "sines": (SUB_STEPS, robots), "bodies": (bodies, 6), "state": (robots, 6),
@@ -61,7 +61,7 @@ class DrivingKernelBinding:
         )
 
     def array(self, name: str) -> npt.NDArray[Any]:
-        """One of the arrays."""
+        """Return one of the arrays by name. Raises KeyError for an unknown name."""
         return self._arrays[name]
 
     def _bound(self, kernel: Kernel) -> Callable[[], object]:
@@ -71,13 +71,15 @@ class DrivingKernelBinding:
     def start_tick(self) -> None:
         """Integrate all robots by a tick with `driven` into `now`, and start the tick of the active ones."""
         self._compute_headings()
+        # Sines and cosines are numpy's, between two kernels: WebAssembly has none, and the bits must be those of the
+        # numpy path.
         np.cos(self._headings, out=self._cosines)
         np.sin(self._headings, out=self._sines)
         self._start_tick()
 
 
 class CompiledActiveBodies:
-    """Does what `ActiveBodies` does, by kernels; only one may use a binding at a time."""
+    """The same as `ActiveBodies`, by kernels and with the same bits; only one may use a binding at a time."""
 
     def __init__(
         self, binding: DrivingKernelBinding, bodies: Sequence[RobotBody], numbers: Indices, setter: BodyWriter
@@ -112,7 +114,7 @@ class CompiledActiveBodies:
 
     @property
     def is_any_held(self) -> bool:
-        """See the method of this name in `ActiveBodies`, which gives the same bits."""
+        """Whether any robot touches something or has in this tick."""
         return bool(self._counts[_HELD])
 
     def begin_tick(self, _driven: Values, _rolling: Values, _yaw: Values, touching: Flags | None) -> None:
@@ -120,7 +122,7 @@ class CompiledActiveBodies:
         self._is_any_touching = touching is not None
 
     def push(self) -> None:
-        """See the method of this name in `ActiveBodies`, which gives the same bits."""
+        """Before a sub-step: write speeds, and in contact forces, to pymunk."""
         binding = self._binding
         np.cos(self._aims, out=self._cos)
         np.sin(self._aims, out=self._sin)
@@ -133,7 +135,7 @@ class CompiledActiveBodies:
         self._setter.set(FORCES, self._wanted)
 
     def finish_sub_step(self, earlier: int, reader: BodyReader, touching: Flags | None) -> None:
-        """See the method of this name in `ActiveBodies`, which gives the same bits."""
+        """After a sub-step, which follows `earlier` ones of this tick: read back the held robots."""
         if touching is not None:
             self._is_any_touching = bool(np.count_nonzero(touching))
         counts = self._counts
@@ -142,12 +144,13 @@ class CompiledActiveBodies:
             if reader.order != self._order:
                 self._order = reader.order
                 self._rows[:] = reader.rows(self._bodies)
+            # Kernels see only their own memory, so what pymunk has is copied there.
             self._space_bodies[: len(reader.state)] = reader.state
         counts[_EARLIER] = earlier
         self._binding.finish_sub_step()
 
     def write_held(self, now: Values) -> Indices:
-        """See the method of this name in `ActiveBodies`, which gives the same bits."""
+        """Write the state of the held robots to `now`, shape (7, robots); returns their numbers."""
         now[:] = self._binding.now
         numbers: Indices = self.numbers[self._held.nonzero()[0]]
         return numbers

@@ -29,7 +29,11 @@ _STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | SPEEDS
 
 
 class BodyWriter:
-    """Writes to chosen bodies of a space; the others stay asleep."""
+    """Writes to chosen bodies of a space; the others stay asleep.
+
+    The public `batch.set_space_bodies` writes to all bodies of a space, and writing wakes a sleeping body. The C
+    function behind it writes to one body and advances in the buffer; it is called here for each chosen body.
+    """
 
     def __init__(self, bodies: Sequence[pymunk.Body] = ()) -> None:
         self._function = getattr(_chipmunk_cffi.lib, "pmSpaceBodySetIteratorFuncBatched", None)
@@ -37,12 +41,15 @@ class BodyWriter:
         self.choose(bodies)
 
     def choose(self, bodies: Sequence[pymunk.Body]) -> None:
-        """Write to these bodies from now on."""
+        """Write to these bodies from now on, in this order."""
         self._bodies = bodies
         self._handles = [] if self._function is None else [body._body for body in bodies]
 
     def set(self, fields: batch.BodyFields, motion: Values) -> None:
-        """Write a row of `motion` to each chosen body; `fields` are its columns, as in `set_by_properties`."""
+        """Write a row of `motion`, shape (bodies, columns), to each chosen body.
+
+        `fields` is SPEEDS (three columns: velocity x, y, rate of turn) or FORCES (six: also force x, y, torque).
+        """
         if self._function is None:
             set_by_properties(self._bodies, motion)
             return
@@ -52,10 +59,11 @@ class BodyWriter:
         rows, buffer, data = prepared
         rows[: len(motion)] = motion
         buffer._float_arr.num = 0  # rewinds the buffer: pymunk reads from the beginning
+        # A deque of length 0 consumes the map without a Python loop.
         deque(map(self._function, self._handles, repeat(data)), maxlen=0)
 
     def _prepare(self, fields: batch.BodyFields, motion: Values) -> tuple[Values, batch.Buffer, Any]:
-        """An array that pymunk reads, with room for twice as many bodies, and its way to it."""
+        """Return an array with room for twice as many bodies, the buffer on it, and the C struct that pymunk reads."""
         rows, buffer = np.zeros((2 * len(motion), motion.shape[1])), batch.Buffer()
         buffer.set_float_buf(rows)
         return rows, buffer, _data(fields, buffer)
@@ -70,12 +78,13 @@ class BodyReader:
         self._ids = b""
         self._id_of: dict[pymunk.Body, int] = {}
         self.order = 0
-        """Changes whenever the order of the rows changes."""
+        """Increases whenever the order of the rows changes; rows found by `rows` are then no longer valid."""
         self.state = np.zeros((0, 6))
-        """Columns x, y, angle, vx, vy, rate of turn, a row for each body."""
+        """State of all bodies, shape (bodies, 6): x, y, angle, vx, vy, rate of turn. A view of pymunk's buffer, which
+        the next `read` overwrites."""
 
     def read(self) -> None:
-        """Update `state`."""
+        """Update `state`, and `order` if bodies were added or removed or come in another order."""
         self._buffer.clear()
         self._each()
         self.state = np.frombuffer(self._buffer.float_buf()).reshape(-1, 6)
@@ -85,7 +94,7 @@ class BodyReader:
             self.order += 1
 
     def rows(self, bodies: Sequence[pymunk.Body]) -> Indices:
-        """Where in `state` some bodies of the space are."""
+        """Return the rows of bodies in `state`, shape (bodies,). Raises KeyError for a body outside the space."""
         rows = {number: row for row, number in enumerate(np.frombuffer(self._ids, dtype=np.uintp).tolist())}
         known = self._id_of
         for body in bodies:
@@ -95,7 +104,11 @@ class BodyReader:
 
 
 def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], object]:
-    """What reads all bodies of a space into a buffer."""
+    """Return a function that reads all bodies of a space into a buffer.
+
+    `batch.get_space_bodies` makes the same call but builds its arguments anew each time; here they are built once. The
+    pointers are valid as long as space and buffer live, which the returned function keeps alive.
+    """
     each = getattr(_chipmunk_cffi.lib, "cpSpaceEachBody", None)
     if each is None or not hasattr(_chipmunk_cffi.lib, "pmSpaceBodyGetIteratorFuncBatched"):
         return partial(batch.get_space_bodies, space, _STATE, buffer)
@@ -104,14 +117,17 @@ def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], 
 
 
 def _data(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
-    """The C struct by which pymunk reads from a buffer or writes to it."""
+    """Return the C struct by which pymunk reads from a buffer or writes to it; it does not keep the buffer alive."""
     data = _chipmunk_cffi.ffi.new("pmBatchedData *")
     data.floatArray, data.intArray, data.fields = buffer._float_arr, buffer._int_arr, fields.value
     return data
 
 
 def set_by_properties(bodies: Sequence[pymunk.Body], motion: Values) -> None:
-    """Velocity, rate of turn and, if there are more columns, force and torque: a row for each body."""
+    """Set velocity, rate of turn and, if there are six columns, force and torque: a row of `motion` for each body.
+
+    Raises ValueError if the numbers of bodies and rows differ.
+    """
     for body, row in zip(bodies, motion.tolist(), strict=True):
         body.velocity, body.angular_velocity = (row[0], row[1]), row[2]
         if len(row) > 3:

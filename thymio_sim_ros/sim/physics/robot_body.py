@@ -54,9 +54,11 @@ class BodyArrays(Protocol):
 
 
 class RobotBody:
-    """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick.
+    """One robot's body, driven by its two wheels. Invariant: `pose` is that of the body after the last tick.
 
-    In a batch the driver moves it, and the methods of a tick are not called.
+    A tick is `move_freely` for a robot that can touch nothing; else `begin_tick`, then for each sub-step `push`, a step
+    of pymunk and `finish_sub_step`, then `end_tick`. In a batch the driver moves the robot, and these methods are not
+    called.
     """
 
     __slots__ = (
@@ -102,38 +104,41 @@ class RobotBody:
 
     @property
     def pose(self) -> Pose:
-        """Where it is."""
+        """Pose in the world's frame."""
         if self.batch_driver is not None and not self.batch_driver.is_written_back:
             self.batch_driver.write_back()
         return self._pose
 
     @property
     def speed_m_s(self) -> float:
-        """Speed along the heading."""
+        """Speed along the heading in m/s."""
         if self.batch_driver is not None and not self.batch_driver.is_written_back:
             self.batch_driver.write_back()
         return self._speed_m_s
 
     @property
     def spin_rad_s(self) -> float:
-        """Rate of turn, counter-clockwise."""
+        """Rate of turn in rad/s, counter-clockwise."""
         if self.batch_driver is not None and not self.batch_driver.is_written_back:
             self.batch_driver.write_back()
         return self._spin_rad_s
 
     @property
     def covered_m_s(self) -> tuple[float, float]:
-        """Speed over ground at each wheel, mean of the last tick; exactly what was driven when nothing was touched."""
+        """Speed over ground in m/s at the left and right wheel, mean of the last tick.
+
+        If nothing was touched, it is exactly the speed that was driven.
+        """
         return self._driven if self._is_free else self._covered
 
     @property
     def reach_m(self) -> float:
-        """No part of it is farther from its origin."""
+        """Largest distance in m of any of its points from its origin."""
         return robot_constants.HULL_RADIUS_M
 
     @property
     def obstacle(self) -> ConvexObstacle:
-        """What the rays of others see of it."""
+        """The obstacle that rays of other robots see."""
         pose = self.pose
         if self._obstacle is None or self._obstacle[0] is not pose:
             self._obstacle = (pose, ConvexObstacle(pose.place_all(_HULL), robot_constants.HULL_HEIGHT_M))
@@ -141,7 +146,7 @@ class RobotBody:
 
     @property
     def course_rad(self) -> float:
-        """The direction in which it moves, in its own frame; 0 at rest."""
+        """Direction of motion in rad in the robot's frame, -π to π; 0 at rest."""
         if self.batch_driver is not None and not self.batch_driver.is_written_back:
             self.batch_driver.write_back()
         if self._is_free:
@@ -150,11 +155,11 @@ class RobotBody:
         return wrap_angle(math.atan2(vy, vx) - self._angle) if math.hypot(vx, vy) > _AT_REST_M_S else 0.0
 
     def drive(self, ground_m_s: tuple[float, float]) -> None:
-        """Speed over ground that each wheel gives from now on."""
+        """Set the speed over ground in m/s of the left and right wheel from now on."""
         self._driven = ground_m_s
 
     def place(self, pose: Pose) -> None:
-        """Put it somewhere, at rest; what has fallen stands on the floor again."""
+        """Move it to a pose, at rest; a fallen robot stands on the floor again."""
         self.is_fallen = False
         body = self.body
         body.position, body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
@@ -173,7 +178,7 @@ class RobotBody:
         self._speed_m_s, self._spin_rad_s = speed_m_s, spin_rad_s
 
     def fall(self) -> None:
-        """Fall: from now on the wheels have no grip."""
+        """Fall: the wheels have no grip from now on, until `place`."""
         self.is_fallen = self._is_free = True
         self.touching.clear()
         self._speed_m_s = self._spin_rad_s = 0.0
@@ -181,7 +186,9 @@ class RobotBody:
     def move_freely(self) -> None:
         """Integrate a tick without pymunk, for a robot that can touch nothing.
 
-        The operations and their order are those of the other path, so that both give the same bits.
+        Each sub-step moves along the heading in its middle: a chord of the arc, whose error per step is of third order.
+        The operations and their order are those of `push`, pymunk and `finish_sub_step`, so that the path has the same
+        bits whether pymunk moves the robot or not.
         """
         left, right = self._driven
         self._speed_m_s = speed = (left + right) / 2
@@ -211,7 +218,7 @@ class RobotBody:
             space.remove(self.shape, self.body)
 
     def begin_tick(self) -> None:
-        """Forget what the last tick covered; contacts are no longer new."""
+        """Start a tick: nothing is covered yet, and contacts are no longer new."""
         self._covered = (0.0, 0.0)
         self._is_free = not self.touching
         for key, contact in self.touching.items():
@@ -219,7 +226,7 @@ class RobotBody:
                 self.touching[key] = replace(contact, is_new=False)
 
     def push(self) -> None:
-        """Before a sub-step: set the speed of the wheels, or in contact a force toward it, limited by the grip."""
+        """Before a sub-step: set the velocity of the wheels, or in contact a force toward it, limited by the grip."""
         left, right = self._driven
         speed, spin = (left + right) / 2, (right - left) / robot_constants.WHEEL_TRACK_M
         body = self.body
@@ -229,13 +236,17 @@ class RobotBody:
             _set_spin(body, spin)
             self._speed_m_s, self._spin_rad_s = speed, spin
             return
+        # pymunk integrates the velocity of the last sub-step first, so the body turns by `turning` before this force
+        # acts; the heading in the middle of the sub-step after that is where the wheels will point.
         turning = body.angular_velocity
         self._heading = heading = self._angle + (turning + spin / 2) * SUB_STEP_S
         vx, vy = body.velocity
         push_x = (speed * math.cos(heading) - vx) * PUSH_N_S_M
         push_y = (speed * math.sin(heading) - vy) * PUSH_N_S_M
+        # Scale the force down to the grip of the tires where it is larger, in its own direction.
         share = robot_constants.DRIVE_FORCE_N / max(robot_constants.DRIVE_FORCE_N, math.hypot(push_x, push_y))
         _set_force(body, (push_x * share, push_y * share))
+        # The torque is not limited: with the large moment of inertia, wheels hold the heading.
         _set_torque(body, (spin - turning) * (MOMENT_KG_M2 / SUB_STEP_S))
 
     def finish_sub_step(self, earlier: int) -> None:
@@ -245,6 +256,7 @@ class RobotBody:
             return
         body = self.body
         if self._is_free:
+            # The contact began in this sub-step: the earlier ones of the tick were free, at the speed of the wheels.
             self._is_free = False
             left, right = self._driven
             self._covered = (left * earlier / SUB_STEPS, right * earlier / SUB_STEPS)
@@ -252,6 +264,7 @@ class RobotBody:
         self._angle = body.angle
         self._speed_m_s = vx * math.cos(self._heading) + vy * math.sin(self._heading)
         self._spin_rad_s = body.angular_velocity
+        # Each wheel is half a track beside the center: add its speed over ground to the mean of the tick.
         half = self._spin_rad_s * robot_constants.WHEEL_TRACK_M / 2
         left, right = self._covered
         self._covered = (

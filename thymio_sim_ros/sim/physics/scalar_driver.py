@@ -19,7 +19,9 @@ _CHECK_INTERVAL_TICKS = 10
 
 
 class ScalarDriver:
-    """Moves robots one by one."""
+    """Moves robots one by one: the calls of a tick are `begin_tick`, then for each sub-step `push` and
+    `finish_sub_step`, then `end_tick`; the last three only if `needs_engine`.
+    """
 
     def __init__(
         self,
@@ -28,12 +30,13 @@ class ScalarDriver:
         movables: Mapping[str, MovableBody],
         broadphase: Broadphase,
     ) -> None:
-        """`robots` may change between ticks; fallen robots do not move."""
+        """Drive `robots`, which may change between ticks; fallen robots do not move."""
         self._space, self._robots, self._movables, self._broadphase = space, robots, movables, broadphase
         self._active: list[RobotBody] = []
         self._is_anything_moving = False
         self._free_ticks: dict[RobotBody, int] = {}
-        """Ticks in which a robot can reach nothing; negative: ticks until an active robot is checked again."""
+        """Above 0: ticks in which a robot can reach nothing. Below 0: minus the ticks until an active robot is checked
+        again. 0 or missing: it is checked in the next tick."""
 
     @property
     def needs_engine(self) -> bool:
@@ -89,6 +92,8 @@ class ScalarDriver:
 
     def _update_active(self, robot: RobotBody, *, is_unpredictable: bool) -> int:
         """Activate or deactivate a robot; returns its number for `_free_ticks`."""
+        # An active robot must be free for longer than one that is not active (hysteresis), so that a robot that drives
+        # along a wall does not enter and leave the space all the time.
         if not (robot.touching or is_unpredictable):
             is_alone = len(self._robots) == 1 and not self._is_anything_moving
             at_least = _CHECK_INTERVAL_TICKS if robot.is_active else 1

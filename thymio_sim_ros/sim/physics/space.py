@@ -87,12 +87,12 @@ class Physics:
         return self._door_controller.doors
 
     def movable_obstacles(self) -> list[Obstacle | None]:
-        """The obstacles of `objects`; None for a fallen one."""
+        """Return the obstacles of `objects`, in that order; None for a fallen one."""
         self._moved.clear()
         return [_obstacle_or_none(body) for body in self.objects]
 
     def moved_obstacles(self) -> dict[int, Obstacle | None]:
-        """Obstacles of the objects that have moved since the last call of this or of `movable_obstacles`.
+        """Return the obstacles of objects that have moved since the last call of this or of `movable_obstacles`.
 
         The keys are indices in `objects`; None stands for an object that has fallen.
         """
@@ -101,7 +101,7 @@ class Physics:
         return found
 
     def add_robot(self, name: str, pose: Pose) -> RobotBody:
-        """A robot's body, at rest at a pose."""
+        """Add the body of a robot, at rest at a pose; ends the batch."""
         self.dissolve()
         self._interrupt()
         robot = RobotBody(name, pose)
@@ -111,7 +111,7 @@ class Physics:
         return robot
 
     def remove_robot(self, robot: RobotBody) -> None:
-        """Remove a robot's body and its contacts."""
+        """Remove a robot's body and its contacts; ends the batch. Raises KeyError for a body that is not here."""
         self.dissolve()
         self._interrupt()
         robot.deactivate(self._space)
@@ -166,7 +166,7 @@ class Physics:
             self._scalar_driver.interrupt()
 
     def step(self) -> tuple[Contact, ...]:
-        """One tick; the contacts at its end, by robot and in the order in which they began."""
+        """Step by one tick; returns the contacts at its end, by robot and in the order in which they began."""
         self._broadphase.invalidate_movers()
         self._door_controller.begin_tick(self._broadphase)
         driver = self._batch_driver or self._scalar_driver
@@ -181,12 +181,16 @@ class Physics:
         return driver.contacts()
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
-        """Obstacles within `reach_m` of a robot's origin that are at least `height_m` high."""
+        """Return the obstacles within `reach_m` of a robot's origin that are at least `height_m` high.
+
+        A fallen robot has none. The robot itself is not among them.
+        """
         if robot.is_fallen:
             return Surroundings(())
         x, y = robot.pose.x_m, robot.pose.y_m
         low_x, low_y, high_x, high_y = x - reach_m, y - reach_m, x + reach_m, y + reach_m
         near = []
+        # First the bounds, which are cheap, then the exact test.
         for obstacle in self._broadphase.fixed(x, y, reach_m):
             left, bottom, right, top = obstacle.bounds
             if (
@@ -202,7 +206,7 @@ class Physics:
         return Surroundings(near)
 
     def _standing(self) -> list[RobotBody]:
-        """Robots that have not fallen."""
+        """Return the robots that have not fallen."""
         return [robot for robot in self._robots if not robot.is_fallen]
 
     def _interrupt(self) -> None:
@@ -233,5 +237,5 @@ class Physics:
 
 
 def _obstacle_or_none(body: MovableBody | DoorBody) -> Obstacle | None:
-    """The obstacle of an object or door; None if it has fallen."""
+    """Return the obstacle of an object or door; None if it has fallen."""
     return None if body.is_fallen else body.obstacle

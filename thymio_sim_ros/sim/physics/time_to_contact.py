@@ -24,10 +24,18 @@ _FAR_M = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M + _MOST_TICKS * MAX_TIC
 
 
 def ticks_to_contact(robot: RobotBody, broadphase: Broadphase, *, at_least: int, is_alone: bool) -> int:
-    """Number of ticks in which the robot can touch nothing, however robots drive, if no door moves and nothing is fast.
+    """Return the number of ticks in which the robot can touch nothing, whatever robots do; 0 if below `at_least`.
 
-    0 if they are fewer than `at_least`. `is_alone`: no other body moves or could be moved by another robot.
+    This holds only while no door moves and no object is fast.
+
+    Args:
+        robot: the robot.
+        broadphase: the obstacles around it.
+        at_least: fewer ticks than this are not worth removing the robot from pymunk's space.
+        is_alone: no other body moves, or could be moved by another robot.
     """
+    # Conservative advancement: `free_m` is a lower bound of the distance that this robot can drive before it touches
+    # anything. Bodies are bounded by circles, fixed obstacles by axis-parallel boxes.
     reach_m = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M
     x, y = robot.pose.x_m, robot.pose.y_m
     free_m, least_m = _FAR_M - reach_m, at_least * MAX_TICK_DISTANCE_M
@@ -40,6 +48,8 @@ def ticks_to_contact(robot: RobotBody, broadphase: Broadphase, *, at_least: int,
         if mover is robot:
             continue
         away_m = math.hypot(mover.pose.x_m - x, mover.pose.y_m - y) - mover.reach_m - reach_m
+        # What moves toward the robot shares the gap in proportion to the speeds: another robot is as fast as this one,
+        # a pushed object up to OBJECT_SPEED_FACTOR times as fast.
         if isinstance(mover, RobotBody):
             away_m /= 2
         elif isinstance(mover, MovableBody) and not is_alone:

@@ -48,16 +48,16 @@ class Sensor:
     on_wake: Callable[[SensorView], None] | None = None
 
     def with_period(self, period_ns: int) -> Sensor:
-        """This sensor with another period; with a period other than its own its phase is 0."""
+        """Return this sensor with another period in ns; its phase is 0 unless the period is its own."""
         return self if period_ns == self.period_ns else replace(self, period_ns=period_ns, phase_ns=0)
 
 
 def all_sensors() -> tuple[Sensor, ...]:
-    """All sensors of this folder and of other packages, in name order."""
+    """Return all sensors, of this package and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "SENSOR", Sensor, guard=_guarded)
 
 
 def _guarded(sensor: Sensor) -> Sensor:
-    """The sensor of another package, guarded so that its errors do not stop the world."""
+    """Return a sensor of another package, guarded so that its errors do not stop the world."""
     on_wake = None if sensor.on_wake is None else guarded_sensor(sensor.name, sensor.on_wake)
     return replace(sensor, measure=guarded_sensor(sensor.name, sensor.measure), measure_all=None, on_wake=on_wake)

@@ -35,7 +35,7 @@ _NOISE_M_S2 = ACC_NOISE * GRAVITY_M_S2 / ACC_PER_G
 
 
 def gravity(tilt: Tilt) -> tuple[float, float, float]:
-    """What a robot at rest at an angle measures in m/s²: forward, left, up."""
+    """Return what a robot at rest at an angle measures in m/s²: forward, left, up."""
     if tilt == LEVEL:
         return (0.0, 0.0, GRAVITY_M_S2)
     level = GRAVITY_M_S2 * math.cos(tilt.pitch_rad)
@@ -43,7 +43,7 @@ def gravity(tilt: Tilt) -> tuple[float, float, float]:
 
 
 def sideways(pose: Pose, contact: Contact) -> float:
-    """Speed in m/s, to the left, that a contact's beginning takes from what it stops: away from the point touched."""
+    """Return the speed in m/s to the left that a robot gains when a contact begins, away from the point of contact."""
     dx, dy = pose.x_m - contact.x_m, pose.y_m - contact.y_m
     distance = math.hypot(dx, dy)
     if distance == 0.0:

@@ -190,7 +190,7 @@ def _forward():
     ("entity", "wanted", "code", "reason"),
     [
         ("nobody", state(), NOT_FOUND, "found unknown name 'nobody'"),
-        ("crate", state(0.0, 0.5), 101, "'crate' cannot stand at 0.000, 0.500 m: 'post' is in its way"),
+        ("crate", state(0.0, 0.5), 101, "'crate' cannot be placed at 0.000, 0.500 m: occupied by 'post'"),
         ("crate", state(math.nan), 101, "the pose has a value that is not finite"),
         ("crate", state(frame="odom"), UNSUPPORTED, "found frame 'odom', expected 'map'"),
         ("thymio", state(twist=Twist(linear=Vector3(x=1.0))), UNSUPPORTED, "found velocities"),
