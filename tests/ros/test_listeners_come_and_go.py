@@ -39,7 +39,7 @@ def test_a_storm_of_listeners_outlives_changes_of_the_playground(ros, simulation
     try:
         while storm.poll() is None:
             for name in ("line", "two_robots"):
-                assert sim.simulator.load(name) == ""
+                assert sim.simulator.parameter_callbacks.load_playground(name) == ""
                 sim.step(0.05)
                 ros.deliver()
                 changes += 1

@@ -16,10 +16,10 @@ from sensor_msgs.msg import Range
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
+from thymio_sim_ros.ros.simulator import clock_publisher, endpoints, world_endpoints, world_runner
 from thymio_sim_ros.ros.simulator import node as simulator_node
-from thymio_sim_ros.ros.simulator import world_endpoints
-from thymio_sim_ros.ros.simulator.node import MAX_DEFERRED_TICKS
 from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
+from thymio_sim_ros.ros.simulator.tick_scheduler import MAX_DEFERRED_TICKS
 from thymio_sim_ros.sim.commands import BodyTwist
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import RobotStart
@@ -57,7 +57,7 @@ class Sleeper:
 def sleeper(monkeypatch):
     """Made-up wall time."""
     sleeper = Sleeper()
-    for module in (simulator_node, world_endpoints):
+    for module in (simulator_node, world_runner, endpoints, clock_publisher, world_endpoints):
         monkeypatch.setattr(module, "time", types.SimpleNamespace(monotonic_ns=sleeper.monotonic_ns))
     return sleeper
 
@@ -74,7 +74,7 @@ def driven(simulation, sleeper):
 
     def start(**parameters):
         turn.sim = simulation(playground="base", **parameters)
-        turn.sim.simulator.pause(False)
+        turn.sim.simulator.runner.pause(False)
         turn.sim.simulator._publish_heartbeat(sleeper.now_ns)
         sleeper.slept_ms.clear()
         return turn
@@ -103,7 +103,7 @@ def test_a_topic_that_is_heard_is_sent_in_time(ros, driven, sleeper, kind, topic
 def test_a_command_takes_effect_in_the_tick_after_it_came(driven, sleeper):
     turn = driven()
     command, done = BodyTwist(0.1, 0.5), []
-    post = turn.sim.simulator._command_sender("thymio")
+    post = turn.sim.simulator.endpoints.robots["thymio"]._owner.post
     sleeper.at(34, lambda: (post(command), done.append(turn.sim.world.now_ns)))
     world = turn(500)
     assert done == [30 * MS]
@@ -132,7 +132,7 @@ def test_what_a_command_brings_about_is_told_one_tick_later(ros, driven, sleeper
     turn = driven()
     velocity = ros.publisher(Twist, "/cmd_vel")
     velocity.publish(Twist(linear=Vector3(x=0.1)))
-    sleeper.at(31, lambda: ros.until(lambda: turn.sim.simulator._prompt_until_ns))
+    sleeper.at(31, lambda: ros.until(lambda: turn.sim.simulator.runner.scheduler._prompt_until_ns))
     turn(31)
     assert turn.sim.world.now_ns == 30 * MS
     sleeper.slept_ms.clear()
@@ -173,7 +173,7 @@ def test_a_robot_that_takes_time_to_come_comes_once(simulator_with, sleeper, mon
     override = "qos_overrides./later/odom.publisher.reliability:=best_effort"
     simulator = simulator_with("-p", override, playground="base")
     monkeypatch.setattr(simulator_node, "RobotEndpoints", slow_ports)
-    sleeper.at(30, lambda: (simulator.spawn(RobotStart("later", 0.3, 0.0)), simulator.update_robots()))
+    sleeper.at(30, lambda: (simulator.runner.spawn(RobotStart("later", 0.3, 0.0)), simulator.runner.update_robots()))
     simulator.run_once(sleeper)
     assert made == ["later"]
 
@@ -192,7 +192,7 @@ def test_the_ticks_of_a_busy_machine_are_caught_up_or_counted(driven, sleeper):
     sleeper.now_ns += 150 * MS
     world = turn(50)
     assert world.now_ns == pytest.approx(500 * MS, abs=MAX_DEFERRED_TICKS * TICK_NS)
-    assert turn.sim.simulator._late_ticks > 0
+    assert turn.sim.simulator.runner.scheduler.late_ticks > 0
     sleeper.now_ns += 1000 * MS
     turn(50)
-    assert turn.sim.simulator._pacer.dropped_ticks > 50
+    assert turn.sim.simulator.runner.scheduler.dropped_ticks > 50

@@ -100,12 +100,12 @@ def test_each_reading_is_one_event(ros, simulation, runtime):
     ros.until(lambda: ros.node.count_subscribers("/simulator/_raw"), what="the runtime's ears")
     heard = ros.collect(Int16MultiArray, "/simulator/_raw")
     sim.until(lambda: heard)
-    sim.simulator.pause(True)
+    sim.simulator.runner.pause(True)
     ros.settle()
     motors, looks = count()
     done = len(heard)
     for _ in range(30):
-        sim.simulator.step(1)
+        sim.simulator.runner.step(1)
 
     def told(word):
         return sum(dim.label == word for one in list(heard)[done:] for dim in one.layout.dim)

@@ -39,9 +39,9 @@ def stranger(ros):
 
 def beaten(simulator):
     """Let the simulator do what it does once a second; what it says about its inputs."""
-    simulator._type_mismatches._next_s = 0.0  # a slow machine would make it wait longer than a test does
+    simulator._diagnostics._type_mismatches._next_s = 0.0  # a slow machine would make it wait longer than a test does
     simulator._publish_heartbeat(0)
-    return simulator._type_mismatches.mismatches
+    return simulator._diagnostics._type_mismatches.mismatches
 
 
 def test_a_stamped_velocity_is_noticed_said_once_and_shown(ros, simulation, stranger):
@@ -65,7 +65,7 @@ def test_a_stamped_velocity_is_noticed_said_once_and_shown(ros, simulation, stra
     assert [log.msg for log in logs] == [said]
     node.destroy_node()
     ros.until(lambda: not beaten(sim.simulator))
-    assert sim.simulator._type_mismatches.status().level == DiagnosticStatus.OK
+    assert sim.simulator._diagnostics._type_mismatches.status().level == DiagnosticStatus.OK
 
 
 def test_the_right_type_is_nothing_to_tell(ros, simulation, stranger):
@@ -79,7 +79,7 @@ def test_the_right_type_is_nothing_to_tell(ros, simulation, stranger):
 
 def test_every_input_of_every_robot_is_looked_at(ros, simulation, stranger):
     sim = simulation(playground="two_robots")
-    robots = [names.name for names in sim.simulator.names.values()]
+    robots = [names.name for names in sim.simulator.endpoints.robots.names.values()]
     topics = [*(f"/{robot}/{one.topic}" for robot in robots for one in robot_inputs()), "/simulator/_place"]
     node = stranger(String, topics[0])
     for topic in topics[1:]:
@@ -97,11 +97,11 @@ def test_every_input_of_every_robot_is_looked_at(ros, simulation, stranger):
 
 def test_robots_that_come_are_looked_at_too(ros, simulation, stranger):
     sim = simulation(playground="two_robots")
-    (name, *_) = [names.name for names in sim.simulator.names.values()]
+    (name, *_) = [names.name for names in sim.simulator.endpoints.robots.names.values()]
     mismatches = TypeMismatches(sim.simulator.node)
     mismatches.poll()
     sim.world.remove(name)
-    sim.simulator.update_robots()
+    sim.simulator.runner.update_robots()
     stranger(String, f"/{name}/_alarm", "late")
     ros.until(lambda: ros.node.count_publishers(f"/{name}/_alarm"))
     mismatches._next_s = 0.0

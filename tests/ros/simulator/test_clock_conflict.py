@@ -33,7 +33,7 @@ def beat(*simulators) -> None:
 
 
 def rivals(simulator):
-    return simulator._world_endpoints._clock_conflict
+    return simulator.endpoints.clock.conflict
 
 
 def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):

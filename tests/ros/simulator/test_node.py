@@ -78,8 +78,8 @@ def test_a_fault_of_ours_stops_the_world_and_says_so_and_the_node_lives(ros, sim
     def fail():
         raise ZeroDivisionError("nobody thought of it")
 
-    monkeypatch.setattr(sim.simulator.world, "step", fail)
-    assert sim.simulator.paused
+    monkeypatch.setattr(sim.world, "step", fail)
+    assert sim.simulator.runner.paused
     answer = ros.call(Trigger, "/simulator/step", Trigger.Request())
     ros.until(lambda: any("the world stopped at 0 ns" in log.msg and "in fail" in log.msg for log in logs))
     assert not answer.success
@@ -233,7 +233,7 @@ def test_reset_repeats_the_run_bit_for_bit(ros, simulation):
     odometry = ros.collect(Odometry, "/odom")
     poses = []
     for _ in range(2):
-        sim.simulator.reset()
+        sim.simulator.runner.reset()
         sim.world.post("thymio", sim_twist())
         sim.step(2.0)
         poses.append(sim.world.robots["thymio"].pose)
@@ -260,7 +260,7 @@ def test_pause_step_and_run(ros, simulation):
 
 def test_where_a_robot_stands_is_repeated_while_time_stands_still(ros, simulation):
     sim = simulation(playground="base")
-    sim.simulator.pause(True)
+    sim.simulator.runner.pause(True)
     odometry = ros.collect(Odometry, "/_ground_truth/odom")
     idle = make_executor(ros.context)
 
@@ -299,7 +299,7 @@ def test_a_change_of_playground_and_seed_builds_one_world_of_both(ros, simulatio
     sim = simulation(playground="base")
     built = []
     monkeypatch.setattr(
-        "thymio_sim_ros.ros.simulator.node.World",
+        "thymio_sim_ros.ros.simulator.prepared_playground.World",
         lambda *args, **options: built.append(World(*args, **options)) or built[-1],
     )
     wanted = [Parameter("seed", value=7), Parameter("playground", value="obstacle")]
@@ -312,7 +312,7 @@ def test_a_change_of_playground_and_seed_builds_one_world_of_both(ros, simulatio
 
 def test_a_command_to_a_robot_that_has_gone_with_its_playground_is_dropped(ros, simulation):
     sim = simulation(playground="two_robots")
-    late = sim.simulator._command_sender("red")
+    late = sim.simulator.endpoints.robots["red"]._owner.post
     assert set_parameter(ros, "playground", "base").successful
     late(BodyTwist(0.1, 0.0))
     sim.step(0.1)

@@ -19,7 +19,7 @@ from visualization_msgs.msg import MarkerArray
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
-from thymio_sim_ros.ros.simulator import node
+from thymio_sim_ros.ros.simulator import prepared_playground
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 
 TWO = json.dumps(
@@ -53,11 +53,11 @@ def set_parameter(ros, name, value):
 )
 def test_a_refused_value_says_why_and_changes_nothing(ros, simulation, name, value, reason):
     sim = simulation()
-    before = sim.simulator.params
+    before = sim.simulator.params.values
     result = set_parameter(ros, name, value)
     assert not result.successful
     assert reason in result.reason
-    assert sim.simulator.params == before
+    assert sim.simulator.params.values == before
 
 
 def test_the_present_playground_again_changes_nothing_unless_its_file_does(ros, simulation, tmp_path):
@@ -67,26 +67,26 @@ def test_the_present_playground_again_changes_nothing_unless_its_file_does(ros, 
     sim.step(0.2)
     world = sim.world
     assert set_parameter(ros, "playground", str(path)).successful
-    assert sim.simulator.world is world
+    assert sim.world is world
     path.write_text(TWO.replace("anna", "carl"))
     assert set_parameter(ros, "playground", str(path)).successful
-    assert "carl" in sim.simulator.world.robots
+    assert "carl" in sim.world.robots
 
 
 def test_the_present_world_is_loaded_anew_by_who_wants_a_world(ros, simulation):
     sim = simulation(playground=TWO)
     sim.step(0.2)
-    assert sim.simulator.load(TWO) == ""
+    assert sim.simulator.parameter_callbacks.load_playground(TWO) == ""
     assert sim.world.now_ns == 0
 
 
 def test_the_present_values_of_seed_and_pace_change_nothing(ros, simulation):
     sim = simulation(seed=3, real_time_factor=2.0)
     sim.step(0.2)
-    world, pacer = sim.world, sim.simulator._pacer
+    world, pacer = sim.world, sim.simulator.runner.scheduler._pacer
     assert set_parameter(ros, "seed", 3).successful
     assert set_parameter(ros, "real_time_factor", 2.0).successful
-    assert (sim.simulator.world, sim.simulator._pacer) == (world, pacer)
+    assert (sim.world, sim.simulator.runner.scheduler._pacer) == (world, pacer)
 
 
 def test_simulated_time_of_somebody_else_is_refused(ros, simulation):
@@ -113,7 +113,7 @@ def test_a_fault_of_ours_in_reading_a_playground_is_a_refusal(ros, simulation, m
     def fail(_value):
         raise ZeroDivisionError("nobody thought of it")
 
-    monkeypatch.setattr(node, "load_playground", fail)
+    monkeypatch.setattr(prepared_playground, "load_playground", fail)
     result = set_parameter(ros, "playground", "strange.json")
     assert (result.successful, result.reason) == (False, "ZeroDivisionError: nobody thought of it")
     ros.until(lambda: any("in fail" in log.msg for log in logs))

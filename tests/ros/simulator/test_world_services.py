@@ -164,5 +164,5 @@ def test_what_a_viewer_drags_goes_there(ros, simulation, name, child):
 def test_a_drag_to_nowhere_is_refused_and_counted(ros, simulation, refused):
     sim = simulation(playground=ROOM)
     ros.publisher(TransformStamped, "/simulator/_place").publish(refused)
-    ros.until(lambda: sim.simulator._refused == 1)
+    ros.until(lambda: sim.simulator._counters.rejected == 1)
     assert poses(ros, "thymio") == [[0.0, 0.0, 0.0]]

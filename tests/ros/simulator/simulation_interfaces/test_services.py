@@ -40,7 +40,7 @@ class Served:
     def __init__(self, sim):
         self.simulator = sim.simulator
         self._answers = {}
-        SimInterfaces(self, sim.simulator, TYPES)
+        SimInterfaces(self, sim.simulator.runner, sim.simulator.params, sim.simulator.parameter_callbacks, TYPES)
 
     def create_service(self, kind, name, answer):
         """What a node does."""
@@ -114,11 +114,11 @@ def test_the_simulation_is_stopped_played_paused_and_stopped(room):
     assert room.told("set_simulation_state", state=target(PLAYING)) == (OK, "")
     assert room.state == PLAYING
     assert room.told("set_simulation_state", state=target(PLAYING)) == (101, "the simulation is playing already")
-    room.simulator.advance(3)
+    room.simulator.runner.advance(3)
     assert room.told("set_simulation_state", state=target(PAUSED)) == (OK, "")
     assert room.state == PAUSED
     assert room.told("set_simulation_state", state=target(STOPPED)) == (OK, "")
-    assert (room.state, room.simulator.world.now_ns) == (STOPPED, 0)
+    assert (room.state, room.simulator.runner.world.now_ns) == (STOPPED, 0)
 
 
 def test_what_cannot_follow_a_state_is_refused(room):
@@ -130,12 +130,12 @@ def test_what_cannot_follow_a_state_is_refused(room):
 def test_steps_are_done_while_the_world_is_paused(room):
     assert room.told("step_simulation") == (OK, "")
     assert room.told("step_simulation", steps=5) == (OK, "")
-    assert room.simulator.world.now_ns == 60_000_000
-    room.simulator.pause(False)
+    assert room.simulator.runner.world.now_ns == 60_000_000
+    room.simulator.runner.pause(False)
     assert room.told("step_simulation") == (FAILED, "the simulation is running: pause it first")
-    room.simulator.pause(True)
+    room.simulator.runner.pause(True)
     assert room.told("step_simulation", steps=100_001)[0] == FAILED
-    assert room.simulator.world.now_ns == 60_000_000
+    assert room.simulator.runner.world.now_ns == 60_000_000
 
 
 def test_a_reset_takes_spawned_robots_along(room):
@@ -168,7 +168,7 @@ def test_an_entity_has_a_category(room):
 
 def test_a_state_is_the_truth_in_the_world_s_frame(room):
     assert room.told("set_entity_state", entity="thymio", state=state(0.2, -0.1, math.pi / 2, frame="map")) == (OK, "")
-    room.simulator.world.post("thymio", _forward())
+    room.simulator.runner.world.post("thymio", _forward())
     room("step_simulation", steps=2)
     found = room("get_entity_state", entity="thymio").state
     assert (found.header.frame_id, found.header.stamp.nanosec) == ("map", 20_000_000)
@@ -205,8 +205,8 @@ def test_a_robot_is_spawned_and_deleted(room):
     (only,) = room("get_spawnables").spawnables
     answer = room("spawn_entity", name="anna", uri=only.uri, entity_namespace="/anna", initial_pose=place(-0.5, 0.2))
     assert (answer.result.result, answer.entity_name) == (OK, "anna")
-    assert room.simulator.names["anna"].topic("odom") == "anna/odom"
-    assert room.simulator.world.robots["anna"].pose.x_m == -0.5
+    assert room.simulator.endpoints.robots.names["anna"].topic("odom") == "anna/odom"
+    assert room.simulator.runner.world.robots["anna"].pose.x_m == -0.5
     assert room.told("delete_entity", entity="anna") == (OK, "")
     assert named(room) == ["thymio", "crate"]
     assert room.told("delete_entity", entity="crate")[0] == FAILED
@@ -253,7 +253,7 @@ def test_several_are_spawned_each_with_a_result(room):
 
 def test_worlds_are_listed_and_loaded(room):
     assert [world.name for world in room("get_available_worlds").worlds] == list(resources.playgrounds())
-    room.simulator.pause(False)
+    room.simulator.runner.pause(False)
     answer = room("load_world", uri="maze")
     assert (answer.result.result, answer.world.name, room.state) == (OK, "maze", STOPPED)
     assert room("load_world", resource_string=ROOM).world.name == "Room"
