@@ -23,7 +23,7 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     simulator, runtime = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
     assert simulator.params.values.motor_model == "firmware"
     assert simulator.params.values.proximity_model == "cone"
-    assert runtime.params.options == device
+    assert runtime.values.params.options == device
     (robot,) = runtime.robots
     assert robot.device.layout == "playground"
     assert robot.device.get_variable("sd.present") == (1,)

@@ -98,11 +98,11 @@ def test_a_slice_ends_whatever_waits_and_the_rest_goes_on_in_order(ros):
 
     for endpoints in life.robots:
         endpoints.run_slice = partial(run_slice, endpoints)
-    with life._bus.slice():
-        life._bus.run_until_idle(*life.robots)
-    assert taken == life.robots[: len(taken)]
+    with life.robots.bus.slice():
+        life.robots.bus.run_until_idle(*life.robots)
+    assert taken == list(life.robots[: len(taken)])
     assert len(taken) < len(life.robots)
-    assert life._bus.has_ready_robots
-    life._bus.run_until_idle()  # in lock-step there are no slices
-    assert taken == life.robots
-    assert not life._bus.has_ready_robots
+    assert life.robots.bus.has_ready_robots
+    life.robots.bus.run_until_idle()  # in lock-step there are no slices
+    assert taken == list(life.robots)
+    assert not life.robots.bus.has_ready_robots

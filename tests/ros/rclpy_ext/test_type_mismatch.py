@@ -114,12 +114,12 @@ def test_a_runtime_looks_at_its_inputs(ros, runtime, stranger):
     stranger(Twist, "/_aseba/emit")
 
     def found():
-        made._type_mismatches._next_s = 0.0
-        made._publish_diagnostics()
-        return made._type_mismatches.mismatches
+        made._diagnostics._type_mismatches._next_s = 0.0
+        made._diagnostics.publish_all(made.robots)
+        return made._diagnostics._type_mismatches.mismatches
 
     ros.until(found)
-    assert [one.topic for one in made._type_mismatches.mismatches] == ["/_aseba/emit"]
+    assert [one.topic for one in made._diagnostics._type_mismatches.mismatches] == ["/_aseba/emit"]
 
 
 @pytest.mark.parametrize(

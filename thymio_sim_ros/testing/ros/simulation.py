@@ -88,7 +88,7 @@ class Simulation:
 
         It waits until the node knows the robots: a latched message takes its time.
         """
-        if runtime.params.follow_simulator:
+        if runtime.values.params.follow_simulator:
             wanted = [names.name for names in self.simulator.endpoints.robots.names.values()]
             self.ros.until(
                 lambda: [ports.names.name for ports in runtime.robots] == wanted, what="the runtime knows the robots"
