@@ -150,7 +150,7 @@ def test_a_simulator_without_the_common_topic_is_heard_by_single_ones(ros, runti
 def test_a_message_that_is_none_ends_nothing(ros, simulation, runtime):
     sim = simulation()
     node = runtime(COUNTER)
-    node._on_raw(b"\0\1\0\0nonsense")
+    node._follower._on_raw(b"\0\1\0\0nonsense")
     before = get_variables(ros, "motors")[0][0]
     sim.until(lambda: get_variables(ros, "motors")[0][0] > before)
 

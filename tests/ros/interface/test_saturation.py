@@ -27,7 +27,7 @@ from std_msgs.msg import (
 
 from tests.ros.test_every_topic import SENT
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import MAX_SAMPLES
+from thymio_sim_ros.ros.interface.command_codecs import MAX_SAMPLES
 from thymio_sim_ros.ros.interface.robot_inputs import WORLD, InputContext, robot_inputs
 from thymio_sim_ros.sim.audio.synthesis import HIGHEST_HZ, LOWEST_HZ
 from thymio_sim_ros.sim.commands import LED_GROUPS

@@ -17,7 +17,7 @@ from std_msgs.msg import Float64MultiArray
 
 from thymio_sim_ros.ros.interface import command_checks, convert_readings
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import CommandRow
+from thymio_sim_ros.ros.interface.command_row import CommandRow
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin

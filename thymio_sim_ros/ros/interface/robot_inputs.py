@@ -27,7 +27,7 @@ from thymio_sim_ros.ros.interface import (
     saturation,
 )
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import CommandRow
+from thymio_sim_ros.ros.interface.command_row import CommandRow
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.sim import commands
