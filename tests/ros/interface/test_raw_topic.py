@@ -67,7 +67,7 @@ def test_a_message_that_somebody_else_has_written_is_read():
 
 
 def test_words_that_belong_to_nothing_are_refused():
-    with pytest.raises(ValueError, match="3 words found, expected 2"):
+    with pytest.raises(ValueError, match="found 3 words, expected 2"):
         list(RawDecoder().decode(serialize_message(message(("a/motor", 2), data=[1, 2, 3]))))
 
 

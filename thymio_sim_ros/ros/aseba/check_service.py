@@ -60,10 +60,10 @@ class CheckService:
         except _RequestError as error:
             response.result = SetParametersResult(successful=False, reason=json.dumps(refusal(str(error))))
             return response
-        successful, told = _answer(question)
+        successful, answer = _answer(question)
         if given.get("target"):
-            told = json.dumps(json.loads(told) | {"target": describe_target(self._layout, question.language)})
-        response.result = SetParametersResult(successful=successful, reason=told)
+            answer = json.dumps(json.loads(answer) | {"target": describe_target(self._layout, question.language)})
+        response.result = SetParametersResult(successful=successful, reason=answer)
         return response
 
 

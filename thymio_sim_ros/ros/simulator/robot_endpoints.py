@@ -83,7 +83,7 @@ class _SensorPublisher:
     """The publisher of a row with its demand, the time of the next message, and the last published value."""
 
     row: Row
-    heard: TopicDemand
+    topic_demand: TopicDemand
     next_ns: int
     publisher: Any = None
     send: Callable[[bytes], None] = lambda _data: None
@@ -168,7 +168,7 @@ class RobotEndpoints:
             return
         stamp_ns, content = reading.stamp_ns, self._owner.convert_options
         for target in sent:
-            every_ns = target.heard.every_ns
+            every_ns = target.topic_demand.every_ns
             if every_ns:
                 if stamp_ns < target.next_ns:
                     continue
@@ -218,7 +218,7 @@ class RobotEndpoints:
         """Publish the next reading of every sensor even if unchanged, and replace outdated retained messages."""
         for sensor, publishers in self._publishers.items():
             for target in publishers:
-                target.last, target.next_ns = None, target.heard.every_ns
+                target.last, target.next_ns = None, target.topic_demand.every_ns
                 if target.is_stale and sensor in sensor_topics.AT_START:
                     target.is_stale = False
                     message = target.row.encode(sensor_topics.AT_START[sensor], self.names, self._owner.convert_options)
@@ -237,20 +237,20 @@ class RobotEndpoints:
         if self._description is not None:
             self._node.destroy_publisher(self._description)
 
-    def _open(self, row: Row, heard: TopicDemand) -> None:
-        topic, target = self.names.topic(row.topic), _SensorPublisher(row, heard, next_ns=heard.every_ns)
+    def _open(self, row: Row, topic_demand: TopicDemand) -> None:
+        topic, target = self.names.topic(row.topic), _SensorPublisher(row, topic_demand, next_ns=topic_demand.every_ns)
         profile = qos.overridable(self._node, topic, row.profile)
         target.publisher = self._node.create_publisher(row.type, topic, **profile)
         target.send, target.count = raw_publisher.sender(target.publisher), raw_publisher.counter(target.publisher)
-        self._publishers[heard.sensor].append(target)
+        self._publishers[topic_demand.sensor].append(target)
         self._send(target, wanted=row.always)
 
     def _send(self, target: _SensorPublisher, *, wanted: bool) -> None:
         if target.is_sent == wanted:
             return
         target.is_sent = wanted
-        (self._demand.add if wanted else self._demand.remove)(target.heard)
-        sensor = target.heard.sensor
+        (self._demand.add if wanted else self._demand.remove)(target.topic_demand)
+        sensor = target.topic_demand.sensor
         self._sent[sensor] = tuple(one for one in self._publishers[sensor] if one.is_sent)
 
     def _handler(self, one: RobotInput) -> Callable[[Any], None]:
