@@ -176,7 +176,7 @@ def test_there_is_a_message_for_every_topic():
 
 
 @pytest.mark.parametrize("topic", SENT)
-def test_what_a_robot_listens_to(ros, simulation, monkeypatch, topic):
+def test_a_robot_subscribes_to_every_input(ros, simulation, monkeypatch, topic):
     sim = simulation(playground=PAIR)
     posted = []
     monkeypatch.setattr(sim.world, "post", lambda robot, command: posted.append((robot, command)))

@@ -65,7 +65,7 @@ def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
     assert all(path.name.startswith(("u", "r")) for path in (tmp_path / "card").rglob("*") if path.is_file())
 
 
-def test_what_is_too_fast_is_said_and_clears(ros, threaded):
+def test_an_overload_is_reported_until_it_ends(ros, threaded):
     threaded(source=FLOOD)
     status = Status(ros)
     diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)

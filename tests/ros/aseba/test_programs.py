@@ -80,7 +80,7 @@ def test_an_error_in_one_of_several_programs_names_its_node(ros, runtime):
     assert "two.aesl: line 4, column 48: node 'thymio-II' 1: no variable is called 'L'" in result.reason
 
 
-def test_what_does_not_fit_is_told_in_the_warnings(ros, runtime):
+def test_what_does_not_fit_is_reported_as_a_warning(ros, runtime):
     runtime(NETWORK.replace('nodeId="2"', 'nodeId="9"'), robots=["anna", "bert", "carl"], follow_simulator=False)
     bert, carl = Status(ros, "/bert"), Status(ros, "/carl")
     ros.until(lambda: bert["state"] and carl["state"])
@@ -126,7 +126,7 @@ def test_constants_are_parameters_for_all_and_for_one(ros, runtime):
         ("script.path", "no_such_program", "no_such_program"),
     ],
 )
-def test_a_value_that_cannot_be_is_refused_with_its_reason(ros, runtime, name, value, found):
+def test_an_invalid_value_is_rejected_with_a_reason(ros, runtime, name, value, found):
     runtime("var me = 1", **TWO)
     result = set_parameters(ros, {name: value})
     assert not result.successful
@@ -142,7 +142,7 @@ def test_a_value_that_cannot_be_is_refused_with_its_reason(ros, runtime, name, v
         ("robots", ["an na"], "'an na' found, expected a namespace"),
     ],
 )
-def test_a_value_from_the_command_line_that_cannot_be_is_told_in_one_line(ros, name, value, found):
+def test_an_invalid_value_of_the_command_line_is_reported_in_one_line(ros, name, value, found):
     with pytest.raises(StartError, match=re.escape(found)):
         AsebaRuntime(ros.context, overrides={name: value})
 
@@ -157,7 +157,7 @@ def test_the_last_of_path_and_text_counts(ros, runtime):
     ros.until(lambda: status["program"] == "line_follower.aesl")
 
 
-def test_the_same_text_again_changes_nothing_and_a_reset_begins_anew(ros, runtime):
+def test_the_same_text_again_changes_nothing_and_a_reset_restarts(ros, runtime):
     robot = runtime("var me = 1\nonevent button.left\nme = 7").robots[0]
     robot.device.set_variable("me", (9,))
     assert set_parameters(ros, {"script.source": "var me = 1\nonevent button.left\nme = 7"}).successful
@@ -183,7 +183,7 @@ def test_another_program_ends_a_behaviour_and_the_behaviour_can_come_back(ros, r
     ros.until(lambda: get_variables(ros, "me") == [[2]])
 
 
-def test_a_file_that_was_written_anew_is_read_again(ros, runtime, tmp_path):
+def test_a_changed_file_is_read_again(ros, runtime, tmp_path):
     path = tmp_path / "counts.aesl"
     path.write_text("var me = 1\nonevent button.left\nme = 7")
     robot = runtime(path=str(path)).robots[0]
@@ -237,7 +237,7 @@ def test_robots_that_stay_go_on_when_others_come_and_go(ros, runtime):
     assert sorted(endpoints.number for endpoints in node.robots) == [1, 2]
 
 
-def test_a_robot_that_comes_later_gets_the_program_that_waits_for_it(ros, runtime):
+def test_a_robot_that_is_added_later_gets_its_program(ros, runtime):
     node = runtime("var me = 1", robots=["anna"])
     assert set_parameters(ros, {"robots.bert.script.source": "var me = 2"}).successful
     simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)

@@ -102,7 +102,7 @@ def test_every_row_gives_commands_that_an_actuator_takes():
         assert type(decode(topic, message)) in accepted
 
 
-def test_the_pen_is_moved_colored_and_turned_round():
+def test_the_pen_is_moved_colored_and_used_as_eraser():
     assert decode("pen/down", Bool(data=True)) == SetPen(down=True)
     assert decode("_pen/color", ColorRGBA(r=1.0, g=0.5, b=2.0, a=1.0)) == SetPen(color=(1.0, 0.5, 1.0), erase=False)
     assert decode("_pen/color", ColorRGBA(a=0.0)).erase
@@ -120,7 +120,7 @@ def test_an_alarm_is_switched():
 
 
 @pytest.mark.parametrize(("number", "told"), [(-129, -128), (127, 127), (128, 127), (32767, 127)])
-def test_a_number_that_is_no_sound_of_the_robot_is_one_that_a_message_can_hold(number, told):
+def test_an_unknown_sound_number_fits_into_the_message(number, told):
     message = BY_TOPIC["_sound/system"].encode(PlaySystemSound(number))
     assert decode("_sound/system", message) == PlaySystemSound(told)
 
@@ -148,6 +148,6 @@ def test_a_sound_is_stopped_by_a_negative_number():
         ("_pen/color", ColorRGBA(r=float("inf")), "color is inf"),
     ],
 )
-def test_what_cannot_be_is_refused(topic, message, found):
+def test_invalid_messages_are_rejected(topic, message, found):
     with pytest.raises(CommandError, match=found):
         decode(topic, message)

@@ -94,7 +94,7 @@ BEYOND = {
 
 
 @pytest.mark.parametrize("topic", BEYOND)
-def test_what_is_beyond_the_robot_is_said(topic):
+def test_values_beyond_a_limit_are_described(topic):
     one, (message, within, said) = INPUTS[topic], BEYOND[topic]
     assert one.limit_check(message).startswith(said)
     assert one.limit_check(within) == ""
@@ -173,7 +173,7 @@ def answer(one, message):
 
 
 @pytest.mark.parametrize("one", OWN, ids=[one.topic for one in OWN])
-def test_nothing_that_a_robot_cannot_do_goes_without_a_word(one):
+def test_every_value_beyond_a_limit_is_described(one):
     silent = [message for message in bad_messages(one) if not answer(one, message)]
     # a tone of negative length is how a sound is stopped
     silent = [message for message in silent if one.topic != "sound/tone" or message.data[1] >= 0.0]
@@ -181,7 +181,7 @@ def test_nothing_that_a_robot_cannot_do_goes_without_a_word(one):
 
 
 @pytest.mark.parametrize("one", OWN, ids=[one.topic for one in OWN])
-def test_a_good_message_goes_without_a_word(one):
+def test_a_message_within_the_limits_is_not_reported(one):
     assert answer(one, GOOD[one.topic]) == ""
 
 
@@ -207,7 +207,7 @@ def test_tones_are_limited_to_what_the_wave_can_have_either_sign_and_however_lon
     assert limit_check(outwards).startswith("found frequency")
 
 
-def test_a_command_beyond_the_robot_is_limited_told_once_and_counted(ros, simulation):
+def test_a_command_beyond_a_limit_is_clamped_logged_once_and_counted(ros, simulation):
     sim = simulation()
     logs = ros.collect(Log, "/rosout", where=lambda log: "clamped" in log.msg)
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")

@@ -72,7 +72,7 @@ def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):
     assert rivals(first)._subscription is None
 
 
-def test_a_publisher_that_says_nothing_is_no_simulator(ros, simulator):
+def test_a_silent_publisher_is_no_conflict(ros, simulator):
     """As one that was killed: discovery keeps it for some time."""
     alone = simulator()
     ros.node.create_publisher(Clock, "/clock", qos.CLOCK)
@@ -95,7 +95,7 @@ def test_a_publisher_that_says_nothing_is_no_simulator(ros, simulator):
     assert rivals(alone).status().level == DiagnosticStatus.OK
 
 
-def test_a_simulator_with_another_clock_is_none(ros, simulator, simulator_with):
+def test_a_simulator_with_another_clock_is_no_conflict(ros, simulator, simulator_with):
     alone = simulator()
     other = simulator_with("-r", "/clock:=/lab1/clock", start_paused=True)
     ros.until(lambda: ros.node.count_publishers("/lab1/clock"))

@@ -121,7 +121,7 @@ def test_the_simulation_is_stopped_played_paused_and_stopped(room):
     assert (room.state, room.simulator.runner.world.now_ns) == (STOPPED, 0)
 
 
-def test_what_cannot_follow_a_state_is_refused(room):
+def test_an_invalid_transition_is_rejected(room):
     code, reason = room.told("set_simulation_state", state=target(PAUSED))
     assert (code, reason) == (103, "the simulation is stopped, which is paused at time 0: step or play it")
     assert room.told("set_simulation_state", state=target(3))[0] == UNSUPPORTED
@@ -196,7 +196,7 @@ def _forward():
         ("thymio", state(twist=Twist(linear=Vector3(x=1.0))), UNSUPPORTED, "found velocities"),
     ],
 )
-def test_a_state_that_cannot_be_is_refused(room, entity, wanted, code, reason):
+def test_an_invalid_state_is_rejected(room, entity, wanted, code, reason):
     found = room.told("set_entity_state", entity=entity, state=wanted)
     assert (found[0], found[1][: len(reason)]) == (code, reason)
 
@@ -228,7 +228,7 @@ def test_a_robot_is_spawned_and_deleted(room):
         ({"name": "anna", "uri": "thymio", "initial_pose": place(0.0, 0.5, "base_link")}, UNSUPPORTED),
     ],
 )
-def test_a_robot_that_cannot_be_is_refused(room, request_, code):
+def test_an_invalid_robot_is_rejected(room, request_, code):
     found = room.told("spawn_entity", **({"initial_pose": place(-0.5, 0.0)} | request_))
     assert found[0] == code
     assert found[1]
@@ -262,7 +262,7 @@ def test_worlds_are_listed_and_loaded(room):
     assert named(room) == ["thymio", "crate"]
 
 
-def test_a_world_that_cannot_be_is_refused_and_the_old_one_stays(room):
+def test_an_invalid_world_is_rejected_and_the_old_one_stays(room):
     assert room.told("load_world")[0] == 102
     code, reason = room.told("load_world", uri="nowhere")
     assert code == 103
@@ -270,7 +270,7 @@ def test_a_world_that_cannot_be_is_refused_and_the_old_one_stays(room):
     assert room("get_current_world").world.name == "Room"
 
 
-def test_without_the_package_nothing_is_said(ros, simulation):
+def test_without_the_package_nothing_is_logged(ros, simulation):
     if not hasattr(TYPES.srv.StepSimulation, "Event"):
         assert simulation().simulator._interfaces is None
 

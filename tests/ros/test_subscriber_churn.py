@@ -30,7 +30,7 @@ print("done")
 """
 
 
-def test_a_storm_of_listeners_outlives_changes_of_the_playground(ros, simulation):
+def test_many_subscribers_survive_changes_of_the_playground(ros, simulation):
     sim = simulation(playground="two_robots")
     storm = subprocess.Popen(
         [sys.executable, "-X", "faulthandler", "-c", STORM], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
