@@ -27,7 +27,7 @@ def seen(value):
 
 
 class FakeRobot:
-    """A node that publishes what the driver publishes, as the driver does it."""
+    """A node that publishes the topics of the ROS driver as the driver does."""
 
     def __init__(self, ros):
         self.ros = ros

@@ -1,4 +1,4 @@
-"""What the runtime tells editors: the target, and checks of texts that are not loaded."""
+"""Services of the runtime for editors: the target, and checks of texts that are not loaded."""
 
 from __future__ import annotations
 

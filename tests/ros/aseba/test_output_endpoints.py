@@ -1,4 +1,4 @@
-"""What programs tell robots that listen, that come later, and that come again."""
+"""Commands of programs to robots that are subscribed, that subscribe later, and that are restarted."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KINDS = {"_motor/target": Int16MultiArray, "_led/single": Int16MultiArray, "soun
 
 
 class Robot:
-    """Somebody who listens to what a program says, until he leaves."""
+    """A subscriber of commands of a program, until `leave` is called."""
 
     def __init__(self, ros, topics=tuple(KINDS)):
         self.heard: list[list[float]] = []
@@ -42,7 +42,7 @@ def outputs(ros):
 
 
 def resend(ros, outputs):
-    """Twice: the first look sees who has come, the second one that no more come."""
+    """Resend twice: the first poll finds new subscribers, the second one that discovery is quiet."""
     for _ in range(2):
         outputs.resend()
     ros.settle()
@@ -90,7 +90,7 @@ def test_a_restarted_robot_gets_the_retained_commands(ros, outputs):
 
 @pytest.mark.parametrize(("later_s", "heard"), [(0.0, [[1, 2]]), (FRESH_S, [])])
 def test_with_another_subscriber_only_fresh_commands_are_sent_again(ros, outputs, monkeypatch, later_s, heard):
-    """A robot that was killed seems to listen for a while; who looks on later must not move anything."""
+    """Discovery reports a killed robot as a subscriber for a while; a late viewer must not start a movement."""
     Robot(ros)
     resend(ros, outputs)
     outputs.send(MotorTargets(1, 2))

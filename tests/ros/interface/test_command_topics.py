@@ -1,4 +1,4 @@
-"""Commands as messages: what a program commands arrives unchanged, what cannot be is refused."""
+"""Commands as messages: commands of programs arrive unchanged, invalid messages are rejected."""
 
 from __future__ import annotations
 

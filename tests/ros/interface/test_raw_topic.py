@@ -1,4 +1,4 @@
-"""The integers of all robots in one message: its form, and what a runtime makes of it."""
+"""The integer readings of all robots in one message: its form, and its use by a runtime."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is beyond the robot is limited, and told: once in the log for each topic, counted in the diagnostics."""
+"""Values beyond a limit of the robot are clamped, logged once per topic, and counted in the diagnostics."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ BEYOND = {
     "_press/sound": (Float32(data=-0.5), Float32(data=0.0), "found loudness -0.5"),
     "_press/light": (Float32(data=2.0), Float32(data=1.0), "found light 2"),
 }
-"""A message beyond, one just within, and what is said of the first."""
+"""A message beyond the limits, one just within, and the description of the first."""
 
 
 @pytest.mark.parametrize("topic", BEYOND)
@@ -163,7 +163,7 @@ GOOD = {topic: message for topic, (message, _) in SENT.items()}
 
 
 def answer(one, message):
-    """What a user is told of a message: why it is refused, what is limited, or nothing."""
+    """Return the report about a message: the reason of a rejection, the clamped value, or nothing."""
     try:
         commands = one.commands(message, NOW)
     except CommandError as error:

@@ -1,4 +1,4 @@
-"""Who listens decides which sensors are looked at, and when the next tick matters."""
+"""Subscribers determine which sensors are read, and when the next reading is due."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes come and go while the others run; who comes late sees what is latched; time may jump back."""
+"""Nodes start and end while others run; late subscribers get retained messages; time may jump back."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def test_a_new_playground_goes_back_in_time_and_keeps_the_program(ros, simulatio
 
 
 class Stumbling:
-    """A life whose first turns fail."""
+    """A node whose first iterations fail."""
 
     def __init__(self, node, faults):
         self.node, self.faults, self.turns = node, faults, 0
@@ -141,19 +141,19 @@ class Stumbling:
 def test_an_internal_error_does_not_end_a_node(ros, monkeypatch):
     told = []
     monkeypatch.setattr(RcutilsLogger, "error", lambda self, text, **_: told.append(text))
-    life = Stumbling(Node("stumbling", context=ros.context), faults=MAX_CONSECUTIVE_ERRORS - 1)
-    run_node(life, ros.context, lambda: life.turns == MAX_CONSECUTIVE_ERRORS + 1)
+    runnable = Stumbling(Node("stumbling", context=ros.context), faults=MAX_CONSECUTIVE_ERRORS - 1)
+    run_node(runnable, ros.context, lambda: runnable.turns == MAX_CONSECUTIVE_ERRORS + 1)
     assert len(told) == MAX_CONSECUTIVE_ERRORS - 1
     assert all("nobody thought of it" in text for text in told)
-    life.node.destroy_node()
+    runnable.node.destroy_node()
 
 
 def test_a_node_that_only_fails_ends(ros):
-    life = Stumbling(Node("stumbling", context=ros.context), faults=1000)
+    runnable = Stumbling(Node("stumbling", context=ros.context), faults=1000)
     with pytest.raises(ZeroDivisionError):
-        run_node(life, ros.context, lambda: life.turns == 1000)
-    assert life.turns == MAX_CONSECUTIVE_ERRORS
-    life.node.destroy_node()
+        run_node(runnable, ros.context, lambda: runnable.turns == 1000)
+    assert runnable.turns == MAX_CONSECUTIVE_ERRORS
+    runnable.node.destroy_node()
 
 
 def test_nothing_of_a_simulator_is_left_in_the_graph(ros, simulation):

@@ -1,4 +1,4 @@
-"""The short way past rclpy gives what the usual one gives."""
+"""The direct calls below rclpy give the same results as rclpy."""
 
 from __future__ import annotations
 

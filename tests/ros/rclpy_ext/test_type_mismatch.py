@@ -38,7 +38,7 @@ def stranger(ros):
 
 
 def beaten(simulator):
-    """Let the simulator do what it does once a second; what it says about its inputs."""
+    """Publish the heartbeat of the simulator and return its mismatches."""
     simulator._diagnostics._type_mismatches._next_s = 0.0  # a slow machine would make it wait longer than a test does
     simulator._publish_heartbeat(0)
     return simulator._diagnostics._type_mismatches.mismatches

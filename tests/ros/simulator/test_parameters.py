@@ -1,4 +1,4 @@
-"""The simulator's parameters: what they change, and why a value is refused."""
+"""The simulator's parameters: their effects, and the reasons of rejected values."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def test_simulated_time_of_another_node_is_ignored_at_the_start(simulator_with, 
 
 
 def test_an_internal_error_while_reading_a_playground_rejects_it(ros, simulation, monkeypatch):
-    """A file that nobody thought of must not end the simulator of a class."""
+    """An internal error while reading a file must not end the simulator of a class."""
     sim = simulation()
     logs = ros.collect(Log, "/rosout")
 
