@@ -69,10 +69,10 @@ def test_a_check_may_bring_the_target_in_a_language(ros, runtime):
 @pytest.mark.parametrize(
     ("given", "found"),
     [
-        ({}, "no parameter 'source' found"),
-        ({"source": 3}, "source: INTEGER found, expected STRING"),
-        ({"source": "", "sauce": ""}, "parameter 'sauce' found, expected one of source"),
-        ({"source": "", "events": ["ping"]}, "events: 'ping' found, expected a name and a number"),
+        ({}, "found no parameter 'source'"),
+        ({"source": 3}, "source: found INTEGER, expected STRING"),
+        ({"source": "", "sauce": ""}, "found parameter 'sauce', expected one of source"),
+        ({"source": "", "events": ["ping"]}, "events: found 'ping', expected a name and a number"),
         ({"source": "#" * (MOST_CHARACTERS + 1)}, f"expected at most {MOST_CHARACTERS}"),
     ],
 )

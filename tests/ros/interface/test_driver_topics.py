@@ -102,10 +102,10 @@ def test_every_group_of_lights_has_a_number(number):
 @pytest.mark.parametrize(
     ("topic", "message", "found"),
     [
-        ("led", TYPES.Led(id=7, values=[1.0] * 8), "group 7 found, expected 0 to 6: circle"),
+        ("led", TYPES.Led(id=7, values=[1.0] * 8), "found group 7, expected 0 to 6: circle"),
         ("led", TYPES.Led(id=0, values=[1.0]), "found 1 values, expected 8 intensities"),
         ("led", TYPES.Led(id=5, values=[math.nan]), "intensity is nan"),
-        ("led/gesture", wave(leds=2), "a gesture of the buttons lights found"),
+        ("led/gesture", wave(leds=2), "found a gesture of the buttons lights"),
         ("led/gesture", wave(period=math.nan), "period is nan"),
         ("led/gesture", wave(period=0.0), "period 0 s found"),
         ("sound/play", TYPES.Sound(frequency=math.inf), "frequency is inf"),

@@ -192,7 +192,7 @@ def test_every_input_but_switches_is_tried_with_bad_messages():
 
 @pytest.mark.parametrize("number", [-1, 15, 40])
 def test_a_light_that_there_is_not_is_refused(number):
-    with pytest.raises(CommandError, match=f"light {number} found, expected 0 to 39, but for 15"):
+    with pytest.raises(CommandError, match=f"found light {number}, expected 0 to 39, but for 15"):
         INPUTS["_led/single"].commands(Int16MultiArray(data=[number, 5]), NOW)
 
 

@@ -206,7 +206,7 @@ def test_an_argument_outside_ros_args_is_reported_and_nothing_starts(capfd, argu
     assert run_main(lambda context: pytest.fail("started"), [argument, "--ros-args", "-p", "seed:=1"]) == code
     out, err = capfd.readouterr()
     assert "--ros-args -p PARAMETER:=VALUE" in (out if code == 0 else err)
-    assert (f"argument '{argument}' found" in err) == bool(code)
+    assert (f"found argument '{argument}'" in err) == bool(code)
 
 
 @pytest.mark.parametrize(

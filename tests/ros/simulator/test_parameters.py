@@ -41,7 +41,7 @@ def set_parameter(ros, name, value):
     ("name", "value", "reason"),
     [
         ("out_of_range", "nan", "out_of_range is 'nan', expected rep117 or driver"),
-        ("pose_covariance_diagonal", [1.0], "pose_covariance_diagonal: 1 values found, expected 6"),
+        ("pose_covariance_diagonal", [1.0], "pose_covariance_diagonal: found 1 values, expected 6"),
         ("twist_covariance_diagonal", [1.0] * 5 + [-1.0], "twist_covariance_diagonal[5] is -1.0, expected at least 0"),
         ("real_time_factor", -1.0, "real_time_factor"),
         ("real_time_factor", float("nan"), "real_time_factor"),

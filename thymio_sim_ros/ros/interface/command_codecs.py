@@ -81,7 +81,7 @@ def decode_single(message: Int16MultiArray) -> Command:
     number, level = command_checks.sized(message.data, 2, "[number of the light, brightness 0…32]")
     if not 0 <= number < len(LED_NUMBERS) or LED_NUMBERS[number] is None:
         none = ", ".join(str(place) for place, light in enumerate(LED_NUMBERS) if light is None)
-        raise CommandError(f"light {number} found, expected 0 to {len(LED_NUMBERS) - 1}, but for {none}")
+        raise CommandError(f"found light {number}, expected 0 to {len(LED_NUMBERS) - 1}, but for {none}")
     return commands.SetLed(int(number), int(level))
 
 
@@ -135,7 +135,7 @@ def encode_samples(command: commands.PlaySamples) -> UInt8MultiArray:
 def decode_samples(message: UInt8MultiArray) -> Command:
     """Return the command for at most `MAX_SAMPLES` unsigned 8 bit samples."""
     if len(message.data) > MAX_SAMPLES:
-        raise CommandError(f"{len(message.data)} samples found, expected at most {MAX_SAMPLES}")
+        raise CommandError(f"found {len(message.data)} samples, expected at most {MAX_SAMPLES}")
     return commands.PlaySamples(bytes(message.data))
 
 
@@ -158,7 +158,7 @@ def encode_volume(command: commands.SetVolume) -> Int8:
 def decode_volume(message: Int8) -> Command:
     """Return the command for the number of bits that samples lose: 0 (loudest) to `VOLUME_OFF`."""
     if not 0 <= message.data <= VOLUME_OFF:
-        raise CommandError(f"{message.data} found, expected 0 (loudest) to {VOLUME_OFF} (off)")
+        raise CommandError(f"found {message.data}, expected 0 (loudest) to {VOLUME_OFF} (off)")
     return commands.SetVolume(int(message.data))
 
 
@@ -233,5 +233,5 @@ def decode_pen_width(message: Float32) -> Command:
     """Return the command for the width of the line in m."""
     low, high = PEN_WIDTHS_M
     if not math.isfinite(message.data) or not low <= message.data <= high:
-        raise CommandError(f"{message.data:g} m found, expected {low:g} to {high:g}")
+        raise CommandError(f"found {message.data:g} m, expected {low:g} to {high:g}")
     return commands.SetPen(width_m=float(message.data))

@@ -142,7 +142,7 @@ def _plain(rows: Iterable[_R]) -> tuple[_R, ...]:
 
 def _group(number: int) -> str:
     if number >= len(GROUPS):
-        raise CommandError(f"group {number} found, expected 0 to {len(GROUPS) - 1}: {', '.join(GROUPS)}")
+        raise CommandError(f"found group {number}, expected 0 to {len(GROUPS) - 1}: {', '.join(GROUPS)}")
     return GROUPS[number]
 
 
@@ -166,7 +166,7 @@ def _gesture(message: Any, _input_context: InputContext) -> Sequence[Command]:
     elif group == "proximity":
         name = "kit"
     else:
-        raise CommandError(f"a gesture of the {group} lights found, expected circle (0) or proximity (1)")
+        raise CommandError(f"found a gesture of the {group} lights, expected circle (0) or proximity (1)")
     if not math.isfinite(message.period):
         raise CommandError(f"period is {message.period}, expected a finite number")
     try:

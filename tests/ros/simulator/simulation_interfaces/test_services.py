@@ -299,5 +299,5 @@ def test_with_the_package_the_services_and_the_action_are_called_over_ros(ros, s
     ros.until(lambda: sim.world.now_ns > 100_000_000)
     sent.result().cancel_goal_async()
     ros.until(answer.done)
-    assert answer.result().result.result.error_message.startswith("cancelled after")
+    assert answer.result().result.result.error_message.startswith("canceled after")
     client.destroy()
