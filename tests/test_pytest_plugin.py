@@ -196,7 +196,7 @@ def test_the_world_and_program_of_a_mark_are_those_of_the_nodes(pytester: pytest
         @pytest.mark.thymio(playground="line", seed=3, program=PROGRAM)
         def test_it(simulation, runtime):
             sim = simulation()
-            assert sim.simulator.params.seed == 3
+            assert sim.simulator.params.values.seed == 3
             runtime()
             sim.until(emitted(sim.thymio, "seen", [3]), seconds=2)
             sim.thymio.load("line_follower")

@@ -21,9 +21,9 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     models = {"motor_model": "firmware", "proximity_model": "cone"}
     suite = SuiteConfig(playground="base", program="none", device=device, **models, web=False, foxglove=False)
     simulator, runtime = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
-    assert simulator.params.motor_model == "firmware"
-    assert simulator.params.proximity_model == "cone"
-    assert runtime.params.options == device
+    assert simulator.params.values.motor_model == "firmware"
+    assert simulator.params.values.proximity_model == "cone"
+    assert runtime.values.params.options == device
     (robot,) = runtime.robots
     assert robot.device.layout == "playground"
     assert robot.device.variables.get("sd.present") == (1,)

@@ -30,7 +30,7 @@ def suite_nodes(context: Context, suite: SuiteConfig, warnings: Sequence[str] = 
     simulator = Simulator(context, given[SIMULATOR])
     for warning in warnings:
         simulator.node.get_logger().warning(warning)
-    robots = [names.name for names in simulator.names.values()]
+    robots = [names.name for names in simulator.endpoints.robots.names.values()]
     yield simulator
     yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True)
     foxglove_port, tokens = suite.foxglove_port, suite.tokens

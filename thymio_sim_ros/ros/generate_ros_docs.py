@@ -23,7 +23,7 @@ from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.type_mismatch import type_name
 from thymio_sim_ros.ros.ros_docs_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
-from thymio_sim_ros.ros.simulator import robot_endpoints, world_endpoints, world_services
+from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_topics
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
@@ -142,7 +142,7 @@ def _of_driver() -> Iterator[tuple[str, str, str, str]]:
 
 
 def _of_world() -> Iterator[_Line]:
-    for topic, one in world_endpoints.TOPICS.items():
+    for topic, one in world_topics.TOPICS.items():
         yield _Line(
             _in_no_namespace(topic), type_name(one.type), one.rate, one.frame, qos.kind_of(one.profile), one.about
         )

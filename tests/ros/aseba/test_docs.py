@@ -1,4 +1,4 @@
-"""docs/aseba_ros.md: what its tables name is there, and what its examples type does what it says."""
+"""docs/aseba_ros.md: everything named in its tables exists, and the commands of its examples work."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COMMANDS = [shlex.split(line) for line in re.findall(r"^ros2 .+$", DOC, re.MULTI
 
 
 def names(*, where):
-    """What the first cells of tables name, of the rows whose second cell matches."""
+    """Return the names in the first cells of table rows whose second cell matches."""
     found = [re.findall(r"`([^`]+)`", row[1]) for row in ROWS if re.search(where, row[2])]
     return sorted({name.replace("<event>", "ping").replace("<name>", "counter") for cell in found for name in cell})
 
@@ -109,7 +109,7 @@ def test_the_messages_of_the_examples_arrive(ros, runtime):
     ros.until(lambda: len(pongs) == len(published))
 
 
-def test_the_topics_of_the_examples_can_be_listened_to(ros, runtime):
+def test_the_topics_of_the_examples_exist(ros, runtime):
     runtime(MAZE, watch=["prox.horizontal"])
     wanted = {command[-1] for command in commands("topic", "echo")}
     ros.until(lambda: all(ros.node.count_publishers(name) for name in wanted))

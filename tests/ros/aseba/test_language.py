@@ -1,4 +1,4 @@
-"""What the runtime tells editors: the target, and checks of texts that are not loaded."""
+"""Services of the runtime for editors: the target, and checks of texts that are not loaded."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def check(ros, **given):
     return result.successful, json.loads(result.reason)
 
 
-def test_a_check_tells_errors_with_their_place_and_loads_nothing(ros, runtime):
+def test_a_check_reports_errors_with_position_and_loads_nothing(ros, runtime):
     runtime("var me = 1")
     successful, told = check(ros, source="onevent prox\n  motor.left.targt = 1")
     assert not successful
@@ -36,7 +36,7 @@ def test_a_check_tells_errors_with_their_place_and_loads_nothing(ros, runtime):
     assert get_variables(ros, "me") == [[1]]
 
 
-def test_a_check_tells_warnings_symbols_and_use(ros, runtime):
+def test_a_check_reports_warnings_symbols_and_use(ros, runtime):
     runtime("var me = 1")
     source = "var a[3]\nonevent ping\nemit pong a[0] + K\nsub s\nreturn"
     successful, told = check(ros, source=source, name="x.aseba", events=["ping 1", "pong 1"], constants=["K 5"])
@@ -69,14 +69,14 @@ def test_a_check_may_bring_the_target_in_a_language(ros, runtime):
 @pytest.mark.parametrize(
     ("given", "found"),
     [
-        ({}, "no parameter 'source' found"),
-        ({"source": 3}, "source: INTEGER found, expected STRING"),
-        ({"source": "", "sauce": ""}, "parameter 'sauce' found, expected one of source"),
-        ({"source": "", "events": ["ping"]}, "events: 'ping' found, expected a name and a number"),
+        ({}, "found no parameter 'source'"),
+        ({"source": 3}, "source: found INTEGER, expected STRING"),
+        ({"source": "", "sauce": ""}, "found parameter 'sauce', expected one of source"),
+        ({"source": "", "events": ["ping"]}, "events: found 'ping', expected a name and a number"),
         ({"source": "#" * (MOST_CHARACTERS + 1)}, f"expected at most {MOST_CHARACTERS}"),
     ],
 )
-def test_a_request_that_cannot_be_understood_says_why(ros, runtime, given, found):
+def test_an_invalid_request_is_rejected_with_a_reason(ros, runtime, given, found):
     runtime("var me = 1")
     successful, told = check(ros, **given)
     assert not successful

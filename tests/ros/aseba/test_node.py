@@ -114,7 +114,7 @@ def set_parameters(ros, wanted):
     return ros.call(SetParametersAtomically, "/aseba_runtime/set_parameters_atomically", request).result
 
 
-def test_a_fault_is_told_with_its_line_and_stops_the_wheels(ros, simulation, runtime):
+def test_a_fault_is_reported_with_its_line_and_stops_the_wheels(ros, simulation, runtime):
     sim = simulation()
     runtime("var i = 9\nvar t[3]\nmotor.left.target = 100\nmotor.right.target = 100\nonevent button.center\n t[i] = 1")
     status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
@@ -143,7 +143,7 @@ def test_run_control_by_services(ros, simulation, runtime):
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > stopped.x_m + 0.01)
 
 
-def test_a_robot_that_comes_later_is_told_what_its_program_said_first(ros, simulation, runtime):
+def test_a_robot_that_is_discovered_later_gets_the_first_commands(ros, simulation, runtime):
     runtime("motor.left.target = 100\nmotor.right.target = 100\ncall leds.top(32, 0, 0)")
     sim = simulation(playground="base")
 
@@ -290,7 +290,7 @@ def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runti
     sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 0.0, 0.0], what="the black of one's own program")
 
 
-def test_built_in_behaviours_are_listed_for_whoever_offers_a_choice(ros, simulation, runtime):
+def test_built_in_behaviours_are_published_as_a_list(ros, simulation, runtime):
     simulation()
     runtime("var a = 1")
     lists = ros.collect(String, "/aseba_runtime/_behaviours", latched=True)
@@ -308,7 +308,7 @@ def test_a_behaviour_that_does_not_exist_is_refused(ros, simulation, runtime):
     assert "did you mean 'friendly'?" in result.reason
 
 
-def test_what_a_program_tells_its_robot_is_no_topic(ros, simulation, runtime):
+def test_internal_events_have_no_topic(ros, simulation, runtime):
     simulation()
     runtime(path="menu")
     ros.until(lambda: ros.node.count_publishers("/_aseba/events"))
@@ -323,7 +323,7 @@ onevent sound.finished
 </node></network>"""
 
 
-def test_a_program_s_sound_is_told_and_its_end_comes_back(ros, simulation, runtime):
+def test_the_sound_of_a_program_is_published_and_its_end_reported(ros, simulation, runtime):
     sim = simulation()
     told = ros.collect(Float32MultiArray, "/_sound/state")
     runtime(SOUND)
@@ -395,6 +395,6 @@ def test_a_program_writes_on_its_card(ros, simulation, runtime, tmp_path):
         ({"card": "/dev/null"}, "card /dev/null: File exists; expected a folder"),
     ],
 )
-def test_a_robot_that_cannot_be_is_refused_at_the_start(ros, parameters, found):
+def test_an_invalid_robot_is_rejected_at_the_start(ros, parameters, found):
     with pytest.raises(StartError, match=found):
         AsebaRuntime(ros.context, RuntimeParams(**parameters))

@@ -82,7 +82,7 @@ def test_variables_are_described(ros, runtime):
     assert nothing.type == ParameterType.PARAMETER_NOT_SET
 
 
-def test_a_watched_variable_has_a_latched_topic_that_changes_with_it(ros, runtime):
+def test_a_watched_variable_has_a_retained_topic(ros, runtime):
     runtime(SOURCE, watch=["list", "no.such"], watch_rate=100.0)
     counts_wanted = set_parameters(ros, {"watch": ["count", "prox.horizontal"]})
     assert counts_wanted.successful
@@ -104,7 +104,7 @@ def test_a_robot_may_be_watched_alone(ros, runtime):
     assert ros.node.count_publishers("/anna/aseba/variables/list") == 0
 
 
-def test_a_watched_variable_comes_with_the_program_that_has_it(ros, runtime):
+def test_a_watched_variable_gets_a_topic_with_the_program_that_declares_it(ros, runtime):
     runtime("var other", watch=["count"])
     assert ros.node.count_publishers("/aseba/variables/count") == 0
     assert set_parameters(ros, {"script.source": SOURCE}).successful
@@ -112,7 +112,7 @@ def test_a_watched_variable_comes_with_the_program_that_has_it(ros, runtime):
     ros.until(lambda: counts and list(counts[-1].data) == [3])
 
 
-def test_all_variables_come_in_one_table_while_somebody_listens(ros, runtime):
+def test_all_variables_are_in_one_table_while_it_has_subscribers(ros, runtime):
     node = runtime(SOURCE, watch_rate=50.0)
     tables = ros.collect(Int16MultiArray, "/_aseba/variables")
     ros.until(lambda: tables)

@@ -52,7 +52,7 @@ class Simulation:
     @property
     def world(self) -> World:
         """The world itself, for the truth."""
-        return self.simulator.world
+        return self.simulator.runner.world
 
     @property
     def now(self) -> float:
@@ -88,8 +88,8 @@ class Simulation:
 
         It waits until the node knows the robots: a latched message takes its time.
         """
-        if runtime.params.follow_simulator:
-            wanted = [names.name for names in self.simulator.names.values()]
+        if runtime.values.params.follow_simulator:
+            wanted = [names.name for names in self.simulator.endpoints.robots.names.values()]
             self.ros.until(
                 lambda: [ports.names.name for ports in runtime.robots] == wanted, what="the runtime knows the robots"
             )
@@ -109,7 +109,7 @@ class Simulation:
 
     def tick(self) -> None:
         """One tick of 10 ms, then whatever messages are there; long handlers of programs go on."""
-        self.simulator.advance(1)
+        self.simulator.runner.advance(1)
         self._subscribe_to_events()
         for _ in range(HOPS):
             self.ros.deliver()
@@ -144,7 +144,7 @@ class Simulation:
 
     def machine(self, robot: str) -> DeviceEndpoints | None:
         """The machine of a robot, if a runtime node of this test has one for it."""
-        names = self.simulator.names
+        names = self.simulator.endpoints.robots.names
         wanted = names[robot].name if robot in names else robot
         found = (ports for runtime in self._runtimes for ports in runtime.robots if ports.names.name == wanted)
         return next(found, None)
@@ -170,13 +170,13 @@ class Simulation:
         """Hear what the programs of all robots emit, of those too that have just come."""
         if not self._runtimes or len(self._event_subscriptions) == len(self.world.robots):
             return
-        for name, names in self.simulator.names.items():
+        for name, names in self.simulator.endpoints.robots.names.items():
             if name not in self._event_subscriptions:
                 topic = full_name(self.simulator.node, names.topic("_aseba/events"))
                 self._event_subscriptions[name] = self.ros.node.create_subscription(
                     Int16MultiArray, topic, partial(self._record_event, name), qos.EVENTS
                 )
-        for name in self._event_subscriptions.keys() - self.simulator.names.keys():
+        for name in self._event_subscriptions.keys() - self.simulator.endpoints.robots.names.keys():
             self.ros.node.destroy_subscription(self._event_subscriptions.pop(name))
 
     def _record_event(self, robot: str, message: Int16MultiArray) -> None:

@@ -40,7 +40,7 @@ class Served:
     def __init__(self, sim):
         self.simulator = sim.simulator
         self._answers = {}
-        SimInterfaces(self, sim.simulator, TYPES)
+        SimInterfaces(self, sim.simulator.runner, sim.simulator.params, sim.simulator.parameter_callbacks, TYPES)
 
     def create_service(self, kind, name, answer):
         """What a node does."""
@@ -114,14 +114,14 @@ def test_the_simulation_is_stopped_played_paused_and_stopped(room):
     assert room.told("set_simulation_state", state=target(PLAYING)) == (OK, "")
     assert room.state == PLAYING
     assert room.told("set_simulation_state", state=target(PLAYING)) == (101, "the simulation is playing already")
-    room.simulator.advance(3)
+    room.simulator.runner.advance(3)
     assert room.told("set_simulation_state", state=target(PAUSED)) == (OK, "")
     assert room.state == PAUSED
     assert room.told("set_simulation_state", state=target(STOPPED)) == (OK, "")
-    assert (room.state, room.simulator.world.now_ns) == (STOPPED, 0)
+    assert (room.state, room.simulator.runner.world.now_ns) == (STOPPED, 0)
 
 
-def test_what_cannot_follow_a_state_is_refused(room):
+def test_an_invalid_transition_is_rejected(room):
     code, reason = room.told("set_simulation_state", state=target(PAUSED))
     assert (code, reason) == (103, "the simulation is stopped, which is paused at time 0: step or play it")
     assert room.told("set_simulation_state", state=target(3))[0] == UNSUPPORTED
@@ -130,12 +130,12 @@ def test_what_cannot_follow_a_state_is_refused(room):
 def test_steps_are_done_while_the_world_is_paused(room):
     assert room.told("step_simulation") == (OK, "")
     assert room.told("step_simulation", steps=5) == (OK, "")
-    assert room.simulator.world.now_ns == 60_000_000
-    room.simulator.pause(False)
+    assert room.simulator.runner.world.now_ns == 60_000_000
+    room.simulator.runner.pause(False)
     assert room.told("step_simulation") == (FAILED, "the simulation is running: pause it first")
-    room.simulator.pause(True)
+    room.simulator.runner.pause(True)
     assert room.told("step_simulation", steps=100_001)[0] == FAILED
-    assert room.simulator.world.now_ns == 60_000_000
+    assert room.simulator.runner.world.now_ns == 60_000_000
 
 
 def test_a_reset_takes_spawned_robots_along(room):
@@ -168,7 +168,7 @@ def test_an_entity_has_a_category(room):
 
 def test_a_state_is_the_truth_in_the_world_s_frame(room):
     assert room.told("set_entity_state", entity="thymio", state=state(0.2, -0.1, math.pi / 2, frame="map")) == (OK, "")
-    room.simulator.world.post("thymio", _forward())
+    room.simulator.runner.world.post("thymio", _forward())
     room("step_simulation", steps=2)
     found = room("get_entity_state", entity="thymio").state
     assert (found.header.frame_id, found.header.stamp.nanosec) == ("map", 20_000_000)
@@ -196,7 +196,7 @@ def _forward():
         ("thymio", state(twist=Twist(linear=Vector3(x=1.0))), UNSUPPORTED, "found velocities"),
     ],
 )
-def test_a_state_that_cannot_be_is_refused(room, entity, wanted, code, reason):
+def test_an_invalid_state_is_rejected(room, entity, wanted, code, reason):
     found = room.told("set_entity_state", entity=entity, state=wanted)
     assert (found[0], found[1][: len(reason)]) == (code, reason)
 
@@ -205,8 +205,8 @@ def test_a_robot_is_spawned_and_deleted(room):
     (only,) = room("get_spawnables").spawnables
     answer = room("spawn_entity", name="anna", uri=only.uri, entity_namespace="/anna", initial_pose=place(-0.5, 0.2))
     assert (answer.result.result, answer.entity_name) == (OK, "anna")
-    assert room.simulator.names["anna"].topic("odom") == "anna/odom"
-    assert room.simulator.world.robots["anna"].pose.x_m == -0.5
+    assert room.simulator.endpoints.robots.names["anna"].topic("odom") == "anna/odom"
+    assert room.simulator.runner.world.robots["anna"].pose.x_m == -0.5
     assert room.told("delete_entity", entity="anna") == (OK, "")
     assert named(room) == ["thymio", "crate"]
     assert room.told("delete_entity", entity="crate")[0] == FAILED
@@ -228,7 +228,7 @@ def test_a_robot_is_spawned_and_deleted(room):
         ({"name": "anna", "uri": "thymio", "initial_pose": place(0.0, 0.5, "base_link")}, UNSUPPORTED),
     ],
 )
-def test_a_robot_that_cannot_be_is_refused(room, request_, code):
+def test_an_invalid_robot_is_rejected(room, request_, code):
     found = room.told("spawn_entity", **({"initial_pose": place(-0.5, 0.0)} | request_))
     assert found[0] == code
     assert found[1]
@@ -253,7 +253,7 @@ def test_several_are_spawned_each_with_a_result(room):
 
 def test_worlds_are_listed_and_loaded(room):
     assert [world.name for world in room("get_available_worlds").worlds] == list(resources.playgrounds())
-    room.simulator.pause(False)
+    room.simulator.runner.pause(False)
     answer = room("load_world", uri="maze")
     assert (answer.result.result, answer.world.name, room.state) == (OK, "maze", STOPPED)
     assert room("load_world", resource_string=ROOM).world.name == "Room"
@@ -262,7 +262,7 @@ def test_worlds_are_listed_and_loaded(room):
     assert named(room) == ["thymio", "crate"]
 
 
-def test_a_world_that_cannot_be_is_refused_and_the_old_one_stays(room):
+def test_an_invalid_world_is_rejected_and_the_old_one_stays(room):
     assert room.told("load_world")[0] == 102
     code, reason = room.told("load_world", uri="nowhere")
     assert code == 103
@@ -270,7 +270,7 @@ def test_a_world_that_cannot_be_is_refused_and_the_old_one_stays(room):
     assert room("get_current_world").world.name == "Room"
 
 
-def test_without_the_package_nothing_is_said(ros, simulation):
+def test_without_the_package_nothing_is_logged(ros, simulation):
     if not hasattr(TYPES.srv.StepSimulation, "Event"):
         assert simulation().simulator._interfaces is None
 
@@ -299,5 +299,5 @@ def test_with_the_package_the_services_and_the_action_are_called_over_ros(ros, s
     ros.until(lambda: sim.world.now_ns > 100_000_000)
     sent.result().cancel_goal_async()
     ros.until(answer.done)
-    assert answer.result().result.result.error_message.startswith("cancelled after")
+    assert answer.result().result.result.error_message.startswith("canceled after")
     client.destroy()

@@ -1,6 +1,6 @@
-"""Ticks that nobody would hear of are put off and done together; what comes in finds the world as if they were not.
+"""Ticks without a visible result are deferred and executed together; messages see the world as if they were not.
 
-Wall time is made up: an executor of these tests lets it pass, and lets things happen meanwhile.
+Wall time is simulated: the executor of these tests advances it and calls events of the test on the way.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from sensor_msgs.msg import Range
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
+from thymio_sim_ros.ros.simulator import clock_publisher, endpoints, world_endpoints, world_runner
 from thymio_sim_ros.ros.simulator import node as simulator_node
-from thymio_sim_ros.ros.simulator import world_endpoints
-from thymio_sim_ros.ros.simulator.node import MAX_DEFERRED_TICKS
 from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
+from thymio_sim_ros.ros.simulator.tick_scheduler import MAX_DEFERRED_TICKS
 from thymio_sim_ros.sim.commands import BodyTwist
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import RobotStart
@@ -29,7 +29,7 @@ MS = 1_000_000
 
 
 class Sleeper:
-    """An executor that sleeps in made-up time; `at` says what happens when, after which it wakes."""
+    """An executor that sleeps in simulated wall time, until the next event added with `at`."""
 
     def __init__(self) -> None:
         self.now_ns = 1_000 * MS
@@ -37,7 +37,7 @@ class Sleeper:
         self._events: list[tuple[int, object]] = []
 
     def at(self, ms: int, act) -> None:
-        """Call this so much later than now."""
+        """Call `act` in `ms` of wall time."""
         self._events.append((self.now_ns + ms * MS, act))
 
     def monotonic_ns(self) -> int:
@@ -55,16 +55,16 @@ class Sleeper:
 
 @pytest.fixture
 def sleeper(monkeypatch):
-    """Made-up wall time."""
+    """Simulated wall time in all modules of the simulator that read it."""
     sleeper = Sleeper()
-    for module in (simulator_node, world_endpoints):
+    for module in (simulator_node, world_runner, endpoints, clock_publisher, world_endpoints):
         monkeypatch.setattr(module, "time", types.SimpleNamespace(monotonic_ns=sleeper.monotonic_ns))
     return sleeper
 
 
 @pytest.fixture
 def driven(simulation, sleeper):
-    """A simulator that is turned for so many ms of made-up time; its world."""
+    """Start a simulator; the returned function runs it for some ms of wall time and returns its world."""
 
     def turn(milliseconds: int) -> World:
         end = sleeper.now_ns + milliseconds * MS
@@ -74,7 +74,7 @@ def driven(simulation, sleeper):
 
     def start(**parameters):
         turn.sim = simulation(playground="base", **parameters)
-        turn.sim.simulator.pause(False)
+        turn.sim.simulator.runner.pause(False)
         turn.sim.simulator._publish_heartbeat(sleeper.now_ns)
         sleeper.slept_ms.clear()
         return turn
@@ -82,7 +82,7 @@ def driven(simulation, sleeper):
     return start
 
 
-def test_nobody_listens_so_ticks_are_done_in_heaps(driven, sleeper):
+def test_without_subscribers_ticks_are_executed_together(driven, sleeper):
     world = driven()(1000)
     assert world.now_ns == pytest.approx(1000 * MS, abs=MAX_DEFERRED_TICKS * TICK_NS)
     assert max(sleeper.slept_ms) == MAX_DEFERRED_TICKS * TICK_NS // MS
@@ -92,7 +92,7 @@ def test_nobody_listens_so_ticks_are_done_in_heaps(driven, sleeper):
 @pytest.mark.parametrize(
     ("kind", "topic", "rate_hz"), [(Odometry, "/odom", 20), (Range, "/proximity/center", 10), (Clock, "/clock", 50)]
 )
-def test_a_topic_that_is_heard_is_sent_in_time(ros, driven, sleeper, kind, topic, rate_hz):
+def test_a_topic_with_subscribers_is_published_on_time(ros, driven, sleeper, kind, topic, rate_hz):
     turn = driven()
     messages = ros.collect(kind, topic)
     turn(1005)
@@ -103,7 +103,7 @@ def test_a_topic_that_is_heard_is_sent_in_time(ros, driven, sleeper, kind, topic
 def test_a_command_takes_effect_in_the_tick_after_it_came(driven, sleeper):
     turn = driven()
     command, done = BodyTwist(0.1, 0.5), []
-    post = turn.sim.simulator._command_sender("thymio")
+    post = turn.sim.simulator.endpoints.robots["thymio"]._owner.post
     sleeper.at(34, lambda: (post(command), done.append(turn.sim.world.now_ns)))
     world = turn(500)
     assert done == [30 * MS]
@@ -117,7 +117,7 @@ def test_a_command_takes_effect_in_the_tick_after_it_came(driven, sleeper):
     assert alone.robots["thymio"].wheels.odometry == world.robots["thymio"].wheels.odometry
 
 
-def test_what_is_dragged_finds_the_world_of_now(driven, sleeper):
+def test_a_drag_sees_the_present_world(driven, sleeper):
     turn, done = driven(), []
     place = TransformStamped(child_frame_id="thymio")
     place.transform.translation.x = 0.2
@@ -128,11 +128,11 @@ def test_what_is_dragged_finds_the_world_of_now(driven, sleeper):
     assert world.robots["thymio"].pose.x_m == 0.2
 
 
-def test_what_a_command_brings_about_is_told_one_tick_later(ros, driven, sleeper):
+def test_the_effect_of_a_command_is_published_one_tick_later(ros, driven, sleeper):
     turn = driven()
     velocity = ros.publisher(Twist, "/cmd_vel")
     velocity.publish(Twist(linear=Vector3(x=0.1)))
-    sleeper.at(31, lambda: ros.until(lambda: turn.sim.simulator._prompt_until_ns))
+    sleeper.at(31, lambda: ros.until(lambda: turn.sim.simulator.runner.scheduler._prompt_until_ns))
     turn(31)
     assert turn.sim.world.now_ns == 30 * MS
     sleeper.slept_ms.clear()
@@ -143,7 +143,7 @@ def test_what_a_command_brings_about_is_told_one_tick_later(ros, driven, sleeper
     assert turn.sim.world.now_ns == 40 * MS
 
 
-def test_services_find_the_world_of_now(ros, driven, sleeper):
+def test_services_see_the_present_world(ros, driven, sleeper):
     turn = driven()
     found = []
     request = SetBool.Request(data=True)
@@ -153,7 +153,7 @@ def test_services_find_the_world_of_now(ros, driven, sleeper):
     assert turn.sim.world.now_ns == 50 * MS
 
 
-def test_a_change_of_pace_loses_no_tick(driven, sleeper):
+def test_a_change_of_pace_drops_no_tick(driven, sleeper):
     turn = driven()
     factor = Parameter("real_time_factor", value=2.0)
     sleeper.at(75, lambda: turn.sim.simulator.node.set_parameters([factor]))
@@ -161,24 +161,24 @@ def test_a_change_of_pace_loses_no_tick(driven, sleeper):
     assert turn.sim.world.now_ns == 70 * MS
 
 
-def test_a_robot_that_takes_time_to_come_comes_once(simulator_with, sleeper, monkeypatch):
-    """A quality of service of its own makes parameters, which are declared while it comes."""
+def test_a_robot_whose_topics_take_time_is_created_once(simulator_with, sleeper, monkeypatch):
+    """A QoS override declares parameters while the topics of the robot are created."""
     made = []
 
-    def slow_ports(node, names, *arguments, **options):
+    def slow_endpoints(node, names, *arguments, **options):
         made.append(names.name)
         sleeper.now_ns += 30 * MS if len(made) < 4 else 0
         return RobotEndpoints(node, names, *arguments, **options)
 
     override = "qos_overrides./later/odom.publisher.reliability:=best_effort"
     simulator = simulator_with("-p", override, playground="base")
-    monkeypatch.setattr(simulator_node, "RobotEndpoints", slow_ports)
-    sleeper.at(30, lambda: (simulator.spawn(RobotStart("later", 0.3, 0.0)), simulator.update_robots()))
+    monkeypatch.setattr(simulator_node, "RobotEndpoints", slow_endpoints)
+    sleeper.at(30, lambda: (simulator.runner.spawn(RobotStart("later", 0.3, 0.0)), simulator.runner.update_robots()))
     simulator.run_once(sleeper)
     assert made == ["later"]
 
 
-def test_without_a_driving_thread_nothing_is_done_behind_a_tests_back(ros, simulation):
+def test_without_a_runner_no_tick_is_executed(ros, simulation):
     sim = simulation(playground="base")
     pressed = ros.publisher(Bool, "/_press/center")
     pressed.publish(Bool(data=True))
@@ -192,7 +192,7 @@ def test_the_ticks_of_a_busy_machine_are_caught_up_or_counted(driven, sleeper):
     sleeper.now_ns += 150 * MS
     world = turn(50)
     assert world.now_ns == pytest.approx(500 * MS, abs=MAX_DEFERRED_TICKS * TICK_NS)
-    assert turn.sim.simulator._late_ticks > 0
+    assert turn.sim.simulator.runner.scheduler.late_ticks > 0
     sleeper.now_ns += 1000 * MS
     turn(50)
-    assert turn.sim.simulator._pacer.dropped_ticks > 50
+    assert turn.sim.simulator.runner.scheduler.dropped_ticks > 50

@@ -30,7 +30,7 @@ print("done")
 """
 
 
-def test_a_storm_of_listeners_outlives_changes_of_the_playground(ros, simulation):
+def test_many_subscribers_survive_changes_of_the_playground(ros, simulation):
     sim = simulation(playground="two_robots")
     storm = subprocess.Popen(
         [sys.executable, "-X", "faulthandler", "-c", STORM], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -39,7 +39,7 @@ def test_a_storm_of_listeners_outlives_changes_of_the_playground(ros, simulation
     try:
         while storm.poll() is None:
             for name in ("line", "two_robots"):
-                assert sim.simulator.load(name) == ""
+                assert sim.simulator.parameter_callbacks.load_playground(name) == ""
                 sim.step(0.05)
                 ros.deliver()
                 changes += 1
