@@ -1,4 +1,4 @@
-"""Publishers for the world as a whole: clock, state, playgrounds, markers, diagnostics."""
+"""Publishers for the world as a whole: clock, state, playgrounds, sensors, markers, diagnostics."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.ros.simulator.clock_conflict import ClockConflict
 from thymio_sim_ros.ros.simulator.markers import playground_markers
 from thymio_sim_ros.ros.simulator.occupancy_grid import occupancy
+from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 from thymio_sim_ros.sim.playground.scene import ObjectSnapshot
@@ -69,6 +70,9 @@ TOPICS: Mapping[str, WorldTopic] = {
     ),
     "~/_playgrounds": WorldTopic(
         String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.TRANSIENT_LOCAL
+    ),
+    "~/_sensors": WorldTopic(
+        String, "once", "JSON: label, units and scales of the sensors' words, for viewers", qos.TRANSIENT_LOCAL
     ),
     "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.TRANSIENT_LOCAL, "map"),
     "_markers/objects": WorldTopic(
@@ -178,6 +182,7 @@ class WorldEndpoints:
             self._clock_conflict = ClockConflict(node, clock.topic_name, node.context.get_domain_id())
         self._map_frame = map_frame
         self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
+        self._publishers["~/_sensors"].publish(String(data=json.dumps(displayed_sensors())))
         self._last_clock_ns = self._last_objects_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 
