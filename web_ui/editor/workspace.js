@@ -1,6 +1,6 @@
 // The open programs, one per tab: which robot runs which, and the drafts in browser storage. No DOM.
 
-import { AeslError } from "./aesl.js";
+import { AeslError, readAesl } from "./aesl.js";
 import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined } from "./documents.js";
 
 /** @typedef {import("./documents.js").Document} Document */
@@ -23,6 +23,7 @@ export class Workspace {
     this.changed = changed;
     this.tab = ALL;
     /** @type {Map<string, Document>} */ this.documents = new Map();
+    /** @type {import("./aesl.js").Aesl | null} */ this.parsed = null;
     /** @type {Map<string, import("./file_store.js").Kept>} */ this.drafts = new Map();
     /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's next program whatever they hold
   }
@@ -30,6 +31,25 @@ export class Workspace {
   /** @returns {Document} */
   get current() {
     return this.at(this.tab);
+  }
+
+  /** Whether the robot runs exactly the current text. */
+  get isInRobot() {
+    return isInRobot(this.current);
+  }
+
+  /** The parsed file of the current text. */
+  get file() {
+    const { text } = this.current;
+    if (this.parsed?.text !== text) this.parsed = readAesl(text);
+    return this.parsed;
+  }
+
+  /** Convert a line of the file to a line of the code that is shown. @param {number} line */
+  codeLine(line) {
+    const [unit] = this.file.nodes[this.current.node]?.units ?? [];
+    const before = unit === undefined ? 1 : this.current.text.slice(0, unit.from).split("\n").length;
+    return Math.max(line - before + 1, 1);
   }
 
   /** @param {string} tab @returns {Document} */

@@ -3,8 +3,9 @@
 
 import { programOf } from "../state/index.js";
 import { faultMessage, lineLabel, stateLabel } from "../state/program_status.js";
+import { disabledReason } from "../state/disabled_reason.js";
 import { behaviorChoice } from "./behaviors.js";
-import { controlCard, showRefusal } from "./card.js";
+import { card, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
 import { SUCCESS_MS } from "./notices.js";
 import { sourceView } from "./source.js";
@@ -40,7 +41,7 @@ export function programPanel(context) {
   });
   const open = buttonOf(file);
   const upload = h("div", { class: "upload", hidden: true });
-  const element = controlCard(
+  const element = card(
     "program",
     t("program"),
     h("div", { class: "current" }, name, lamp),
@@ -111,7 +112,7 @@ export function programPanel(context) {
       const program = programOf(state);
       const timePaused = state.simulator?.paused ?? false;
       const word = program === null ? "" : stateLabel(program.state, t, timePaused);
-      const offline = state.connection === "connected" ? "" : t("connection.needed");
+      const reason = disabledReason(state, t);
       setText(name, program?.name || t("program.none"));
       setText(lamp, word);
       setAttribute(lamp, "data-state", timePaused && program?.state === "running" ? "paused" : (program?.state ?? ""));
@@ -120,9 +121,9 @@ export function programPanel(context) {
       message.hidden = message.textContent === "";
       for (const { verb, button } of verbs) {
         const there = state.services.includes(actions.programService(verb));
-        lock(button, offline || (there ? "" : t("program.unavailable")));
+        lock(button, reason || (there ? "" : t("program.unavailable")));
       }
-      lock(open, offline);
+      lock(open, reason);
       const news = program === null ? "" : `${program.name}: ${word}`;
       if (news !== announced && news !== "") announce(news);
       announced = news;

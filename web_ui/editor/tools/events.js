@@ -130,7 +130,7 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
         renew(body, [...rows.values()]);
       }
       for (const button of body.querySelectorAll("[data-send]")) {
-        lock(/** @type {HTMLButtonElement} */ (button), view.offline);
+        lock(/** @type {HTMLButtonElement} */ (button), view.disabledReason);
       }
       for (const star of body.querySelectorAll("[data-watch]")) {
         const watched = session.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));
