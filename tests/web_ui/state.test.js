@@ -352,7 +352,7 @@ test("a notice disappears with its cause, and one of the bridge when the bridge 
   reported({ type: "status", status: { level: 2, message: "too many", id: "channels" } });
   assert.deepEqual(reported({ type: "solved", cause: "/simulator/step" }), ["for good", "too many"]);
   assert.deepEqual(reported({ type: "removeStatus", ids: ["channels"] }), ["for good"]);
-  reported({ type: "notice", level: "error", text: "nobody there", cause: "connection" });
+  reported({ type: "notice", level: "error", text: "no connection", cause: "connection" });
   assert.deepEqual(reported({ type: "connected" }), ["for good"]);
 });
 

@@ -16,7 +16,7 @@ export function exposeForTests({ store, scene, dragController, creator }) {
       frames: () => scene.frames,
       screenPosition: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) =>
         scene.screenPosition(x, y, z),
-      held: () => dragController.held,
+      dragged: () => dragController.dragged,
       built: () => creator.snapshot(),
       /** @param {string} part @param {string} [robot] */
       partPosition: (part, robot) => scene.partPosition(part, robot),

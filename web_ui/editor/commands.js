@@ -11,7 +11,7 @@ import { download } from "./download.js";
 
 const THYMIO = "thymio-II";
 
-/** @typedef {import("./link.js").Verb} Verb */
+/** @typedef {import("./runtime_client.js").Verb} Verb */
 
 export class EditorCommands {
   /**
@@ -20,20 +20,20 @@ export class EditorCommands {
    * @param {import("../i18n/index.js").Translate} options.pageText
    * @param {string} options.language
    * @param {import("./editor_session.js").EditorSession} options.session
-   * @param {import("./link.js").Link} options.link
+   * @param {import("./runtime_client.js").RuntimeClient} options.runtime
    * @param {import("./robot_selection.js").RobotSelection} options.selection
    * @param {import("@codemirror/view").EditorView} options.view
    * @param {import("./debug_markers.js").DebugMarkers} options.markers
    * @param {(text: string, kind: "good" | "warning" | "error") => void} options.report
    * @param {() => void} options.redraw
    */
-  constructor({ t, pageText, language, session, link, selection, view, markers, report, redraw }) {
+  constructor({ t, pageText, language, session, runtime, selection, view, markers, report, redraw }) {
     this.t = t;
     this.pageText = pageText;
     this.language = language;
     this.session = session;
     this.workspace = session.workspace;
-    this.link = link;
+    this.runtime = runtime;
     this.selection = selection;
     this.view = view;
     this.markers = markers;
@@ -70,7 +70,7 @@ export class EditorCommands {
     }
     this.workspace.follow();
     const { owner, robots } = this.selection;
-    const { ok, message } = await this.link.loadBuiltIn(owner, choice.sample, robots);
+    const { ok, message } = await this.runtime.loadBuiltIn(owner, choice.sample, robots);
     if (!ok) this.report(message, "error");
   }
 
@@ -86,12 +86,12 @@ export class EditorCommands {
     const { tab } = this.workspace;
     const { name, text: source } = this.workspace.current;
     const { owner, robots } = this.selection;
-    const { ok, message } = await this.link.load(owner, name, source, robots);
+    const { ok, message } = await this.runtime.load(owner, name, source, robots);
     if (!ok) return this.#reportRejection(name, source, message);
     this.workspace.loaded(tab, source);
     this.report(this.t("editor.loaded", { name }), "good");
     if (readAesl(source).nodes.some((node) => node.name !== THYMIO)) {
-      const notes = await this.link.notes(source, this.language);
+      const notes = await this.runtime.notes(source, this.language);
       if (notes.length > 0) this.report(`${this.t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
     }
     // Send the current breakpoints: one may have been set while the request was in progress.
@@ -101,7 +101,7 @@ export class EditorCommands {
 
   /** @param {string} name @param {string} source @param {string} message  of the runtime */
   async #reportRejection(name, source, message) {
-    const { text, line } = (await this.link.fault(source, this.language)) ?? locate(message, name);
+    const { text, line } = (await this.runtime.fault(source, this.language)) ?? locate(message, name);
     const place = line === null ? null : this.workspace.codeLine(line);
     this.report(place === null ? text : this.t("verdict.at", { line: place, message: text }), "error");
   }
@@ -113,7 +113,7 @@ export class EditorCommands {
 
   /** @param {Verb} verb */
   async control(verb) {
-    const answers = await Promise.all(this.selection.controlled.map((name) => this.link.control(name, verb)));
+    const answers = await Promise.all(this.selection.controlled.map((name) => this.runtime.control(name, verb)));
     const refused = answers.find(({ ok }) => !ok);
     if (refused !== undefined) this.report(refused.message, "error");
   }

@@ -11,7 +11,7 @@ export class DebugMarkers {
   /**
    * @param {object} options
    * @param {import("../i18n/index.js").Translate} options.t
-   * @param {import("./link.js").Link} options.link
+   * @param {import("./runtime_client.js").RuntimeClient} options.runtime
    * @param {import("./workspace.js").Workspace} options.workspace
    * @param {import("./robot_selection.js").RobotSelection} options.selection
    * @param {import("@codemirror/view").EditorView} options.view
@@ -19,9 +19,9 @@ export class DebugMarkers {
    * @param {(text: string) => void} options.announce
    * @param {() => void} options.redraw
    */
-  constructor({ t, link, workspace, selection, view, report, announce, redraw }) {
+  constructor({ t, runtime, workspace, selection, view, report, announce, redraw }) {
     this.t = t;
-    this.link = link;
+    this.runtime = runtime;
     this.workspace = workspace;
     this.selection = selection;
     this.view = view;
@@ -50,7 +50,7 @@ export class DebugMarkers {
   /** Send the breakpoints to the robot. */
   async send() {
     const lines = this.lines.map((line) => line + this.#firstLine - 1);
-    const { ok, message } = await this.link.setBreakpoints(this.selection.owner, lines);
+    const { ok, message } = await this.runtime.setBreakpoints(this.selection.owner, lines);
     if (ok) return;
     this.report(message, "error");
     this.forget(); // restores the breakpoints in effect

@@ -16,8 +16,8 @@ import { DebugMarkers } from "./debug_markers.js";
 import { footer } from "./footer.js";
 import { header } from "./header.js";
 import { hintBar, repairLabel } from "./hint.js";
-import { Lexicon } from "./lexicon.js";
-import { Link } from "./link.js";
+import { HelpTexts } from "./help_texts.js";
+import { RuntimeClient } from "./runtime_client.js";
 import { ProgramChecker } from "./program_checker.js";
 import { RobotSelection } from "./robot_selection.js";
 import { RobotStatus } from "./robot_status.js";
@@ -53,9 +53,9 @@ export class Editor {
     this.pageText = pageText;
     const t = translator(language, WORDS);
     const { workspace } = session;
-    this.link = new Link(client);
-    this.lexicon = new Lexicon(language);
-    this.selection = new RobotSelection({ store, session, lexicon: this.lexicon });
+    this.runtime = new RuntimeClient(client);
+    this.helpTexts = new HelpTexts(language);
+    this.selection = new RobotSelection({ store, session, helpTexts: this.helpTexts });
 
     const redraw = () => this.redraw();
     /** @param {string} text @param {"good" | "warning" | "error"} kind */
@@ -79,20 +79,20 @@ export class Editor {
       repairLabel: (content, repair) => repairLabel(t, content, repair),
       correct: () => this.checker.correct(),
     });
-    const { link, selection, text } = this;
+    const { runtime, selection, text } = this;
     const { view } = text;
     this.foot = footer(t, () => this.#goToRemark());
     const { foot } = this;
     const hints = hintBar(t, () => this.checker.correct());
-    this.checker = new ProgramChecker({ t, language, link, workspace, text, hints, foot, announce, redraw });
-    this.markers = new DebugMarkers({ t, link, workspace, selection, view, report, announce, redraw });
+    this.checker = new ProgramChecker({ t, language, runtime, workspace, text, hints, foot, announce, redraw });
+    this.markers = new DebugMarkers({ t, runtime, workspace, selection, view, report, announce, redraw });
     this.status = new RobotStatus({ language, pageText, foot, announce });
     const { markers } = this;
     this.commands = new EditorCommands({
-      t, pageText, language, session, link, selection, view, markers, report, redraw,
+      t, pageText, language, session, runtime, selection, view, markers, report, redraw,
     }); // prettier-ignore
 
-    /** @param {import("./file_store.js").Kept} kept */
+    /** @param {import("./file_store.js").StoredFile} kept */
     const draftLabel = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
     /** @param {string} robot */
     const select = (robot) => store.dispatch({ type: "select", robot });
@@ -107,8 +107,8 @@ export class Editor {
         view.dispatch(view.state.replaceSelection(words));
         view.focus();
       },
-      setVariable: (variable, values) => link.setVariable(selection.robot, variable, values),
-      emit: (event, values) => link.emit(selection.robot, event, values),
+      setVariable: (variable, values) => runtime.setVariable(selection.robot, variable, values),
+      emit: (event, values) => runtime.emit(selection.robot, event, values),
       define: (kind, entry, value) => {
         workspace.define(kind, entry, value);
         this.checker.checkSoon();
@@ -189,7 +189,7 @@ export class Editor {
     const { services, simulator } = store.state;
     const tabs = session.tabs(selection.robots);
     if (!tabs.includes(workspace.tab)) workspace.choose(ALL);
-    if (services.includes(CHECK_SERVICE)) void this.lexicon.ask(this.link, () => this.redraw());
+    if (services.includes(CHECK_SERVICE)) void this.helpTexts.load(this.runtime, () => this.redraw());
     this.checker.retry(services);
     workspace.setRobotProgram(ALL, session.state.targets[store.state.selected]?.program);
     if (workspace.tab !== ALL) workspace.setRobotProgram(workspace.tab, selection.target?.program);

@@ -23,7 +23,7 @@ export class ProgramChecker {
    * @param {object} options
    * @param {import("../i18n/index.js").Translate} options.t
    * @param {string} options.language
-   * @param {import("./link.js").Link} options.link
+   * @param {import("./runtime_client.js").RuntimeClient} options.runtime
    * @param {import("./workspace.js").Workspace} options.workspace
    * @param {import("./text.js").TextField} options.text
    * @param {ReturnType<typeof import("./hint.js").hintBar>} options.hints
@@ -31,10 +31,10 @@ export class ProgramChecker {
    * @param {(text: string) => void} options.announce
    * @param {() => void} options.redraw
    */
-  constructor({ t, language, link, workspace, text, hints, foot, announce, redraw }) {
+  constructor({ t, language, runtime, workspace, text, hints, foot, announce, redraw }) {
     this.t = t;
     this.language = language;
-    this.link = link;
+    this.runtime = runtime;
     this.workspace = workspace;
     this.text = text;
     this.hints = hints;
@@ -73,7 +73,7 @@ export class ProgramChecker {
     const source = this.workspace.code;
     const { file } = this.workspace;
     const question = { source, language: this.language, events: allEvents(file), constants: file.constants };
-    const answer = await this.link.check(question);
+    const answer = await this.runtime.check(question);
     if (number !== this.#number || source !== this.workspace.code) return; // a newer check is in progress
     this.verdict = answer;
     if (answer === null) {

@@ -7,12 +7,12 @@ export class RobotSelection {
    * @param {object} options
    * @param {import("../state/store.js").Store} options.store
    * @param {import("./editor_session.js").EditorSession} options.session
-   * @param {import("./lexicon.js").Lexicon} options.lexicon
+   * @param {import("./help_texts.js").HelpTexts} options.helpTexts
    */
-  constructor({ store, session, lexicon }) {
+  constructor({ store, session, helpTexts }) {
     this.store = store;
     this.session = session;
-    this.lexicon = lexicon;
+    this.helpTexts = helpTexts;
   }
 
   /** Names of all robots. */
@@ -43,7 +43,7 @@ export class RobotSelection {
 
   /** What a program can use on the robot, with translated help; null if not reported. */
   get target() {
-    return this.lexicon.translate(this.session.state.targets[this.robot] ?? null);
+    return this.helpTexts.translate(this.session.state.targets[this.robot] ?? null);
   }
 
   /** Whether the robot runs exactly the text that is shown. */

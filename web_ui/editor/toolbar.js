@@ -3,9 +3,9 @@
 import { plainKey } from "../input/keyboard.js";
 import { fileButton, h, icon, ICONS, lock } from "../panels/dom.js";
 
-/** @typedef {import("./link.js").Verb} Verb */
-/** @typedef {import("./file_store.js").Kept} Kept */
-/** @typedef {{ recent: Kept } | { sample: string }} Choice   an entry of the list of recent files and examples */
+/** @typedef {import("./runtime_client.js").Verb} Verb */
+/** @typedef {import("./file_store.js").StoredFile} StoredFile */
+/** @typedef {{ recent: StoredFile } | { sample: string }} Choice   an entry of the list of recent files and examples */
 /** @typedef {import("./commands.js").EditorCommands} EditorCommands */
 
 const SAVE = "M5 3h11l5 5v13H3V3zm2 2v5h8V5zm5 8a3 3 0 1 0 0 6 3 3 0 0 0 0-6z";
@@ -26,7 +26,7 @@ const VERBS = /** @type {const} */ ([
 /**
  * @param {import("../i18n/index.js").Translate} t
  * @param {EditorCommands} commands
- * @param {(kept: Kept) => string} draftLabel   text about an unsaved draft
+ * @param {(kept: StoredFile) => string} draftLabel   text about an unsaved draft
  */
 export function toolbar(t, commands, draftLabel) {
   /** @param {string} name @param {string} path @param {string} key @param {() => void} act @param {boolean} [worded] */
@@ -93,7 +93,7 @@ export function toolbar(t, commands, draftLabel) {
   return {
     element,
     /**
-     * @param {readonly Kept[]} recent
+     * @param {readonly StoredFile[]} recent
      * @param {readonly { name: string, description: string }[]} samples
      * @param {string} reason  why robots cannot be controlled; empty if they can
      */

@@ -24,7 +24,7 @@ export class Workspace {
     this.tab = ALL;
     /** @type {Map<string, Document>} */ this.documents = new Map();
     /** @type {import("./aesl.js").Aesl | null} */ this.parsed = null;
-    /** @type {Map<string, import("./file_store.js").Kept>} */ this.drafts = new Map();
+    /** @type {Map<string, import("./file_store.js").StoredFile>} */ this.drafts = new Map();
     /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's next program whatever they hold
   }
 
@@ -91,7 +91,7 @@ export class Workspace {
   open(name, text) {
     try {
       this.#replace(this.tab, opened(fileName(name), text));
-      this.fileStore.remember({ name: fileName(name), text, time: this.now() });
+      this.fileStore.addRecent({ name: fileName(name), text, time: this.now() });
       return null;
     } catch (error) {
       if (!(error instanceof AeslError)) throw error;
@@ -116,7 +116,7 @@ export class Workspace {
 
   saved() {
     const document = this.current;
-    this.fileStore.remember({ name: document.name, text: document.text, time: this.now() });
+    this.fileStore.addRecent({ name: document.name, text: document.text, time: this.now() });
     this.#set({ ...document, saved: document.text });
   }
 
@@ -163,7 +163,7 @@ export class Workspace {
     this.restore(draft);
   }
 
-  /** Continue with a text that is not in a file. @param {import("./file_store.js").Kept} kept */
+  /** Continue with a text that is not in a file. @param {import("./file_store.js").StoredFile} kept */
   restore({ name, text }) {
     const { text: saved } = blank();
     this.#replace(this.tab, { ...opened(name, text), saved });
@@ -171,7 +171,7 @@ export class Workspace {
 
   forgetDraft() {
     this.drafts.delete(this.tab);
-    this.fileStore.keepDraft(this.tab, null);
+    this.fileStore.storeDraft(this.tab, null);
   }
 
   /** @returns {string} */
@@ -184,9 +184,9 @@ export class Workspace {
     this.documents.set(this.tab, document);
     const { name, text } = document;
     const draft = this.drafts.get(this.tab);
-    if (draft !== undefined && draft.text !== text) this.fileStore.remember({ ...draft, unsaved: true });
+    if (draft !== undefined && draft.text !== text) this.fileStore.addRecent({ ...draft, unsaved: true });
     this.drafts.delete(this.tab);
-    this.fileStore.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
+    this.fileStore.storeDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
   }
 
   /**
@@ -198,7 +198,7 @@ export class Workspace {
   #replace(tab, document) {
     const old = this.documents.get(tab);
     if (old !== undefined && isUnsaved(old)) {
-      this.fileStore.remember({ name: old.name, text: old.text, time: this.now(), unsaved: true });
+      this.fileStore.addRecent({ name: old.name, text: old.text, time: this.now(), unsaved: true });
     }
     this.documents.set(tab, document);
     if (tab === this.tab) this.changed();

@@ -21,7 +21,7 @@ export function programPanel(context) {
   const { t, language, actions, store, announce, editor } = context;
   const behavior = behaviorChoice(context);
   const name = h("strong", { class: "name" });
-  const lamp = h("span", { class: "state" });
+  const stateElement = h("span", { class: "state" });
   const message = h("p", { class: "message", hidden: true });
   const verbs = VERBS.map(([verb, path]) => ({
     verb,
@@ -44,7 +44,7 @@ export function programPanel(context) {
   const element = card(
     "program",
     t("program"),
-    h("div", { class: "current" }, name, lamp),
+    h("div", { class: "current" }, name, stateElement),
     message,
     h("div", { class: "row verbs" }, ...verbs.map(({ button }) => button)),
     h(
@@ -114,8 +114,8 @@ export function programPanel(context) {
       const word = program === null ? "" : stateLabel(program.state, t, timePaused);
       const reason = disabledReason(state, t);
       setText(name, program?.name || t("program.none"));
-      setText(lamp, word);
-      setAttribute(lamp, "data-state", timePaused && program?.state === "running" ? "paused" : (program?.state ?? ""));
+      setText(stateElement, word);
+      setAttribute(stateElement, "data-state", timePaused && program?.state === "running" ? "paused" : (program?.state ?? ""));
       const { values, level, message: reported } = program ?? { values: {}, level: 0, message: "" };
       setText(message, level > 0 ? (faultMessage(values, language) || reported) + lineLabel(values, t) : "");
       message.hidden = message.textContent === "";

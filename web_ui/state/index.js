@@ -51,7 +51,7 @@ import { applyTransforms } from "./transforms.js";
  * @typedef {object} State
  * @property {"connecting" | "connected" | "lost" | "noToken" | "wrongToken"} connection
  * @property {boolean} readOnly   whether the server restricts this page to read-only access
- * @property {boolean} greeted    whether the server of this connection has identified itself
+ * @property {boolean} identified    whether the server of this connection has identified itself
  * @property {string} server
  * @property {string} sessionId
  * @property {string[]} topics
@@ -95,7 +95,7 @@ import { applyTransforms } from "./transforms.js";
  *   | { type: "dismiss", id: number }} Message
  */
 
-const KEPT_NOTICES = 4;
+const MAX_NOTICES = 4;
 
 /** Cause of notices about a file that was rejected by the page. */
 export const FILE = "file";
@@ -106,7 +106,7 @@ export const CONNECTION = "connection";
 export const INITIAL = {
   connection: "connecting",
   readOnly: false,
-  greeted: false,
+  identified: false,
   server: "",
   sessionId: "",
   topics: [],
@@ -142,19 +142,19 @@ export function reduce(state, message) {
 const STEPS = /** @type {Record<string, (state: State, message: any) => State>} */ ({
   connecting: (state) => ({ ...state, connection: state.connection === "lost" ? "lost" : "connecting" }),
   connected: (state) =>
-    withoutNotices({ ...state, connection: "connected", greeted: false, services: [], topics: [] }, [CONNECTION]),
+    withoutNotices({ ...state, connection: "connected", identified: false, services: [], topics: [] }, [CONNECTION]),
   disconnected: (state) => ({ ...state, connection: "lost" }),
   refused: (state, { withToken }) => ({ ...state, connection: withToken ? "wrongToken" : "noToken" }),
   serverInfo(state, { name, sessionId, readOnly = false }) {
-    const known = { ...state, greeted: true, server: name, sessionId, readOnly };
+    const known = { ...state, identified: true, server: name, sessionId, readOnly };
     if (sessionId === state.sessionId && sessionId !== "") return known;
     // On the same connection the simulation was restarted: topics stay, time is reset.
-    if (state.greeted) return { ...known, timeNs: 0 };
+    if (state.identified) return { ...known, timeNs: 0 };
     // Another simulator: discard the data of the previous one.
     const { connection, notices, noticeCount, selected, sensorsShown } = state;
     const remaining = notices.filter(({ cause }) => !isSimulatorCause(cause));
     const own = { connection, notices: remaining, noticeCount, selected, sensorsShown };
-    return { ...INITIAL, ...own, readOnly, greeted: true, server: name, sessionId };
+    return { ...INITIAL, ...own, readOnly, identified: true, server: name, sessionId };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
@@ -293,7 +293,7 @@ function selection(wanted, robots) {
 function withNotice(state, level, text, cause = "") {
   if (state.notices.some((notice) => notice.text === text)) return state;
   const id = state.noticeCount + 1;
-  return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-KEPT_NOTICES) };
+  return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-MAX_NOTICES) };
 }
 
 /** Remove the notices of resolved causes. @param {State} state @param {readonly string[]} causes @returns {State} */

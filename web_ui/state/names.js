@@ -47,7 +47,7 @@ export const MANY_ROBOTS = 4;
 /** Topics that are needed to draw a robot. */
 const DRAWN = /^(?:_ground_truth|joint_states|_led|buttons|_pen|_sound|_aseba)\b/;
 /** Topics that the transforms replace while the simulation runs. */
-const PLACED = /^(?:_ground_truth|joint_states)\b/;
+const POSE_TOPICS = /^(?:_ground_truth|joint_states)\b/;
 
 /** @typedef {{ isByTransforms: boolean }} Placed */
 /**
@@ -87,7 +87,7 @@ export function isWatched(state, topic) {
   const sensor = RAW_TOPIC.exec(topic)?.[3];
   if (sensor !== undefined && !isSensorShown(state, sensor)) return false;
   if (isSensed(state, part.robot)) return true;
-  if (PLACED.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
+  if (POSE_TOPICS.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
   return DRAWN.test(part.name);
 }
 
