@@ -12,7 +12,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 from tests.web_ui.conftest import DEADLINE_MS, LOCAL
 from tests.web_ui.page_support import (
     MARKS,
-    Fingers,
+    TouchPoints,
     open_page,
     wait_for_frame,
     wait_for_service,
@@ -236,8 +236,8 @@ def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(suite, pag
     page.click("[data-tool=track]")
     for key in ("Space", "ArrowUp", "ArrowUp", "Space", "Enter", "Escape"):
         page.keyboard.press(key)
-    page.click(".things-list summary")
-    page.click("[data-thing=track_1]")
+    page.click(".item-list summary")
+    page.click("[data-item=track_1]")
     name = page.get_by_label("Name")
     name.fill("lane")
     page.keyboard.press("Tab")
@@ -287,7 +287,7 @@ def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_g
     page.mouse.move(*spot(page, -0.3, 0.2))
     page.wait_for_function("Math.abs(window.thymio.built().placing.place[0] + 0.3) < 0.01")
     page.mouse.wheel(0, 120)
-    playwright.expect(page.locator(".told")).to_contain_text("-15°")
+    playwright.expect(page.locator(".bar-message")).to_contain_text("-15°")
     page.keyboard.down("Alt")
     click(page, -0.313, 0.207)
     page.keyboard.up("Alt")
@@ -388,7 +388,7 @@ def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, pa
     page.keyboard.press("Escape")
     page.keyboard.press("n")
     playwright.expect(page.locator(".item-form [data-field=name]")).to_be_visible()
-    page.locator(".things-list summary").click()
+    page.locator(".item-list summary").click()
     assert page.evaluate(FINDINGS) == []
 
 
@@ -402,12 +402,12 @@ def test_items_are_placed_and_dragged_by_touch(suite, browser):
     page.touchscreen.tap(*spot(page, 0.25, 0.2))
     wait_for_items(page, 3)
     assert items(page)["thymio_1"]["x_m"] == 0.25
-    fingers, corners = Fingers(page), ((0.4, 0.4), (-0.4, -0.4))
+    touches, corners = TouchPoints(page), ((0.4, 0.4), (-0.4, -0.4))
     before = math.dist(*(spot(page, *corner) for corner in corners))
     camera = built(page)["camera"]
-    fingers.put(a=(380, 280), b=(420, 320))
-    fingers.move(a=(320, 220), b=(480, 380))
-    fingers.lift()
+    touches.start(a=(380, 280), b=(420, 320))
+    touches.move(a=(320, 220), b=(480, 380))
+    touches.end()
     page.wait_for_function("(camera) => window.thymio.built().camera[0] !== camera[0]", arg=camera)
     wait_for_camera(page)
     assert math.dist(*(spot(page, *corner) for corner in corners)) > 1.2 * before

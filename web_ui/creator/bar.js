@@ -23,7 +23,7 @@ export function bar(t, model) {
   const on = h("select", { "aria-label": t("bar.snap"), "data-verb": "snap" });
   on.append(...["lines", "centers"].map((choice) => h("option", { value: choice }, t(`bar.${choice}`))));
   on.addEventListener("change", () => model.setGrid({ on: /** @type {"lines" | "centers"} */ (on.value) }));
-  const output = h("output", { class: "told" });
+  const output = h("output", { class: "bar-message" });
   const element = h(
     "div",
     { class: "creator-bar", role: "toolbar", "aria-label": t("bar") },

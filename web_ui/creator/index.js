@@ -161,7 +161,7 @@ export function createCreator({ session, language, pageText, scene, announce, tr
   };
   const trying = h(
     "button",
-    { type: "button", class: "primary", id: "creator-try", "data-drives": "", title: t("file.tryHelp"), onclick: tryIt },
+    { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
     t("file.try"),
   );
   const side = h(

@@ -6,7 +6,7 @@ import { h, setAttribute, setText } from "../panels/dom.js";
 export function itemList(t, model) {
   const summary = h("summary");
   const list = h("ul", { class: "items" });
-  const element = h("details", { class: "things-list" }, summary, list);
+  const element = h("details", { class: "item-list" }, summary, list);
   /** @type {readonly import("../playground/parts.js").Item[] | null} */ let shown = null;
   /** @type {{ name: string, button: HTMLElement }[]} */ let rows = [];
   return {
@@ -19,7 +19,7 @@ export function itemList(t, model) {
           name,
           button: h(
             "button",
-            { type: "button", class: "plain", "data-thing": name, onclick: () => model.select(name) },
+            { type: "button", class: "plain", "data-item": name, onclick: () => model.select(name) },
             name,
             h("small", {}, t(`kind.${kind}`)),
           ),

@@ -5,6 +5,7 @@ import { translator } from "../i18n/index.js";
 import { faultView } from "../panels/fault.js";
 import { parse } from "../playground/document.js";
 import { CONNECTION } from "../state/index.js";
+import { disabledReason } from "../state/disabled_reason.js";
 
 /** @typedef {import("../creator/index.js").Creator} Creator */
 /** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
@@ -43,7 +44,7 @@ export class CreatorHost {
   render() {
     if (!this.isOpen || this.context === null) return;
     const { store, t } = this.context;
-    this.creator?.render(store.state.connection === "connected" ? "" : t("connection.needed"));
+    this.creator?.render(disabledReason(store.state, t));
   }
 
   /** Set the context: on start, and after a change of language. @param {Context} context */

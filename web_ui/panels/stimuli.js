@@ -1,6 +1,7 @@
 // Stimuli for the selected robot: tap, clap, tilt, noise, light, temperature, battery, remote control, pen.
 
-import { controlCard } from "./card.js";
+import { disabledReason } from "../state/disabled_reason.js";
+import { card } from "./card.js";
 import { h, lock } from "./dom.js";
 
 /** @typedef {import("./index.js").Context} Context */
@@ -164,13 +165,13 @@ export function stimuliPanel({ t, actions, store }) {
     h("h3", {}, t("pen")),
     ...pen(t, actions),
   );
-  const element = controlCard("stimuli", t("stimuli"), controls);
+  const element = card("stimuli", t("stimuli"), controls);
   /** @type {string | null} */ let robot = null;
   return {
     slot: "side",
     element,
-    render({ connection, selected }) {
-      lock(controls, connection === "connected" ? "" : t("connection.needed"));
+    render({ connection, readOnly, selected }) {
+      lock(controls, disabledReason({ connection, readOnly }, t));
       if (selected === robot) return;
       robot = selected;
       for (const { refresh } of sliders) refresh();

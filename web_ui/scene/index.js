@@ -270,7 +270,7 @@ export class SceneView {
     this.framed = sketch !== null;
     this.objects.update(state.objects);
     this.dragController.refresh();
-    this.ghost.update(this.dragController.held, this.dragController.mode);
+    this.ghost.update(this.dragController.dragged, this.dragController.mode);
     this.sketchModel.update(sketch);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
@@ -299,7 +299,7 @@ export class SceneView {
     this.flat.draw(state, {
       nowMs,
       senses: (name) => this.#isSensing(name),
-      held: this.dragController.held,
+      held: this.dragController.dragged,
       sketch: this.sketch(),
       color: (name) => robotColor(names, name),
       changed: () => this.invalidate(),

@@ -63,6 +63,7 @@ def test_a_program_starts_again_with_its_node(ros, simulation, runtime):
         (String, "/robot_description"),
         (String, "/simulator/_state"),
         (String, "/simulator/_playgrounds"),
+        (String, "/simulator/_sensors"),
         (MarkerArray, "/_markers"),
         (MarkerArray, "/_markers/objects"),
         (Float32MultiArray, "/_led/state"),

@@ -1,4 +1,4 @@
-"""Publishers for the world as a whole: state, playgrounds, markers, map (docs/spec/ros-interface.md section 5)."""
+"""Publishers for the world: state, playgrounds, sensors, markers, map (docs/spec/ros-interface.md section 5)."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, RobotNames
 from thymio_sim_ros.ros.simulator.markers import playground_markers
 from thymio_sim_ros.ros.simulator.occupancy_grid import occupancy
+from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
 from thymio_sim_ros.ros.simulator.world_topics import TOPICS
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
@@ -29,7 +30,7 @@ __all__ = ["SceneMessages", "WorldEndpoints", "WorldState", "shipped_playgrounds
 OBJECTS_GAP_NS = 50_000_000
 """Shortest wall time between two messages about moving objects."""
 
-_WORDS = ("~/_state", "~/_raw", "~/_playgrounds", "_markers", "_markers/objects")
+_WORDS = ("~/_state", "~/_raw", "~/_playgrounds", "~/_sensors", "_markers", "_markers/objects")
 """Topics that are always published here; the clock and the diagnostics have publishers of their own."""
 
 
@@ -92,6 +93,7 @@ class WorldEndpoints:
         }
         self._map_frame = map_frame
         self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
+        self._publishers["~/_sensors"].publish(String(data=json.dumps(displayed_sensors())))
         self._last_objects_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 

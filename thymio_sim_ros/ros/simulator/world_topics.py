@@ -46,6 +46,9 @@ TOPICS: Mapping[str, WorldTopic] = {
     "~/_playgrounds": WorldTopic(
         String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.TRANSIENT_LOCAL
     ),
+    "~/_sensors": WorldTopic(
+        String, "once", "JSON: label, units and scales of the sensors' words, for viewers", qos.TRANSIENT_LOCAL
+    ),
     "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.TRANSIENT_LOCAL, "map"),
     "_markers/objects": WorldTopic(
         MarkerArray, "≤ 20, change", "objects and doors at their current poses", qos.TRANSIENT_LOCAL, "map"

@@ -47,4 +47,5 @@ SENSOR = Sensor(
     measure=_measure,
     wakes_on=(PressButton,),
     aseba=AsebaFace(variables=(("buttons._raw", 5), ("buttons._mean", 5), ("buttons._noise", 5))),
+    values=(),
 )

@@ -133,4 +133,5 @@ SENSOR = Sensor(
         variables=(("prox.comm.rx", 1), ("prox.comm.rx._payloads", 7), ("prox.comm.rx._intensities", 7)),
         event="prox.comm",
     ),
+    values=(),
 )

@@ -98,4 +98,5 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=(("_imot", 2), ("_integrator", 2))),
+    values=(),
 )

@@ -90,4 +90,5 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=(("prox.ground.ambiant", 2), ("prox.ground.reflected", 2), ("prox.ground.delta", 2))),
+    values=(),
 )

@@ -61,4 +61,5 @@ SENSOR = Sensor(
         ),
         event="motor",
     ),
+    values=(),
 )

@@ -160,4 +160,5 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=(("prox.horizontal", _COUNT),), event="prox"),
+    values=(),
 )

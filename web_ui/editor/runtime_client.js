@@ -11,7 +11,7 @@ const RUNTIME = "/aseba_runtime.";
 const INTEGER = 2; // rcl_interfaces/msg/ParameterType
 const INTEGER_ARRAY = 7;
 
-export class Link {
+export class RuntimeClient {
   /** @param {Client} client */
   constructor(client) {
     this.client = client;

@@ -1,15 +1,15 @@
 // Help texts in the page's language: requested once, and merged into the target descriptions of robots.
 
 /** @typedef {import("./state.js").Target} Target */
-/** @typedef {import("./link.js").Link} Link */
+/** @typedef {import("./runtime_client.js").RuntimeClient} RuntimeClient */
 
 const KINDS = /** @type {const} */ (["variables", "events", "natives"]);
 
-export class Lexicon {
+export class HelpTexts {
   /** @param {string} language */
   constructor(language) {
     this.language = language;
-    this.asked = false;
+    this.isRequested = false;
     /** @type {Map<string, string>} */ this.words = new Map();
     /** @type {WeakMap<Target, Target>} */ this.known = new WeakMap();
   }
@@ -17,13 +17,13 @@ export class Lexicon {
   /**
    * Request the help texts unless that was done.
    *
-   * @param {Link} link
-   * @param {() => void} changed  there is more to say
+   * @param {RuntimeClient} runtime
+   * @param {() => void} changed  called when help texts have arrived
    */
-  async ask(link, changed) {
-    if (this.asked) return;
-    this.asked = true;
-    const target = await link.target(this.language);
+  async load(runtime, changed) {
+    if (this.isRequested) return;
+    this.isRequested = true;
+    const target = await runtime.target(this.language);
     if (target === null) return;
     for (const kind of KINDS) for (const { name, help } of target[kind]) this.words.set(`${kind} ${name}`, help);
     this.known = new WeakMap();

@@ -2,8 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { firstFault } from "../../web_ui/editor/checking.js";
-import { Lexicon } from "../../web_ui/editor/lexicon.js";
-import { Link } from "../../web_ui/editor/link.js";
+import { HelpTexts } from "../../web_ui/editor/help_texts.js";
+import { RuntimeClient } from "../../web_ui/editor/runtime_client.js";
 
 const TARGET = /** @type {any} */ ({
   variables: [{ name: "acc", size: 3, address: 0, hidden: false, help: "accelerometer" }],
@@ -19,29 +19,29 @@ function answering(reason) {
   /** @type {any[]} */ const asked = [];
   const value = { result: { successful: true, reason: JSON.stringify(reason) } };
   const call = async (/** @type {any[]} */ ...given) => (asked.push(given), { ok: true, message: "", value });
-  return { asked, link: new Link(/** @type {any} */ ({ call })) };
+  return { asked, runtime: new RuntimeClient(/** @type {any} */ ({ call })) };
 }
 
 test("help is requested once, in the language of the page, and replaces the target's", async () => {
-  const lexicon = new Lexicon("de");
-  const { asked, link } = answering({ target: GERMAN });
-  assert.equal(lexicon.translate(null), null);
-  assert.equal(lexicon.translate(TARGET).variables[0].help, "accelerometer");
+  const helpTexts = new HelpTexts("de");
+  const { asked, runtime } = answering({ target: GERMAN });
+  assert.equal(helpTexts.translate(null), null);
+  assert.equal(helpTexts.translate(TARGET).variables[0].help, "accelerometer");
   let changes = 0;
-  for (let round = 0; round < 3; round++) await lexicon.ask(link, () => changes++);
+  for (let round = 0; round < 3; round++) await helpTexts.load(runtime, () => changes++);
   assert.deepEqual([asked.length, changes], [1, 1]);
   assert.equal(asked[0][1].parameters.find((/** @type {any} */ each) => each.name === "language").value.string_value, "de");
-  const translated = lexicon.translate(TARGET);
+  const translated = helpTexts.translate(TARGET);
   assert.equal(translated.variables[0].help, "Beschleunigung");
   assert.equal(translated.events[0].help, "was read");
   assert.equal(translated.natives[0].help, "of a plug-in");
-  assert.equal(lexicon.translate(TARGET), translated);
+  assert.equal(helpTexts.translate(TARGET), translated);
 });
 
 test("without translated help the target's help is kept", async () => {
-  const lexicon = new Lexicon("de");
-  await lexicon.ask(new Link(/** @type {any} */ ({ call: async () => ({ ok: false, message: "gone" }) })), () => {});
-  assert.equal(lexicon.translate(TARGET).variables[0].help, "accelerometer");
+  const helpTexts = new HelpTexts("de");
+  await helpTexts.load(new RuntimeClient(/** @type {any} */ ({ call: async () => ({ ok: false, message: "gone" }) })), () => {});
+  assert.equal(helpTexts.translate(TARGET).variables[0].help, "accelerometer");
 });
 
 test("the first error is reported, but not a failed check", () => {
