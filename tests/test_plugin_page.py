@@ -97,7 +97,7 @@ def test_the_shape_becomes_primitives_and_part_of_the_schema() -> None:
 @pytest.mark.parametrize(
     ("name", "old", "new", "said"),
     [
-        ("thymio_extras/compass.py", "import math", "import math", "ModuleNotFoundError"),
+        ("thymio_extras/compass.py", "import math", "import no_such_module", "ModuleNotFoundError"),
         ("thymio_extras/compass.py", "SENSOR = Sensor(", "OTHER = Sensor(", "expected SENSOR of type Sensor"),
         ("thymio_extras/compass.py", 'name="compass"', 'name="proximity"', "which exists"),
         ("thymio_extras/compass.py", 'name="compass"', 'name="My Compass"', "small letters"),

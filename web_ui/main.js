@@ -2,6 +2,8 @@
 
 import { Actions, isProgram } from "./input/actions.js";
 import { CreatorHost } from "./hosts/creator_host.js";
+import { fetchShapes } from "./playground/declarations.js";
+import { registerShapes } from "./playground/kinds/index.js";
 import { watchDrops } from "./browser/file_drop.js";
 import { EditorHost } from "./hosts/editor_host.js";
 import { ThumbnailCache } from "./gallery/thumbnail_cache.js";
@@ -43,7 +45,8 @@ async function main() {
   window.addEventListener("hashchange", () => {
     if (tokenIn(location.href) !== null) location.reload();
   });
-  const address = await bridgeAddress();
+  const [address, shapes] = await Promise.all([bridgeAddress(), fetchShapes()]);
+  if (shapes !== null) registerShapes(shapes); // before the first playground is read
   const store = new Store();
   let language = chooseLanguage([localStore.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
   let t = translator(language);

@@ -4,11 +4,11 @@
 import { CreatorModel } from "../../web_ui/creator/creator_model.js";
 import { newPlayground } from "../../web_ui/creator/commands.js";
 import { parse, write } from "../../web_ui/playground/document.js";
-import { SHAPES } from "../../web_ui/playground/kinds/index.js";
+import { shapeKinds } from "../../web_ui/playground/kinds/index.js";
 
 const PIXEL =
   "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
-const TOOLS = [...SHAPES.map(({ name }) => name), "robot"];
+const TOOLS = [...shapeKinds().map(({ name }) => name), "robot"];
 let seed = 1;
 
 /** A number from 0 to 1, the same in every run. */

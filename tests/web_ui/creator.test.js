@@ -13,7 +13,7 @@ import { WORDS } from "../../web_ui/creator/words/index.js";
 import { CreatorSession } from "../../web_ui/creator/creator_session.js";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { lacksGround, itemsOffGround } from "../../web_ui/playground/validation.js";
-import { SHAPES } from "../../web_ui/playground/kinds/index.js";
+import { shapeKinds } from "../../web_ui/playground/kinds/index.js";
 
 /** Straight down. @param {number} x @param {number} y */
 const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1 } });
@@ -156,7 +156,7 @@ test("the next wall starts where the last one ended", () => {
 });
 
 test("every kind can be placed, moved, turned, copied and removed, and all of it undone", () => {
-  for (const { name: kind } of SHAPES) {
+  for (const { name: kind } of shapeKinds()) {
     const { model, click, names, item } = prepared();
     const start = model.playground;
     if (kind === "activation") {
@@ -335,7 +335,7 @@ test("the creator has every text in every language, with the same values", () =>
     assert.deepEqual(Object.keys(table), Object.keys(WORDS.en));
     for (const [key, text] of Object.entries(WORDS.en)) assert.deepEqual(values(table[key]), values(text), key);
   }
-  for (const { name, fields } of SHAPES) {
+  for (const { name, fields } of shapeKinds()) {
     assert.ok(`kind.${name}` in WORDS.en && `tool.${name}` in WORDS.en, name);
     for (const key of Object.keys(fields)) assert.ok(`field.${key}` in WORDS.en, key);
   }

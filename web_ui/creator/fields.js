@@ -3,13 +3,15 @@
 import { h, renew, setText } from "../panels/dom.js";
 import { shown, taken, unitOf } from "./units.js";
 
-/** @typedef {import("../playground/rules.js").Field} Field */
+/** @typedef {import("../playground/declarations.js").DeclaredField} Field */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /** @typedef {(values: Record<string, any>) => Phrase | null} Commit  returns the problem, or null */
 /** @typedef {{ element: HTMLElement, update: (values: Record<string, any>) => void }} Control */
 /**
  * @typedef {object} Setting
  * @property {import("../i18n/index.js").Translate} t
+ * @property {import("./labels.js").Labels} labels
+ * @property {string} [kind]   of the edited item
  * @property {(phrase: Phrase) => string} say
  * @property {Commit} commit
  * @property {() => readonly string[]} doors   names of the doors that a plate can open
@@ -44,16 +46,16 @@ function labeled(label, input, unit = "") {
 }
 
 /** @param {Setting} setting @param {string} key @param {Field} field @returns {Control} */
-function numberControl({ t, say, commit }, key, { rule }) {
-  const { unit, step } = unitOf(rule.unit);
+function numberControl({ t, labels, kind = "", say, commit }, key, field) {
+  const { unit, step } = unitOf(field.unit);
   const input = h("input", { type: "number", step: "any", inputmode: "decimal", "data-field": key });
-  const { element, report } = labeled(t(`field.${key}`), input, unit);
+  const { element, report } = labeled(labels.field(kind, key), input, unit);
   let value = NaN;
   const take = () => {
-    const wanted = taken(input.valueAsNumber, rule.unit);
-    const [low, high] = [rule.low ?? -Infinity, rule.high ?? Infinity];
+    const wanted = taken(input.valueAsNumber, field.unit);
+    const [low, high] = [field.low ?? -Infinity, field.high ?? Infinity];
     if (!(wanted >= low && wanted <= high)) {
-      return report(t("problem.range", { low: shown(low, rule.unit), high: shown(high, rule.unit), unit }));
+      return report(t("problem.range", { low: shown(low, field.unit), high: shown(high, field.unit), unit }));
     }
     const problem = commit({ [key]: wanted });
     report(problem === null ? null : say(problem));
@@ -70,16 +72,16 @@ function numberControl({ t, say, commit }, key, { rule }) {
     update(values) {
       if (values[key] === value) return;
       value = values[key];
-      input.value = value === null || value === undefined ? "" : String(shown(value, rule.unit));
+      input.value = value === null || value === undefined ? "" : String(shown(value, field.unit));
       report(null);
     },
   };
 }
 
 /** @param {Setting} setting @param {string} key @param {string} type  of the input element @returns {Control} */
-function textControl({ t, say, commit }, key, type) {
+function textControl({ labels, kind = "", say, commit }, key, type) {
   const input = h("input", { type, "data-field": key, autocomplete: "off", spellcheck: "false" });
-  const { element, report } = labeled(t(`field.${key}`), input);
+  const { element, report } = labeled(labels.field(kind, key), input);
   let value = "";
   input.addEventListener("change", () => {
     const problem = commit({ [key]: input.value });
@@ -97,19 +99,19 @@ function textControl({ t, say, commit }, key, type) {
 }
 
 /** @param {Setting} setting @param {string} key @returns {Control} */
-function flagControl({ t, commit }, key) {
+function flagControl({ labels, kind = "", commit }, key) {
   const input = h("input", { type: "checkbox", "data-field": key });
   input.addEventListener("change", () => commit({ [key]: input.checked }));
   return {
-    element: h("label", { class: "check" }, input, t(`field.${key}`)),
+    element: h("label", { class: "check" }, input, labels.field(kind, key)),
     update: (values) => (input.checked = values[key] === true),
   };
 }
 
 /** Selects the door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
-function doorControl({ t, say, commit, doors }, key) {
+function doorControl({ labels, kind = "", say, commit, doors }, key) {
   const select = h("select", { "data-field": key });
-  const { element, report } = labeled(t(`field.${key}`), select);
+  const { element, report } = labeled(labels.field(kind, key), select);
   select.addEventListener("change", () => {
     const problem = commit({ [key]: select.value });
     report(problem === null ? null : say(problem));
@@ -136,7 +138,7 @@ function doorControl({ t, say, commit, doors }, key) {
  * @param {Field} field
  * @returns {Control}
  */
-function pointsControl({ t, say, commit }, key, { rule }) {
+function pointsControl({ t, labels, kind = "", say, commit }, key, field) {
   const list = h("ol", { class: "points" });
   const problem = h("small", { class: "problem", role: "alert", hidden: true });
   const summary = h("summary");
@@ -172,7 +174,7 @@ function pointsControl({ t, say, commit }, key, { rule }) {
         type: "button",
         class: "plain",
         "aria-label": t("field.removePoint", { number: index + 1 }),
-        disabled: points.length <= (rule.fewest ?? 0),
+        disabled: points.length <= (field.fewest ?? 0),
         onclick: () => take(points.filter((_, at) => at !== index)),
       },
       "×",
@@ -185,7 +187,7 @@ function pointsControl({ t, say, commit }, key, { rule }) {
       if (values[key] === points) return;
       points = values[key] ?? [];
       element.hidden = points.length === 0;
-      setText(summary, `${t(`field.${key}`)} (${points.length})`);
+      setText(summary, `${labels.field(kind, key)} (${points.length})`);
       renew(
         list,
         points.map((_, index) => row(index)),
@@ -195,9 +197,9 @@ function pointsControl({ t, say, commit }, key, { rule }) {
 }
 
 /** Replaces the image. @param {Setting} setting @param {string} key @returns {Control} */
-function imageControl({ t, say, commit, readPicture }, key) {
+function imageControl({ t, labels, kind = "", say, commit, readPicture }, key) {
   const input = h("input", { type: "file", accept: "image/png,image/jpeg,image/svg+xml", "data-field": key });
-  const { element, report } = labeled(t(`field.${key}`), input);
+  const { element, report } = labeled(labels.field(kind, key), input);
   input.addEventListener("change", async () => {
     const file = input.files?.[0];
     if (file === undefined) return;
@@ -217,15 +219,15 @@ function imageControl({ t, say, commit, readPicture }, key) {
  * @param {Field} field
  * @returns {Control}
  */
-function groupControl(setting, key, { rule }) {
+function groupControl(setting, key, field) {
   /** @type {Record<string, any> | null} */ let group = null;
   const input = h("input", { type: "checkbox", "data-field": key });
-  const inner = Object.entries(rule.fields ?? {}).map(([name, field]) =>
-    control({ ...setting, commit: (values) => setting.commit({ [key]: { ...group, ...values } }) }, name, field),
+  const inner = Object.entries(field.fields ?? {}).map(([name, member]) =>
+    control({ ...setting, commit: (values) => setting.commit({ [key]: { ...group, ...values } }) }, name, member),
   );
   const box = h("div", { class: "fields inner" }, ...inner.flatMap((one) => (one === null ? [] : [one.element])));
   input.addEventListener("change", () => setting.commit({ [key]: input.checked ? (group ?? {}) : null }));
-  const element = h("div", { class: "group" }, h("label", { class: "check" }, input, setting.t(`field.${key}`)), box);
+  const element = h("div", { class: "group" }, h("label", { class: "check" }, input, setting.labels.field(setting.kind ?? "", key)), box);
   return {
     element,
     update(values) {
@@ -238,6 +240,9 @@ function groupControl(setting, key, { rule }) {
   };
 }
 
+/** Fields that an object has while it is movable. */
+export const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
+
 /**
  * Edits whether an object is movable, and its mass.
  *
@@ -247,11 +252,12 @@ function groupControl(setting, key, { rule }) {
  */
 export function loadControl(setting, fields) {
   const input = h("input", { type: "checkbox", "data-field": "movable" });
-  const inner = ["mass_kg", "friction", "restitution"].map((key) => numberControl(setting, key, fields[key]));
+  const keys = LOAD_KEYS.filter((key) => key in fields);
+  const inner = keys.map((key) => numberControl(setting, key, fields[key]));
   const box = h("div", { class: "fields inner" }, ...inner.map(({ element }) => element));
   input.addEventListener("change", () => {
-    const fixed = { mass_kg: null, friction: fields.friction.defaultValue, restitution: fields.restitution.defaultValue };
-    setting.commit(input.checked ? { mass_kg: 0.1 } : fixed);
+    const fixed = Object.fromEntries(keys.map((key) => [key, fields[key].default]));
+    setting.commit(input.checked ? { mass_kg: 0.1 } : { ...fixed, mass_kg: null });
   });
   return {
     element: h("div", { class: "group" }, h("label", { class: "check" }, input, setting.t("field.movable")), box),
@@ -272,12 +278,12 @@ export function loadControl(setting, fields) {
  * @returns {Control | null}
  */
 export function control(setting, key, field) {
-  const { type } = field.rule;
+  const { type } = field;
   if (key === "door") return doorControl(setting, key);
   if (type === "number") return numberControl(setting, key, field);
   if (type === "flag") return flagControl(setting, key);
   if (type === "points") return pointsControl(setting, key, field);
   if (type === "image") return imageControl(setting, key);
   if (type === "object") return groupControl(setting, key, field);
-  return textControl(setting, key, key === "color" ? "color" : "text");
+  return textControl(setting, key, field.format === "color" ? "color" : "text");
 }

@@ -2,8 +2,12 @@
 
 import { h, setAttribute, setText } from "../panels/dom.js";
 
-/** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
-export function itemList(t, model) {
+/**
+ * @param {import("../i18n/index.js").Translate} t
+ * @param {import("./labels.js").Labels} labels
+ * @param {import("./creator_model.js").CreatorModel} model
+ */
+export function itemList(t, labels, model) {
   const summary = h("summary");
   const list = h("ul", { class: "things" });
   const element = h("details", { class: "things-list" }, summary, list);
@@ -21,7 +25,7 @@ export function itemList(t, model) {
             "button",
             { type: "button", class: "plain", "data-thing": name, onclick: () => model.select(name) },
             name,
-            h("small", {}, t(`kind.${kind}`)),
+            h("small", {}, labels.kind(kind)),
           ),
         }));
         list.replaceChildren(...rows.map(({ button }) => h("li", {}, button)));

@@ -115,7 +115,7 @@ function act(model, event, editFields) {
   else if (key === " " && placing !== null) placing.put();
   else if (key === "Enter") {
     if (placing === null) editFields();
-    else if (placing.kind === "track" && placing.points.length > 1) placing.finish();
+    else if (placing.pathKey !== undefined && placing.points.length > 1) placing.finish();
     else placing.put();
   } else if (key === "Backspace" && placing !== null) placing.undoPoint();
   else if (key === "Delete" || key === "Backspace") model.remove();

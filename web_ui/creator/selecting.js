@@ -91,8 +91,7 @@ function dragged({ item, handle, from }, place, grid) {
     return withPoint(item, handle.index, snapped([px + dx, py + dy], grid));
   }
   if (Math.hypot(dx, dy) < 1e-4) return item;
-  const isPath = kindNamed(item.kind)?.points.length === 0 || item.kind === "wall";
-  if (!isPath) return movedTo(item, snapped([x + dx, y + dy], grid));
+  if (kindNamed(item.kind)?.placement === "center") return movedTo(item, snapped([x + dx, y + dy], grid));
   const [[firstX, firstY]] = pointsOf(item); // a path keeps its first point on the grid, not its center
   const [toX, toY] = snapped([firstX + dx, firstY + dy], grid);
   return movedTo(item, [x + toX - firstX, y + toY - firstY]);

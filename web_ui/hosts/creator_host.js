@@ -145,7 +145,7 @@ export class CreatorHost {
     const { module, session, context } = this;
     if (module === null || session === null || context === null) return;
     this.creator?.destroy();
-    this.creator = module.createCreator({
+    this.creator = new module.Creator({
       session,
       language: context.language,
       pageText: context.t,

@@ -25,7 +25,7 @@ export function partsOf(item) {
   if (known !== undefined) return known;
   const kind = kindNamed(item.kind);
   const values = valuesOf(item);
-  const primitives = kind?.primitives(values) ?? [];
+  const primitives = kind?.draw(values) ?? [];
   const solids = primitives.filter((part) => part.type === "solid");
   const footprints = item.kind === "robot" ? [robotFootprint(values)] : solids.map(footprintOf);
   const floors = primitives.flatMap((part) => (part.type === "floor" ? [part.vertices] : []));
@@ -43,9 +43,9 @@ export function valuesOf(item) {
 /** @param {import("./rules.js").Fields} fields @param {Record<string, any>} given @returns {Record<string, any>} */
 function filled(fields, given) {
   const values = { ...given };
-  for (const [key, { rule, defaultValue }] of Object.entries(fields)) {
-    if (!(key in given)) values[key] = defaultValue;
-    else if (rule.type === "object" && given[key] !== null) values[key] = filled(rule.fields ?? {}, given[key]);
+  for (const [key, field] of Object.entries(fields)) {
+    if (!(key in given)) values[key] = field.default;
+    else if (field.type === "object" && given[key] !== null) values[key] = filled(field.fields ?? {}, given[key]);
   }
   return values;
 }

@@ -1,0 +1,54 @@
+// The hint over the view while an item is placed or dragged: what to do next, or why the position is taken; with buttons
+// for those without a keyboard.
+
+import { h, icon, setText } from "../panels/dom.js";
+import { CREATOR_ICONS } from "./icons.js";
+
+/**
+ * @param {object} options
+ * @param {import("./labels.js").Labels} options.labels
+ * @param {import("./creator_model.js").CreatorModel} options.model
+ * @param {HTMLElement} options.canvas   gets the focus back, so that keys act on the view
+ */
+export function placingHint({ labels, model, canvas }) {
+  const { t } = labels;
+  /** @param {() => void} act */
+  const thenFocusView = (act) => () => {
+    act();
+    canvas.focus();
+  };
+  const hint = h("p", { class: "hint building-hint" });
+  const finish = h(
+    "button",
+    { type: "button", class: "finish", onclick: thenFocusView(() => model.placing?.finish()) },
+    icon(CREATOR_ICONS.done),
+    t("hint.finish"),
+  );
+  const cancel = h(
+    "button",
+    { type: "button", class: "cancel", onclick: thenFocusView(() => model.cancel()) },
+    t("hint.cancel"),
+  );
+  const element = h("div", { class: "building-hints" }, hint, finish, cancel);
+
+  const text = () => {
+    const { placing } = model;
+    const problem = model.ghost?.problem ?? null;
+    if (problem !== null) return labels.say(problem);
+    if (placing === null) return "";
+    const word = !placing.isPath ? "hint.placing" : placing.pathKey !== undefined ? "hint.track" : "hint.wall";
+    return labels.say({ word, values: { kind: placing.kind } });
+  };
+
+  return {
+    element,
+    render() {
+      const { placing } = model;
+      setText(hint, text());
+      hint.classList.toggle("taken", (model.ghost?.problem ?? null) !== null);
+      element.hidden = hint.textContent === "";
+      finish.hidden = placing?.pathKey === undefined || placing.points.length < 2;
+      cancel.hidden = placing === null;
+    },
+  };
+}
