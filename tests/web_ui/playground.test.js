@@ -8,7 +8,7 @@ import { blockerOf, isOnGround, findProblem } from "../../web_ui/playground/vali
 import { BUILT_IN } from "../../web_ui/playground/declarations.js";
 import { kindNamed, ROBOT, shapeKinds } from "../../web_ui/playground/kinds/index.js";
 import { Markers } from "../../web_ui/playground/markers.js";
-import { partsOf } from "../../web_ui/playground/parts.js";
+import { partsOf, valuesOf } from "../../web_ui/playground/parts.js";
 import { Fault } from "../../web_ui/playground/rules.js";
 import { worldOf } from "../../web_ui/playground/world.js";
 
@@ -17,9 +17,25 @@ const FOLDER = new URL("../../playgrounds/", import.meta.url);
 const CASES = JSON.parse(readFileSync(new URL("../data/web/playground_cases.json", import.meta.url), "utf8"));
 
 test("every declared shape of the simulator has a drawing of its own", () => {
-  assert.deepEqual(shapeKinds().filter(({ isExact }) => !isExact), []);
+  assert.deepEqual(shapeKinds().filter((kind) => !kind.isExact({})), []);
   assert.deepEqual(shapeKinds().map(({ name }) => name), Object.keys(BUILT_IN.shapes));
 });
+
+/** With lengths in nanometers, and without images. @param {import("../../web_ui/playground/primitives.js").Primitive[]} primitives */
+const rounded = (primitives) =>
+  JSON.parse(
+    JSON.stringify(
+      primitives.filter(({ type }) => type !== "print"),
+      (_key, value) => (typeof value === "number" ? Math.round(value * 1e9) / 1e9 + 0 : value),
+    ),
+  );
+
+for (const kind of shapeKinds()) {
+  test(`a ${kind.name} is drawn of the primitives that the simulator makes of it`, () => {
+    const values = valuesOf({ name: "x", ...kind.sample, kind: kind.name });
+    assert.deepEqual(rounded(kind.draw(values)), rounded(BUILT_IN.shapes[kind.name].primitives));
+  });
+}
 
 test("the names of fields say how a kind is placed", () => {
   /** @param {string} name */

@@ -25,6 +25,7 @@ import builtIn from "./declarations.json" with { type: "json" };
  * @property {"ground" | "paint" | "object"} group
  * @property {Record<string, DeclaredField>} fields   besides `kind` and `name`
  * @property {Record<string, any>} sample             values of a new item
+ * @property {import("./primitives.js").Primitive[]} primitives   of the sample, without images
  * @property {Record<string, string>} labels          name of the kind, by language
  * @property {Record<string, Record<string, string>>} field_labels   name of each field, by language
  */

@@ -1,6 +1,6 @@
 // The parts of an item, computed once per item: items are immutable.
 
-import { circle, placed } from "./geometry.js";
+import { circle, placed, rectangle } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
 import { footprintOf } from "./primitives.js";
 import { ROBOT_OUTLINE } from "../move/placed_bodies.js";
@@ -12,7 +12,8 @@ import { ROBOT_OUTLINE } from "../move/placed_bodies.js";
  * @typedef {object} Parts
  * @property {Record<string, any>} values       all values, including defaults
  * @property {import("./primitives.js").Primitive[]} primitives
- * @property {Footprint[]} footprints    ground on which no other body can stand
+ * @property {boolean} isExact           whether the primitives are those of the simulator
+ * @property {Footprint[]} footprints    ground on which no other body can stand; empty unless exact
  * @property {Point[][]} floors
  */
 
@@ -26,10 +27,11 @@ export function partsOf(item) {
   const kind = kindNamed(item.kind);
   const values = valuesOf(item);
   const primitives = kind?.draw(values) ?? [];
+  const isExact = kind === undefined || kind.isExact(values);
   const solids = primitives.filter((part) => part.type === "solid");
-  const footprints = item.kind === "robot" ? [robotFootprint(values)] : solids.map(footprintOf);
+  const footprints = item.kind === "robot" ? [robotFootprint(values)] : isExact ? solids.map(footprintOf) : [];
   const floors = primitives.flatMap((part) => (part.type === "floor" ? [part.vertices] : []));
-  const parts = { values, primitives, footprints, floors };
+  const parts = { values, primitives, isExact, footprints, floors };
   KNOWN.set(item, parts);
   return parts;
 }
@@ -62,8 +64,7 @@ export function outlinesOf(item) {
     if (part.type === "floor" || part.type === "paint") return [{ outline: part.vertices, height: 0 }];
     if (part.type === "trigger") return [];
     if (part.type === "print") {
-      const [x, y] = [part.sizeX / 2, (part.sizeY ?? part.sizeX) / 2];
-      return [{ outline: placed(part.pose, [[x, -y], [x, y], [-x, y], [-x, -y]]), height: 0 }]; // prettier-ignore
+      return [{ outline: placed(part.pose, rectangle(part.sizeX, part.sizeY ?? part.sizeX)), height: 0 }];
     }
     const footprint = footprintOf(part);
     const outline = "radius" in footprint ? placed(part.pose, circle(footprint.radius)) : [...footprint.vertices];

@@ -61,7 +61,9 @@ export function blockerOf(others, item) {
 export function isOnGround(others, item) {
   const kind = kindNamed(item.kind);
   if (kind === undefined || kind.group === "ground") return true;
-  const floors = others.flatMap((other) => partsOf(other).floors);
+  const grounds = others.map(partsOf).filter(({ floors }) => floors.length > 0);
+  if (grounds.some(({ isExact }) => !isExact)) return true; // only the simulator knows
+  const floors = grounds.flatMap((ground) => ground.floors);
   if (floors.length === 0) return true;
   return groundPoints(item).every((point) => floors.some((floor) => containsPoint(floor, point)));
 }

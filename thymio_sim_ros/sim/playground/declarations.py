@@ -45,7 +45,7 @@ def declarations(kinds: Iterable[ShapeKind]) -> dict[str, Any]:
 
 def as_json(kinds: Iterable[ShapeKind], *, indent: int | None = None) -> str:
     """`declarations` as JSON text."""
-    return json.dumps(declarations(kinds), indent=indent, ensure_ascii=False)
+    return json.dumps(declarations(kinds), indent=indent, ensure_ascii=False, allow_nan=False)
 
 
 if __name__ == "__main__":

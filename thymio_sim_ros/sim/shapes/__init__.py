@@ -6,14 +6,16 @@ A module exports SHAPE, a `ShapeKind` whose `form` is a frozen dataclass with ru
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.model.field_declarations import field_declarations, sample_values
 from thymio_sim_ros.sim.model.fields import image_keys, json_schema, read
+from thymio_sim_ros.sim.model.primitive_declarations import primitive_declarations
 from thymio_sim_ros.sim.model.primitives import Floor, Paint, Primitive, Print
 
 __all__ = ["Shape", "ShapeKind", "all_shapes", "declaration", "own_shapes"]
@@ -61,35 +63,42 @@ def own_shapes() -> tuple[ShapeKind, ...]:
 
 
 def declaration(kind: ShapeKind) -> dict[str, Any]:
-    """A kind as JSON: `group` (`ground`, `paint` or `object`), `fields`, `sample`, `labels` and `field_labels`.
+    """A kind as JSON: `group`, `fields`, `sample`, `primitives` of the sample, `labels` and `field_labels`.
 
-    The group is that of the primitives of the sample. Raises TypeError if a field has no rule; any exception if the
-    kind has a sample that cannot be built.
+    The group is `ground` if the sample has a floor, `paint` if it has nothing but paint, else `object`. Raises
+    TypeError if a field has no rule or the sample has a value for an unknown field.
     """
     sample = sample_values(kind.form, kind.sample)
+    primitives = _primitives(kind, sample)
     return {
-        "group": _group(kind, sample),
+        "group": _group(primitives),
         "fields": field_declarations(kind.form),
         "sample": sample,
+        "primitives": primitive_declarations(primitives),
         "labels": dict(kind.labels),
         "field_labels": {name: dict(labels) for name, labels in kind.field_labels.items()},
     }
 
 
-def _group(kind: ShapeKind, sample: Mapping[str, Any]) -> str:
+def _primitives(kind: ShapeKind, sample: Mapping[str, Any]) -> tuple[Primitive, ...]:
+    """The primitives of a sample whose pose is the origin; none if they cannot be built."""
     images = dict.fromkeys(image_keys(kind.form), _PIXEL)
+    fields = field_declarations(kind.form)
+    origin = {key: 0.0 for key in ("x_m", "y_m", "yaw_rad") if key in fields}
     try:
-        primitives = read(kind.form, {**images, **sample}, "sample").primitives(kind.name)
-    except Exception:  # of a shape of another package, which may have rules between fields
-        if kind.sample:
-            raise
-        return "object"
+        return read(kind.form, {**images, **sample, **origin}, "sample").primitives(kind.name)
+    except Exception:  # of a shape of another package; a playground with it is refused with the error
+        return ()
+
+
+def _group(primitives: Sequence[Primitive]) -> str:
     if any(isinstance(primitive, Floor) for primitive in primitives):
         return "ground"
-    return "paint" if all(isinstance(primitive, Paint | Print) for primitive in primitives) else "object"
+    is_paint = bool(primitives) and all(isinstance(primitive, Paint | Print) for primitive in primitives)
+    return "paint" if is_paint else "object"
 
 
 def _check(kind: ShapeKind) -> None:
-    """Raise TypeError for a class that no file can be read into, and whatever `declaration` raises."""
+    """Raise TypeError or ValueError for a kind that no file can be read into or that cannot be declared to the page."""
     json_schema(kind.form)
-    declaration(kind)
+    json.dumps(declaration(kind), allow_nan=False)

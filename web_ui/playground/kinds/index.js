@@ -6,7 +6,7 @@ import { activation } from "./activation.js";
 import { box } from "./box.js";
 import { cylinder } from "./cylinder.js";
 import { door } from "./door.js";
-import { genericDraw } from "./generic.js";
+import { GenericShape } from "./generic.js";
 import { octagon } from "./octagon.js";
 import { picture } from "./picture.js";
 import { rectangle } from "./rectangle.js";
@@ -34,7 +34,7 @@ import { wall } from "./wall.js";
  * @property {boolean} isRelative          whether the path is in the frame of the item
  * @property {Placement} placement
  * @property {Draw} draw                   its primitives
- * @property {boolean} isExact             whether they are those of the simulator
+ * @property {(values: Record<string, any>) => boolean} isExact   whether they are those of the simulator
  */
 
 /** @type {Record<string, Draw>} */
@@ -45,6 +45,7 @@ export const ROBOT = kindOf("robot", "robot", {
   group: "object",
   fields: BUILT_IN.robot,
   sample: {},
+  primitives: [],
   labels: {},
   field_labels: {},
 });
@@ -79,7 +80,8 @@ export function kindNamed(name) {
  * @param {DeclaredShape} declared
  * @returns {Kind}
  */
-function kindOf(name, group, { fields, sample, labels, field_labels: fieldLabels }) {
+function kindOf(name, group, declared) {
+  const { fields, sample, labels, field_labels: fieldLabels } = declared;
   const points = Object.keys(fields).flatMap((key) => {
     const other = key.replace(/x_m$/, "y_m");
     return key !== other && isCoordinate(fields[key]) && isCoordinate(fields[other])
@@ -91,8 +93,10 @@ function kindOf(name, group, { fields, sample, labels, field_labels: fieldLabels
   const hasEnds = ENDS.every((key) => points.flat().includes(key));
   /** @type {Placement} */ const placement = hasEnds ? "ends" : path !== undefined && !isRelative ? "path" : "center";
   const kind = { name, group, fields, sample, labels, fieldLabels, points, path, isRelative, placement };
-  const draw = group === "robot" ? () => [] : (DRAWN[name] ?? genericDraw(kind));
-  return { ...kind, draw, isExact: group === "robot" || name in DRAWN };
+  const draw = group === "robot" ? () => [] : DRAWN[name];
+  if (draw !== undefined) return { ...kind, draw, isExact: () => true };
+  const shape = new GenericShape(kind, declared.primitives);
+  return { ...kind, draw: (values) => shape.draw(values), isExact: (values) => shape.isSample(values) };
 }
 
 /** Whether a field is a coordinate: a length that may be negative. @param {import("../rules.js").Fields[string] | undefined} field */
