@@ -82,11 +82,12 @@ def declaration(kind: ShapeKind) -> dict[str, Any]:
 
 def _primitives(kind: ShapeKind, sample: Mapping[str, Any]) -> tuple[Primitive, ...]:
     """The primitives of a sample whose pose is the origin; none if they cannot be built."""
-    images = dict.fromkeys(image_keys(kind.form), _PIXEL)
     fields = field_declarations(kind.form)
-    origin = {key: 0.0 for key in ("x_m", "y_m", "yaw_rad") if key in fields}
+    values = dict(sample)
+    values |= dict.fromkeys(image_keys(kind.form), _PIXEL)
+    values |= {key: 0.0 for key in ("x_m", "y_m", "yaw_rad") if key in fields}
     try:
-        return read(kind.form, {**images, **sample, **origin}, "sample").primitives(kind.name)
+        return read(kind.form, values, "sample").primitives(kind.name)
     except Exception:  # of a shape of another package; a playground with it is refused with the error
         return ()
 
