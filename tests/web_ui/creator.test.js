@@ -7,7 +7,7 @@ import { History } from "../../web_ui/creator/history.js";
 import { canTurn, middleOf, moved, pointsOf, turned, withPoint } from "../../web_ui/creator/place.js";
 import { sketchOf } from "../../web_ui/creator/sketch.js";
 import { rounded, snapped } from "../../web_ui/creator/snap.js";
-import { shown, taken } from "../../web_ui/creator/units.js";
+import { toDisplay, toFile } from "../../web_ui/creator/units.js";
 import { WheelSteps } from "../../web_ui/creator/wheel.js";
 import { WORDS } from "../../web_ui/creator/words/index.js";
 import { CreatorSession } from "../../web_ui/creator/creator_session.js";
@@ -45,10 +45,10 @@ test("points snap to lines, to cell centers, or not at all", () => {
 });
 
 test("numbers are converted between units", () => {
-  assert.equal(taken(0.5, "m"), 0.005);
-  assert.equal(taken(1.5, "kg"), 0.0015);
-  assert.equal(shown(0.123456, "m"), 12.3456);
-  assert.equal(shown(taken(37.5, "rad"), "rad"), 37.5);
+  assert.equal(toFile(0.5, "m"), 0.005);
+  assert.equal(toFile(1.5, "kg"), 0.0015);
+  assert.equal(toDisplay(0.123456, "m"), 12.3456);
+  assert.equal(toDisplay(toFile(37.5, "rad"), "rad"), 37.5);
 });
 
 test("steps are undone and redone in order, and a new step discards undone ones", () => {
@@ -397,12 +397,12 @@ test("a notch of any mouse is one step, and touchpad distances are accumulated",
   ];
   for (const notch of notches) {
     const wheel = new WheelSteps();
-    assert.deepEqual([1, 2, 3].map(() => wheel.take(notch)), [1, 1, 1]);
-    assert.equal(wheel.take({ ...notch, deltaY: -notch.deltaY }), -1);
+    assert.deepEqual([1, 2, 3].map(() => wheel.add(notch)), [1, 1, 1]);
+    assert.equal(wheel.add({ ...notch, deltaY: -notch.deltaY }), -1);
   }
-  assert.equal(new WheelSteps().take({ deltaY: 240, deltaMode: 0 }), 2);
+  assert.equal(new WheelSteps().add({ deltaY: 240, deltaMode: 0 }), 2);
   const pad = new WheelSteps();
-  const steps = Array.from({ length: 60 }, () => pad.take({ deltaY: 4, deltaMode: 0 }));
+  const steps = Array.from({ length: 60 }, () => pad.add({ deltaY: 4, deltaMode: 0 }));
   assert.equal(steps.reduce((sum, one) => sum + one, 0), 2);
 });
 

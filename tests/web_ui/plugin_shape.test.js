@@ -130,7 +130,7 @@ test("names come from the declaration, from the page's texts, or from the key", 
   assert.equal(german.field("slalom", "gap_m"), "Abstand");
   assert.equal(german.field("slalom", "height_m"), WORDS.de["field.height_m"]);
   assert.equal(german.field("river", "depth_m"), "Depth");
-  assert.equal(german.say({ word: "form.new", values: { kind: "slalom" } }), WORDS.de["form.new"].replace("{kind}", "Slalomstangen"));
+  assert.equal(german.text({ word: "form.new", values: { kind: "slalom" } }), WORDS.de["form.new"].replace("{kind}", "Slalomstangen"));
 });
 
 test("shapes come from the server if it declares this format", async () => {

@@ -192,7 +192,7 @@ def test_the_ghost_is_red_at_invalid_positions_and_the_reason_is_shown(suite, pa
     page.click("[data-tool=cylinder]")
     page.mouse.move(*spot(page, 0.0, 0.0))
     page.wait_for_function("window.thymio.built().problem === 'problem.taken'")
-    playwright.expect(page.locator(".building-hint")).to_have_text("thymio is in the way")
+    playwright.expect(page.locator(".placing-hint")).to_have_text("thymio is in the way")
     click(page, 0.0, 0.0)
     page.mouse.move(*spot(page, 0.3, 0.2))
     page.wait_for_function("window.thymio.built().problem === null")
@@ -238,8 +238,8 @@ def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(suite, pag
     page.click("[data-tool=track]")
     for key in ("Space", "ArrowUp", "ArrowUp", "Space", "Enter", "Escape"):
         page.keyboard.press(key)
-    page.click(".things-list summary")
-    page.click("[data-thing=track_1]")
+    page.click(".item-list summary")
+    page.click("[data-item=track_1]")
     name = page.get_by_label("Name")
     name.fill("lane")
     page.keyboard.press("Tab")
@@ -289,7 +289,7 @@ def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_g
     page.mouse.move(*spot(page, -0.3, 0.2))
     page.wait_for_function("Math.abs(window.thymio.built().placing.place[0] + 0.3) < 0.01")
     page.mouse.wheel(0, 120)
-    playwright.expect(page.locator(".told")).to_contain_text("-15°")
+    playwright.expect(page.locator(".creator-bar .status")).to_contain_text("-15°")
     page.keyboard.down("Alt")
     click(page, -0.313, 0.207)
     page.keyboard.up("Alt")
@@ -390,7 +390,7 @@ def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, pa
     page.keyboard.press("Escape")
     page.keyboard.press("n")
     playwright.expect(page.locator(".item-form [data-field=name]")).to_be_visible()
-    page.locator(".things-list summary").click()
+    page.locator(".item-list summary").click()
     assert page.evaluate(FINDINGS) == []
 
 

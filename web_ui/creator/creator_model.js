@@ -185,7 +185,7 @@ export class CreatorModel {
     if (item === null) return;
     const next = moved(item, x * step, y * step);
     const did = { word: "did.moved", values: { name: item.name } };
-    if (this.replace(item.name, next, did, `move ${item.name}`)) this.tellPlace(next);
+    if (this.replace(item.name, next, did, `move ${item.name}`)) this.reportPlace(next);
   }
 
   /** Turn the item being placed or selected, counter-clockwise. @param {number} steps @param {boolean} [fine] */
@@ -196,11 +196,11 @@ export class CreatorModel {
     if (item === null || !canTurn(item)) return;
     const next = turned(item, angle);
     const did = { word: "did.turned", values: { name: item.name } };
-    if (this.replace(item.name, next, did, `turn ${item.name}`)) this.tellPlace(next);
+    if (this.replace(item.name, next, did, `turn ${item.name}`)) this.reportPlace(next);
   }
 
   /** @param {Item} item @param {Phrase | null} [problem] */
-  tellPlace(item, problem = null) {
+  reportPlace(item, problem = null) {
     const [x, y] = middleOf(item);
     const degrees = Math.round(((item.yaw_rad ?? 0) * 180) / Math.PI);
     this.report(problem ?? { word: "tell.at", values: { x: centimeters(x), y: centimeters(y), degrees } });
@@ -255,17 +255,17 @@ export class CreatorModel {
   undo() {
     if (this.placing?.undoPoint()) return;
     this.selecting.cancel();
-    this.#say("tell.undone", this.history.undo());
+    this.#reportStep("tell.undone", this.history.undo());
   }
 
   redo() {
     if (this.placing?.redoPoint()) return;
     this.selecting.cancel();
-    this.#say("tell.redone", this.history.redo());
+    this.#reportStep("tell.redone", this.history.redo());
   }
 
   /** @param {string} word @param {Phrase | null} did */
-  #say(word, did) {
+  #reportStep(word, did) {
     if (did === null) return this.report({ word: "tell.nothing" });
     if (this.item === null) this.selected = null;
     this.placing?.refresh();

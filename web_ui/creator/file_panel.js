@@ -71,7 +71,11 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
     if (reasons !== null) announce(fault.textContent ?? "");
   }
 
-  /** @param {import("../playground/document.js").Playground} playground @param {import("../playground/rules.js").Phrase} did */
+  /**
+   * @param {import("../playground/document.js").Playground} playground
+   *
+   * @param {import("../playground/rules.js").Phrase} did
+   */
   function replace(playground, did) {
     session.replacePlayground(playground, did);
     refuse(null);
@@ -89,7 +93,7 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
       replace(parse(content), { word: "did.opened", values: { name: file.name } });
     } catch (error) {
       if (!(error instanceof Fault)) throw error;
-      const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${labels.say(error.expected)}`;
+      const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${labels.text(error.expected)}`;
       const headline = t("file.refused", { name: file.name });
       const isWhole = error.key === "" || error.key === "format";
       if (isWhole && OF_ANOTHER_KIND.includes(error.expected.word)) refuse(foreignView(pageText, headline, text));

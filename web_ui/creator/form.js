@@ -15,7 +15,8 @@ const FIRST = ["name", "x_m", "y_m"];
 
 /** @param {Omit<Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */
 export function itemForm(setting, model) {
-  const { t, labels } = setting;
+  const { labels } = setting;
+  const { t } = labels;
   const title = h("h3");
   const fields = h("div", { class: "fields" });
   const verbs = [

@@ -46,10 +46,7 @@ export class Creator {
     this.announce = announce;
     this.labels = labels;
     const setting = {
-      t,
       labels,
-      /** @param {Phrase} phrase */
-      say: (phrase) => labels.say(phrase),
       doors: () => model.playground.items.filter(({ kind }) => kind === "door").map(({ name }) => name),
       readPicture,
     };
@@ -58,9 +55,9 @@ export class Creator {
     this.bar = bar(t, model);
     const form = itemForm(setting, model);
     const sheet = sheetForm(setting, model);
-    const list = itemList(t, labels, model);
+    const list = itemList(labels, model);
     const warnings = groundWarnings(t, model);
-    const tools = palette({ t, labels, model, canvas });
+    const tools = palette({ labels, model, canvas });
     const hints = placingHint({ labels, model, canvas });
     this.parts = [tools, hints, this.bar, warnings, form, sheet, list];
     this.elements = {
@@ -92,7 +89,11 @@ export class Creator {
     canvas.setAttribute("aria-label", t("canvas"));
   }
 
-  /** Call once per frame: applies pointer moves and updates the panels. @param {string} offline  why the simulator cannot be reached, else empty */
+  /**
+   * Call once per frame: applies pointer moves and updates the panels.
+   *
+   * @param {string} offline  why the simulator cannot be reached, else empty
+   */
   render(offline) {
     this.pointer.flush();
     this.scene.camera.controls.enabled = this.model.cameraOn;
@@ -102,7 +103,7 @@ export class Creator {
 
   /** Show and announce a message. @param {Phrase} phrase */
   report(phrase) {
-    const text = this.labels.say(phrase);
+    const text = this.labels.text(phrase);
     this.bar.report(text);
     this.announce(text);
   }

@@ -15,23 +15,23 @@ export class Labels {
 
   /** @param {string} name  of a kind */
   kind(name) {
-    return this.#declared(kindNamed(name)?.labels) ?? this.#text(`kind.${name}`) ?? readable(name);
+    return this.#declared(kindNamed(name)?.labels) ?? this.#word(`kind.${name}`) ?? readable(name);
   }
 
   /** The name of the tool that places a kind. @param {string} name  of a kind */
   tool(name) {
-    return this.#text(`tool.${name}`) ?? this.kind(name);
+    return this.#word(`tool.${name}`) ?? this.kind(name);
   }
 
   /** The name of a kind of ground, as one of several to choose from. @param {string} name  of a kind */
   ground(name) {
-    return this.#text(`ground.${name}`) ?? this.kind(name);
+    return this.#word(`ground.${name}`) ?? this.kind(name);
   }
 
   /** @param {string} kind @param {string} key */
   field(kind, key) {
     const declared = this.#declared(kindNamed(kind)?.fieldLabels[key]);
-    return declared ?? this.#text(`field.${key}`) ?? readable(key.replace(UNIT, ""));
+    return declared ?? this.#word(`field.${key}`) ?? readable(key.replace(UNIT, ""));
   }
 
   /** @param {Record<string, string> | undefined} labels  by language */
@@ -39,8 +39,12 @@ export class Labels {
     return labels[this.language] ?? labels.en ?? Object.values(labels)[0];
   }
 
-  /** A phrase as text; kinds and nested descriptions of steps in it are put into words too. @param {import("../playground/rules.js").Phrase} phrase */
-  say({ word, values = {} }) {
+  /**
+   * A phrase as text; kinds and nested descriptions of steps in it are put into words too.
+   *
+   * @param {import("../playground/rules.js").Phrase} phrase
+   */
+  text({ word, values = {} }) {
     const filled = { ...values };
     if (typeof values.kind === "string" && kindNamed(values.kind) !== undefined) filled.kind = this.kind(values.kind);
     if (typeof values.did === "string") filled.did = this.t(values.did, values);
@@ -48,7 +52,7 @@ export class Labels {
   }
 
   /** The page's text; undefined if there is none. @param {string} key */
-  #text(key) {
+  #word(key) {
     const text = this.t(key);
     return text === key ? undefined : text;
   }

@@ -22,12 +22,12 @@ const TOOLS = [
 
 /**
  * @param {object} options
- * @param {import("../i18n/index.js").Translate} options.t
  * @param {import("./labels.js").Labels} options.labels
  * @param {import("./creator_model.js").CreatorModel} options.model
  * @param {HTMLElement} options.canvas   gets the focus so that keys act on the view
  */
-export function palette({ t, labels, model, canvas }) {
+export function palette({ labels, model, canvas }) {
+  const { t } = labels;
   const file = h("input", {
     type: "file",
     accept: "image/png,image/jpeg,image/svg+xml",

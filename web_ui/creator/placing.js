@@ -16,7 +16,12 @@ const SAME_PX = 8;
 const ASIDE_M = 0.15;
 
 export class Placing {
-  /** @param {import("./creator_model.js").CreatorModel} model @param {string} kind @param {Record<string, any>} values */
+  /**
+   * @param {import("./creator_model.js").CreatorModel} model
+   *
+   * @param {string} kind
+   * @param {Record<string, any>} values
+   */
   constructor(model, kind, values) {
     this.model = model;
     this.kind = kind;
@@ -30,7 +35,7 @@ export class Placing {
     /** Tolerance for the same point, in meters. */
     this.same = SAME_M;
     /** @type {Point[]} points of the path so far */ this.points = [];
-    /** @type {Point[]} removed points, for redo */ this.takenBack = [];
+    /** @type {Point[]} removed points, for redo */ this.undonePoints = [];
     /** @type {Item} values of the next item; its position is ignored */
     this.pattern = Object.freeze({
       kind,
@@ -102,7 +107,7 @@ export class Placing {
   undoPoint() {
     const point = this.points.pop();
     if (point === undefined) return false;
-    this.takenBack.push(point);
+    this.undonePoints.push(point);
     this.model.report({ word: "tell.pointBack", values: { count: this.points.length } });
     this.model.changed();
     return true;
@@ -110,7 +115,7 @@ export class Placing {
 
   /** @returns {boolean} */
   redoPoint() {
-    const point = this.takenBack.pop();
+    const point = this.undonePoints.pop();
     if (point === undefined) return false;
     this.points.push(point);
     this.model.changed();
@@ -124,7 +129,7 @@ export class Placing {
     const { ghost } = this;
     const at =
       ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
-    this.model.tellPlace(at, ghost?.problem);
+    this.model.reportPlace(at, ghost?.problem);
     this.model.changed();
   }
 
@@ -132,7 +137,7 @@ export class Placing {
   turn(angle) {
     if (this.isPath || !canTurn(this.pattern)) return;
     this.pattern = turned(this.#whole(), angle);
-    this.model.tellPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
+    this.model.reportPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
     this.model.changed();
   }
 
@@ -178,7 +183,7 @@ export class Placing {
       return this.#add(item);
     }
     points.push(place);
-    this.takenBack = [];
+    this.undonePoints = [];
     model.report({ word: "tell.point", values: { count: points.length } });
     model.changed();
   }
@@ -208,7 +213,7 @@ export class Placing {
     const { model } = this;
     const did = { word: "did.added", values: { name: item.name } };
     model.do(added(model.playground, item), did);
-    this.takenBack = [];
+    this.undonePoints = [];
     this.refresh();
     model.report(did);
   }

@@ -17,7 +17,7 @@ export function placingHint({ labels, model, canvas }) {
     act();
     canvas.focus();
   };
-  const hint = h("p", { class: "hint building-hint" });
+  const hint = h("p", { class: "hint placing-hint" });
   const finish = h(
     "button",
     { type: "button", class: "finish", onclick: thenFocusView(() => model.placing?.finish()) },
@@ -29,15 +29,15 @@ export function placingHint({ labels, model, canvas }) {
     { type: "button", class: "cancel", onclick: thenFocusView(() => model.cancel()) },
     t("hint.cancel"),
   );
-  const element = h("div", { class: "building-hints" }, hint, finish, cancel);
+  const element = h("div", { class: "placing-hints" }, hint, finish, cancel);
 
   const text = () => {
     const { placing } = model;
     const problem = model.ghost?.problem ?? null;
-    if (problem !== null) return labels.say(problem);
+    if (problem !== null) return labels.text(problem);
     if (placing === null) return "";
     const word = !placing.isPath ? "hint.placing" : placing.pathKey !== undefined ? "hint.track" : "hint.wall";
-    return labels.say({ word, values: { kind: placing.kind } });
+    return labels.text({ word, values: { kind: placing.kind } });
   };
 
   return {
@@ -45,7 +45,7 @@ export function placingHint({ labels, model, canvas }) {
     render() {
       const { placing } = model;
       setText(hint, text());
-      hint.classList.toggle("taken", (model.ghost?.problem ?? null) !== null);
+      hint.classList.toggle("invalid", (model.ghost?.problem ?? null) !== null);
       element.hidden = hint.textContent === "";
       finish.hidden = placing?.pathKey === undefined || placing.points.length < 2;
       cancel.hidden = placing === null;

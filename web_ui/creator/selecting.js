@@ -20,7 +20,7 @@ export class Selecting {
   /** @param {import("./creator_model.js").CreatorModel} model */
   constructor(model) {
     this.model = model;
-    /** @type {{ item: Item, handle: Handle, from: Point, z: number } | null} */ this.grip = null;
+    /** @type {{ item: Item, handle: Handle, from: Point, z: number } | null} */ this.grabbed = null;
     /** @type {import("./creator_model.js").Ghost | null} */ this.ghost = null;
   }
 
@@ -32,14 +32,14 @@ export class Selecting {
     const { item } = model;
     const handle = item === null ? null : handleAt(item, ray, model.pixel);
     if (item !== null && handle !== null) {
-      this.grip = { item, handle, from: ground, z: 0 };
+      this.grabbed = { item, handle, from: ground, z: 0 };
       return true;
     }
     const found = itemAt(model.playground.items, ray);
     if (found === null || hasKnob(found)) return false; // drags on the ground move the camera; a click selects it
     model.select(found.name);
     const z = heightOf(found) / 2;
-    this.grip = { item: found, handle: { type: "middle" }, from: pointOn(ray, z) ?? ground, z };
+    this.grabbed = { item: found, handle: { type: "middle" }, from: pointOn(ray, z) ?? ground, z };
     return true;
   }
 
@@ -50,35 +50,40 @@ export class Selecting {
 
   /** @param {Ray} ray @param {boolean} free  whether the grid is ignored */
   drag(ray, free) {
-    const { model, grip } = this;
-    if (grip === null) return;
-    const place = pointOn(ray, grip.z);
+    const { model, grabbed } = this;
+    if (grabbed === null) return;
+    const place = pointOn(ray, grabbed.z);
     if (place === null) return;
-    const item = dragged(grip, place, model.gridFor(free));
-    this.ghost = item === grip.item ? null : { item, problem: model.problemOf(item, item.name) };
+    const item = dragged(grabbed, place, model.gridFor(free));
+    this.ghost = item === grabbed.item ? null : { item, problem: model.problemOf(item, item.name) };
     model.changed();
   }
 
   /** Pointer up: apply the change, or restore the item if the position is invalid. */
   drop() {
-    const { model, ghost, grip } = this;
+    const { model, ghost, grabbed } = this;
     this.cancel();
-    if (ghost === null || grip === null) return;
+    if (ghost === null || grabbed === null) return;
     if (ghost.problem !== null) return model.report(ghost.problem);
     const word =
-      grip.handle.type === "ring" ? "did.turned" : grip.handle.type === "point" ? "did.changed" : "did.moved";
+      grabbed.handle.type === "ring" ? "did.turned" : grabbed.handle.type === "point" ? "did.changed" : "did.moved";
     model.do(replaced(model.playground, ghost.item.name, ghost.item), { word, values: { name: ghost.item.name } });
-    model.tellPlace(ghost.item);
+    model.reportPlace(ghost.item);
   }
 
   cancel() {
-    this.grip = null;
+    this.grabbed = null;
     this.ghost = null;
     this.model.changed();
   }
 }
 
-/** @param {NonNullable<Selecting["grip"]>} grip @param {Point} place @param {import("./snap.js").Grid | null} grid */
+/**
+ * @param {NonNullable<Selecting["grabbed"]>} grabbed
+ *
+ * @param {Point} place
+ * @param {import("./snap.js").Grid | null} grid
+ */
 function dragged({ item, handle, from }, place, grid) {
   const [x, y] = middleOf(item);
   if (handle.type === "ring") {

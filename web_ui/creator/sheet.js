@@ -16,9 +16,13 @@ const GROUND_KEYS = ["size_x_m", "size_y_m", "side_m", "color", "walls"];
 /** The usual ground comes first. @param {string} kind */
 const rank = (kind) => (kind === "rectangle" ? 0 : 1);
 
-/** @param {Omit<import("./fields.js").Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */
+/**
+ * @param {Omit<import("./fields.js").Setting, "commit">} setting
+ *
+ * @param {import("./creator_model.js").CreatorModel} model
+ */
 export function sheetForm(setting, model) {
-  const { t } = setting;
+  const { t } = setting.labels;
   /** @param {Record<string, any>} values */
   const title = (values) => {
     if (!fits(BUILT_IN.titles.title, values.title ?? values.description ?? "")) return { word: "problem.line" };

@@ -78,7 +78,7 @@ export class CreatorHost {
     if (!this.isOpen) {
       this.isOpen = true;
       window.addEventListener("pagehide", this.#keep);
-      document.body.classList.add("building");
+      document.body.classList.add("creator-open");
       this.slot("creator").hidden = false;
       context.dragController.setMode(false);
       context.editor.close(); // there is no room for both
@@ -105,7 +105,7 @@ export class CreatorHost {
     window.removeEventListener("pagehide", this.#keep);
     this.creator?.destroy();
     this.creator = null;
-    document.body.classList.remove("building");
+    document.body.classList.remove("creator-open");
     this.slot("creator").hidden = true;
     this.scene().camera.setInset(0);
     this.scene().setView("home");

@@ -1,6 +1,6 @@
 // A playground as the creator edits it: titles, and items in order. Reads and writes the JSON format. Pure.
 
-import { checkSettled } from "./validation.js";
+import { checkWhole } from "./validation.js";
 import { BUILT_IN } from "./declarations.js";
 import { kindNamed, ROBOT } from "./kinds/index.js";
 import { check, describe, Fault } from "./rules.js";
@@ -39,7 +39,7 @@ export function parse(text) {
     ...list(robots, "robots", LIMITS.robots).map((start, index) => readRobot(start, index)),
   ];
   const playground = { title: titles.title, description: titles.description ?? "", translations, items };
-  checkSettled(playground);
+  checkWhole(playground);
   return playground;
 }
 

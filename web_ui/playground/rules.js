@@ -68,7 +68,12 @@ export function checkValue(field, value, key) {
   if (!fits(field, value)) throw new Fault(key, describe(value), expectation(field));
 }
 
-/** Whether a value that is neither an object nor a list follows the rule of a field. @param {Field} field @param {unknown} value */
+/**
+ * Whether a value that is neither an object nor a list follows the rule of a field.
+ *
+ * @param {Field} field
+ * @param {unknown} value
+ */
 export function fits({ type, low = -Infinity, high = Infinity, pattern, longest = Infinity }, value) {
   if (type === "number") return typeof value === "number" && value >= low && value <= high;
   if (type === "flag") return typeof value === "boolean";

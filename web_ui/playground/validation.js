@@ -92,7 +92,7 @@ function groundPoints(item) {
  *
  * @param {Playground} playground
  */
-export function checkSettled({ items }) {
+export function checkWhole({ items }) {
   const shapes = items.filter(({ kind }) => kind !== "robot");
   const robots = items.filter(({ kind }) => kind === "robot");
   const keyed = [

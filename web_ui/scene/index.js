@@ -364,8 +364,8 @@ export class SceneView {
   #placeLabels() {
     const above = this.isFlat ? FLAT_LABEL_PX : 0;
     for (const [name, { model }] of this.robots) {
-      const spot = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
-      this.tags.place(name, spot && { x: spot.x, y: spot.y - above });
+      const position = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
+      this.tags.place(name, position && { x: position.x, y: position.y - above });
     }
     const { robots, selected } = this.state();
     const group = this.robots.get(selected)?.model.group;

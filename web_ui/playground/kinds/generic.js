@@ -64,7 +64,11 @@ export class GenericShape {
     });
   }
 
-  /** The bounds of the sample, stretched as the sizes of an item differ from those of the sample. @param {Record<string, any>} values */
+  /**
+   * The bounds of the sample, stretched as the sizes of an item differ from those of the sample.
+   *
+   * @param {Record<string, any>} values
+   */
   #box(values) {
     const { left, right, bottom, top } = this.bounds;
     const [stretchX, stretchY] = [this.#stretch(LENGTHS, values), this.#stretch(WIDTHS, values)];
@@ -82,7 +86,14 @@ export class GenericShape {
     return this.#part(values, pose, Math.hypot(dx, dy) + width, width);
   }
 
-  /** @param {Record<string, any>} values @param {Pose} pose @param {number} sizeX @param {number} sizeY @returns {Primitive} */
+  /**
+   * @param {Record<string, any>} values
+   *
+   * @param {Pose} pose
+   * @param {number} sizeX
+   * @param {number} sizeY
+   * @returns {Primitive}
+   */
   #part(values, pose, sizeX, sizeY) {
     const color = this.#color(values);
     const { group } = this.kind;

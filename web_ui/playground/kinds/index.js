@@ -99,7 +99,11 @@ function kindOf(name, group, declared) {
   return { ...kind, draw: (values) => shape.draw(values), isExact: (values) => shape.isSample(values) };
 }
 
-/** Whether a field is a coordinate: a length that may be negative. @param {import("../rules.js").Fields[string] | undefined} field */
+/**
+ * Whether a field is a coordinate: a length that may be negative.
+ *
+ * @param {import("../rules.js").Fields[string] | undefined} field
+ */
 function isCoordinate(field) {
   return field?.type === "number" && field.unit === "m" && (field.low ?? 0) < 0;
 }
