@@ -36,8 +36,8 @@ function built() {
     model.nudge(Math.round(somewhere(3)), Math.round(somewhere(3)), { fine: chance() < 0.5 });
     model.turn(Math.round(somewhere(4)));
     model.edit({ height_m: chance() * 0.2, radius_m: chance() * 0.1, mass_kg: chance() });
-    if (chance() < 0.3) model.duplicate();
-    if (chance() < 0.1) model.remove();
+    if (chance() < 0.3) model.selecting.duplicate();
+    if (chance() < 0.1) model.selecting.remove();
     if (chance() < 0.2) model.undo();
   }
   return write(model.playground);

@@ -177,9 +177,9 @@ test("every kind can be placed, moved, turned, copied and removed, and all of it
     const placed = item(name);
     model.turn(1);
     assert.equal(item(name) !== placed, placed !== undefined && canTurn(placed), kind);
-    model.duplicate();
+    model.selecting.duplicate();
     assert.equal(model.selected, `${kind}_2`);
-    model.remove();
+    model.selecting.remove();
     assert.equal(model.selected, null);
     while (model.history.past.length > 0) model.undo();
     assert.equal(model.playground, start);
@@ -257,7 +257,7 @@ test("a renamed door keeps its plates, and a removed door removes them", () => {
   model.select("door_1");
   model.edit({ name: "gate" });
   assert.equal(item("activation_1")?.door, "gate");
-  model.remove();
+  model.selecting.remove();
   assert.deepEqual(names(), ["ground", "thymio"]);
 });
 

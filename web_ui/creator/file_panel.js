@@ -73,7 +73,6 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
 
   /**
    * @param {import("../playground/document.js").Playground} playground
-   *
    * @param {import("../playground/rules.js").Phrase} did
    */
   function replace(playground, did) {

@@ -22,10 +22,10 @@ export function itemForm(setting, model) {
   const verbs = [
     { icon: "turnLeft", word: "verb.turnLeft", act: () => model.turn(1) },
     { icon: "turnRight", word: "verb.turnRight", act: () => model.turn(-1) },
-    { icon: "copy", word: "verb.copy", act: () => model.duplicate() },
-    { icon: "over", word: "verb.over", act: () => model.raise(1) },
-    { icon: "under", word: "verb.under", act: () => model.raise(-1) },
-    { icon: "remove", word: "verb.remove", act: () => model.remove() },
+    { icon: "copy", word: "verb.copy", act: () => model.selecting.duplicate() },
+    { icon: "over", word: "verb.over", act: () => model.selecting.raise(1) },
+    { icon: "under", word: "verb.under", act: () => model.selecting.raise(-1) },
+    { icon: "remove", word: "verb.remove", act: () => model.selecting.remove() },
   ].map((verb) => ({
     ...verb,
     button: h(

@@ -18,7 +18,6 @@ const ASIDE_M = 0.15;
 export class Placing {
   /**
    * @param {import("./creator_model.js").CreatorModel} model
-   *
    * @param {string} kind
    * @param {Record<string, any>} values
    */

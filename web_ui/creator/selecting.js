@@ -1,16 +1,18 @@
-// Selecting existing items: drag them, turn them by the ring, move their points. A dragged item is shown as a ghost
-// until it is released.
+// Selecting existing items: drag them, turn them by the ring, move their points; edit, copy, restack and remove them. A
+// dragged item is shown as a ghost until it is released.
 
 import { atHeight } from "../move/placed_bodies.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { valuesOf } from "../playground/parts.js";
-import { replaced } from "./commands.js";
+import { findProblem, isOnGround } from "../playground/validation.js";
+import { added, copyOf, othersOf, raised, removed, replaced } from "./commands.js";
 import { handleAt, hasKnob, itemAt } from "./pick.js";
-import { middleOf, movedTo, pointsOf, turned, withPoint } from "./place.js";
+import { canTurn, changed, middleOf, moved, movedTo, pointsOf, turned, withPoint } from "./place.js";
 import { snapped } from "./snap.js";
 
 /** @typedef {import("../playground/parts.js").Item} Item */
 /** @typedef {import("../playground/geometry.js").Point} Point */
+/** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /** @typedef {import("./pick.js").Ray} Ray */
 /** @typedef {import("./pick.js").Handle} Handle */
 
@@ -71,6 +73,91 @@ export class Selecting {
     model.reportPlace(ghost.item);
   }
 
+  /**
+   * Change values of the selected item; returns the problem, or null.
+   *
+   * @param {Record<string, any>} values
+   * @returns {Phrase | null}
+   */
+  edit(values) {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return null;
+    const next = changed(item, values);
+    const problem = model.problemOf(next, item.name);
+    const others = othersOf(model.playground, item.name);
+    const wasOutside = !isOnGround(others, item); // there it may be changed
+    if (problem !== null && !(problem.word === "problem.outside" && wasOutside)) return problem;
+    model.selected = next.name;
+    model.do(replaced(model.playground, item.name, next), { word: "did.changed", values: { name: next.name } });
+    return null;
+  }
+
+  /** Move the selected item. @param {number} dx @param {number} dy */
+  nudge(dx, dy) {
+    const { item } = this.model;
+    if (item !== null) this.#replace(item, moved(item, dx, dy), "moved");
+  }
+
+  /** Turn the selected item, counter-clockwise. @param {number} angle */
+  turn(angle) {
+    const { item } = this.model;
+    if (item !== null && canTurn(item)) this.#replace(item, turned(item, angle), "turned");
+  }
+
+  remove() {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return;
+    const did = { word: "did.removed", values: { name: item.name } };
+    model.do(removed(model.playground, item.name), did);
+    model.report(did);
+  }
+
+  /** Duplicate the selected item and select the copy; it is placed farther away if the position is occupied. */
+  duplicate() {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return;
+    let copy = copyOf(model.playground, item);
+    const { items } = model.playground;
+    for (let far = 1; far < 8 && findProblem(items, copy) !== null; far++) copy = moved(copy, 0.05, -0.05);
+    const problem = findProblem(items, copy);
+    if (problem !== null) return model.report(problem);
+    model.selected = copy.name;
+    const did = { word: "did.copied", values: { name: copy.name } };
+    model.do(added(model.playground, copy), did);
+    model.report(did);
+  }
+
+  /** Bring the selected item forward or send it backward. @param {number} by */
+  raise(by) {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return;
+    const did = { word: "did.raised", values: { name: item.name } };
+    const next = raised(model.playground, item.name, by);
+    if (next === model.playground) return;
+    model.do(next, did);
+    model.report(did);
+  }
+
+  /**
+   * Replace an item if its new position is free. Consecutive steps of one kind count as one.
+   *
+   * @param {Item} item
+   * @param {Item} next
+   * @param {"moved" | "turned"} step
+   */
+  #replace(item, next, step) {
+    const { model } = this;
+    const problem = model.problemOf(next, item.name);
+    if (problem !== null) return model.report(problem);
+    const did = { word: `did.${step}`, values: { name: item.name } };
+    model.do(replaced(model.playground, item.name, next), did, `${step} ${item.name}`);
+    model.reportPlace(next);
+  }
+
   cancel() {
     this.grabbed = null;
     this.ghost = null;
@@ -80,7 +167,6 @@ export class Selecting {
 
 /**
  * @param {NonNullable<Selecting["grabbed"]>} grabbed
- *
  * @param {Point} place
  * @param {import("./snap.js").Grid | null} grid
  */

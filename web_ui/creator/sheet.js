@@ -18,7 +18,6 @@ const rank = (kind) => (kind === "rectangle" ? 0 : 1);
 
 /**
  * @param {Omit<import("./fields.js").Setting, "commit">} setting
- *
  * @param {import("./creator_model.js").CreatorModel} model
  */
 export function sheetForm(setting, model) {

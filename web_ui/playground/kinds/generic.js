@@ -88,7 +88,6 @@ export class GenericShape {
 
   /**
    * @param {Record<string, any>} values
-   *
    * @param {Pose} pose
    * @param {number} sizeX
    * @param {number} sizeY
