@@ -3,6 +3,7 @@
 import { placed, wrapped } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { outlinesOf, valuesOf } from "../playground/parts.js";
+import { poseOf } from "../playground/primitives.js";
 import { tidy } from "../playground/document.js";
 import { rounded } from "./snap.js";
 
@@ -114,11 +115,6 @@ export function yawOf(item) {
 export function roundAngle(angle) {
   const degrees = (wrapped(angle) * 180) / Math.PI;
   return (Math.round(degrees * 1000) / 1000) * (Math.PI / 180) + 0;
-}
-
-/** @param {Record<string, any>} values */
-function poseOf({ x_m, y_m, yaw_rad }) {
-  return { x: x_m, y: y_m, yaw: yaw_rad };
 }
 
 /** @param {{ x: number, y: number, yaw: number }} pose @param {Point} place @returns {Point} */
