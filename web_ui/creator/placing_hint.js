@@ -4,6 +4,8 @@
 import { h, icon, setText } from "../panels/dom.js";
 import { CREATOR_ICONS } from "./icons.js";
 
+/** @typedef {import("./placing.js").Placing} Placing */
+
 /**
  * @param {object} options
  * @param {import("./labels.js").Labels} options.labels
@@ -36,8 +38,7 @@ export function placingHint({ labels, model, canvas }) {
     const problem = model.ghost?.problem ?? null;
     if (problem !== null) return labels.text(problem);
     if (placing === null) return "";
-    const word = !placing.isPath ? "hint.placing" : placing.pathKey !== undefined ? "hint.track" : "hint.wall";
-    return labels.text({ word, values: { kind: placing.kind } });
+    return labels.text({ word: wordOf(placing), values: { kind: placing.kind } });
   };
 
   return {
@@ -51,4 +52,15 @@ export function placingHint({ labels, model, canvas }) {
       cancel.hidden = placing === null;
     },
   };
+}
+
+/**
+ * The key of the hint: that of the kind if it has one, else that of the way in which it is placed.
+ *
+ * @param {Placing} placing
+ */
+function wordOf({ kind, isPath, pathKey }) {
+  if (!isPath) return "hint.placing";
+  if (kind === "track" || kind === "wall") return `hint.${kind}`;
+  return pathKey === undefined ? "hint.ends" : "hint.path";
 }

@@ -105,6 +105,9 @@ export const de = {
   "hint.track":
     "Klicke Punkt für Punkt (Leertaste). Eingabe oder ein Klick auf den letzten Punkt beendet, ein Klick auf den ersten schließt die Bahn. Die Rücktaste löscht einen Punkt.",
   "hint.wall": "Klicke, wo die Wand beginnt und wo sie endet. Esc bricht ab.",
+  "hint.ends": "{kind}: Klicke auf Anfang und Ende. Esc bricht ab.",
+  "hint.path":
+    "{kind}: Klicke Punkt für Punkt (Leertaste). Eingabe oder ein Klick auf den letzten Punkt beendet. Die Rücktaste löscht einen Punkt.",
   "hint.finish": "Fertig",
   "hint.cancel": "Abbrechen",
   keys: "Tasten: Pfeile bewegen (Umschalt: weiter, Alt: 1 mm), Komma und Punkt drehen, N wählt das nächste Objekt, Eingabe öffnet seine Werte, Strg-D kopiert, Entf löscht, Strg-Z und Strg-Y machen rückgängig und stellen wieder her, Umschalt allein schaltet die Kamera.",

@@ -105,6 +105,9 @@ export const en = {
   "hint.track":
     "Click to add points (or Space). Press Enter or click the last point again to finish; click the first point to close the track. Backspace removes a point.",
   "hint.wall": "Click where the wall starts and where it ends. Esc cancels.",
+  "hint.ends": "{kind}: click its start and its end. Esc cancels.",
+  "hint.path":
+    "{kind}: click to add points (or Space). Press Enter or click the last point again to finish. Backspace removes a point.",
   "hint.finish": "Finish",
   "hint.cancel": "Cancel",
   keys: "Keys: arrows move (Shift: farther, Alt: 1 mm), comma and period turn, N selects the next item, Enter opens its values, Ctrl-D copies, Delete removes, Ctrl-Z and Ctrl-Y undo and redo, Shift alone switches the camera.",

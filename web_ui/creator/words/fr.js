@@ -105,6 +105,9 @@ export const fr = {
   "hint.track":
     "Clique point par point (Espace). Entrée ou un clic sur le dernier point termine, un clic sur le premier ferme la piste. Retour arrière enlève un point.",
   "hint.wall": "Clique où le mur commence et où il finit. Échap annule.",
+  "hint.ends": "{kind} : clique au début et à la fin. Échap annule.",
+  "hint.path":
+    "{kind} : clique point par point (Espace). Entrée ou un clic sur le dernier point termine. Retour arrière enlève un point.",
   "hint.finish": "Terminer",
   "hint.cancel": "Annuler",
   keys: "Touches : les flèches déplacent (Maj : plus loin, Alt : 1 mm), virgule et point tournent, N choisit le suivant, Entrée ouvre ses valeurs, Ctrl-D copie, Suppr efface, Ctrl-Z et Ctrl-Y annulent et rétablissent, Maj seule active ou désactive la caméra.",

@@ -105,6 +105,9 @@ export const it = {
   "hint.track":
     "Clicca punto per punto (Spazio). Invio o un clic sull’ultimo punto termina, un clic sul primo chiude la pista. Backspace toglie un punto.",
   "hint.wall": "Clicca dove il muro inizia e dove finisce. Esc annulla.",
+  "hint.ends": "{kind}: clicca sull’inizio e sulla fine. Esc annulla.",
+  "hint.path":
+    "{kind}: clicca punto per punto (Spazio). Invio o un clic sull’ultimo punto termina. Backspace toglie un punto.",
   "hint.finish": "Finire",
   "hint.cancel": "Annullare",
   keys: "Tasti: le frecce spostano (Maiusc: più lontano, Alt: 1 mm), virgola e punto girano, N sceglie il seguente, Invio apre i suoi valori, Ctrl-D copia, Canc elimina, Ctrl-Z e Ctrl-Y annullano e ripetono, Maiusc da solo attiva e disattiva la telecamera.",
