@@ -35,8 +35,8 @@ export function palette({ labels, model, canvas }) {
     id: "creator-picture",
     "aria-label": t("field.image"),
   });
-  /** The kind whose image is being chosen, and its field. */
-  let wanted = { kind: "", key: "" };
+  /** The kind whose image is chosen by the file input, and its field. */
+  let wanted = { kind: "picture", key: "image" };
   file.addEventListener("change", async () => {
     const chosen = file.files?.[0];
     file.value = "";
@@ -63,9 +63,10 @@ export function palette({ labels, model, canvas }) {
   }));
   /** @param {string} tool */
   function choose(tool) {
-    const image = Object.entries(kindNamed(tool)?.fields ?? {}).find(([, { type, required }]) => type === "image" && required);
-    if (image !== undefined) {
-      wanted = { kind: tool, key: image[0] };
+    const fields = kindNamed(tool)?.fields ?? {};
+    const key = Object.keys(fields).find((name) => fields[name].type === "image" && fields[name].required);
+    if (key !== undefined) {
+      wanted = { kind: tool, key };
       return file.click();
     }
     model.choose(tool === "select" ? null : tool);
