@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import math
 from collections.abc import Callable, Iterator
@@ -21,7 +22,9 @@ from thymio_sim_ros.sim import actuators, sensors, shapes
 from thymio_sim_ros.sim.model.primitives import Disc
 from thymio_sim_ros.sim.playground import reader
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.web import Content
 
+SLALOM = Path(__file__).parent / "data" / "web" / "slalom.json"
 Variant = Callable[[str, str, str], AbstractContextManager[None]]
 
 
@@ -92,6 +95,21 @@ def test_the_shape_becomes_primitives_and_part_of_the_schema() -> None:
     assert [post.pose.x_m for post in posts] == pytest.approx([-0.5, -0.25, 0.0, 0.25, 0.5])
     kinds = reader.schema()["properties"]["shapes"]["items"]["oneOf"]
     assert "slalom" in [kind["properties"]["kind"]["const"] for kind in kinds]
+
+
+@pytest.mark.usefixtures("extras")
+def test_the_server_of_the_page_declares_the_shape_with_its_labels_and_its_sample() -> None:
+    document = Content(None, b"{}").find("/shapes.json")
+    assert document is not None
+    assert document.media_type == "application/json"
+    shapes_by_name = json.loads(document.body)["shapes"]
+    assert {"box", "slalom"} <= set(shapes_by_name)
+    slalom = shapes_by_name["slalom"]
+    assert slalom["labels"]["de"] == "Slalomstangen"
+    assert slalom["field_labels"]["gap_m"]["en"] == "Gap"
+    assert slalom["fields"]["gap_m"]["default"] == 0.25
+    assert [part["pose"]["x"] for part in slalom["primitives"]] == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    assert slalom == json.loads(SLALOM.read_text()), "the declaration that tests/web_ui/plugin_shape.test.js reads"
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,8 @@ import { watchKeyboard } from "./input/keyboard.js";
 import { DragController } from "./move/drag_controller.js";
 import { GraphicsNotice } from "./panels/graphics_notice.js";
 import { MUTED_KEY } from "./panels/sound.js";
+import { fetchShapes } from "./playground/declarations.js";
+import { registerShapes } from "./playground/kinds/index.js";
 import { bridgeAddress } from "./protocol/bridge_address.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
@@ -70,7 +72,8 @@ function watchSubscriptions(store, client) {
 
 async function main() {
   const token = readToken();
-  const address = await bridgeAddress();
+  const [address, shapes] = await Promise.all([bridgeAddress(), fetchShapes()]);
+  if (shapes !== null) registerShapes(shapes); // before the first playground is read
   const store = new Store();
   const pageLanguage = new PageLanguage(navigator.languages);
   const { t } = pageLanguage;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 from pathlib import Path
 
 import pytest
@@ -41,6 +42,15 @@ def test_a_file_that_is_built_again_is_read_again(content, folder):
     new = content.find("/")
     assert b"Another" in new.body
     assert new.tag != old.tag
+
+
+def test_the_installed_shapes_are_declared_with_a_tag(content):
+    found = content.find("/shapes.json")
+    assert found is content.find("/shapes.json")
+    assert found.media_type == "application/json"
+    assert gzip.decompress(found.compressed) == found.body
+    assert not found.is_immutable
+    assert {"box", "track"} <= set(json.loads(found.body)["shapes"])
 
 
 def test_small_files_are_not_made_larger(content, folder):

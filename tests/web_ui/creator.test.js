@@ -7,13 +7,13 @@ import { History } from "../../web_ui/creator/history.js";
 import { canTurn, middleOf, moved, pointsOf, turned, withPoint } from "../../web_ui/creator/place.js";
 import { sketchOf } from "../../web_ui/creator/sketch.js";
 import { rounded, snapped } from "../../web_ui/creator/snap.js";
-import { shown, taken } from "../../web_ui/creator/units.js";
+import { toDisplay, toFile } from "../../web_ui/creator/units.js";
 import { WheelSteps } from "../../web_ui/creator/wheel.js";
 import creatorTexts from "../../web_ui/i18n/creator.texts.js";
 import { CreatorSession } from "../../web_ui/creator/creator_session.js";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { lacksGround, itemsOffGround } from "../../web_ui/playground/validation.js";
-import { SHAPES } from "../../web_ui/playground/kinds/index.js";
+import { shapeKinds } from "../../web_ui/playground/kinds/index.js";
 
 /** Straight down. @param {number} x @param {number} y */
 const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1 } });
@@ -45,10 +45,10 @@ test("points snap to lines, to cell centers, or not at all", () => {
 });
 
 test("numbers are converted between units", () => {
-  assert.equal(taken(0.5, "m"), 0.005);
-  assert.equal(taken(1.5, "kg"), 0.0015);
-  assert.equal(shown(0.123456, "m"), 12.3456);
-  assert.equal(shown(taken(37.5, "rad"), "rad"), 37.5);
+  assert.equal(toFile(0.5, "m"), 0.005);
+  assert.equal(toFile(1.5, "kg"), 0.0015);
+  assert.equal(toDisplay(0.123456, "m"), 12.3456);
+  assert.equal(toDisplay(toFile(37.5, "rad"), "rad"), 37.5);
 });
 
 test("steps are undone and redone in order, and a new step discards undone ones", () => {
@@ -156,7 +156,7 @@ test("the next wall starts where the last one ended", () => {
 });
 
 test("every kind can be placed, moved, turned, copied and removed, and all of it undone", () => {
-  for (const { name: kind } of SHAPES) {
+  for (const { name: kind } of shapeKinds()) {
     const { model, click, names, item } = prepared();
     const start = model.playground;
     if (kind === "activation") {
@@ -177,9 +177,9 @@ test("every kind can be placed, moved, turned, copied and removed, and all of it
     const placed = item(name);
     model.turn(1);
     assert.equal(item(name) !== placed, placed !== undefined && canTurn(placed), kind);
-    model.duplicate();
+    model.selecting.duplicate();
     assert.equal(model.selected, `${kind}_2`);
-    model.remove();
+    model.selecting.remove();
     assert.equal(model.selected, null);
     while (model.history.past.length > 0) model.undo();
     assert.equal(model.playground, start);
@@ -257,7 +257,7 @@ test("a renamed door keeps its plates, and a removed door removes them", () => {
   model.select("door_1");
   model.edit({ name: "gate" });
   assert.equal(item("activation_1")?.door, "gate");
-  model.remove();
+  model.selecting.remove();
   assert.deepEqual(names(), ["ground", "thymio"]);
 });
 
@@ -329,7 +329,7 @@ test("the draft is stored and restored; a full storage is reported", () => {
 });
 
 test("the creator has texts for every shape and its fields", () => {
-  for (const { name, fields } of SHAPES) {
+  for (const { name, fields } of shapeKinds()) {
     assert.ok(`kind.${name}` in creatorTexts.en && `tool.${name}` in creatorTexts.en, name);
     for (const key of Object.keys(fields)) assert.ok(`field.${key}` in creatorTexts.en, key);
   }
@@ -391,12 +391,12 @@ test("a notch of any mouse is one step, and touchpad distances are accumulated",
   ];
   for (const notch of notches) {
     const wheel = new WheelSteps();
-    assert.deepEqual([1, 2, 3].map(() => wheel.take(notch)), [1, 1, 1]);
-    assert.equal(wheel.take({ ...notch, deltaY: -notch.deltaY }), -1);
+    assert.deepEqual([1, 2, 3].map(() => wheel.add(notch)), [1, 1, 1]);
+    assert.equal(wheel.add({ ...notch, deltaY: -notch.deltaY }), -1);
   }
-  assert.equal(new WheelSteps().take({ deltaY: 240, deltaMode: 0 }), 2);
+  assert.equal(new WheelSteps().add({ deltaY: 240, deltaMode: 0 }), 2);
   const pad = new WheelSteps();
-  const steps = Array.from({ length: 60 }, () => pad.take({ deltaY: 4, deltaMode: 0 }));
+  const steps = Array.from({ length: 60 }, () => pad.add({ deltaY: 4, deltaMode: 0 }));
   assert.equal(steps.reduce((sum, one) => sum + one, 0), 2);
 });
 

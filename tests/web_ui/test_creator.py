@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+import os
 
 import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
+from tests import plugin_page
 from tests.web_ui.conftest import DEADLINE_MS, LOCAL
 from tests.web_ui.page_support import (
     MARKS,
@@ -190,7 +192,7 @@ def test_the_ghost_is_red_at_invalid_positions_and_the_reason_is_shown(suite, pa
     page.click("[data-tool=cylinder]")
     page.mouse.move(*spot(page, 0.0, 0.0))
     page.wait_for_function("window.thymio.built().problem === 'problem.blocked'")
-    playwright.expect(page.locator(".building-hint")).to_have_text("thymio is in the way")
+    playwright.expect(page.locator(".placing-hint")).to_have_text("thymio is in the way")
     click(page, 0.0, 0.0)
     page.mouse.move(*spot(page, 0.3, 0.2))
     page.wait_for_function("window.thymio.built().problem === null")
@@ -287,7 +289,7 @@ def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_g
     page.mouse.move(*spot(page, -0.3, 0.2))
     page.wait_for_function("Math.abs(window.thymio.built().placing.place[0] + 0.3) < 0.01")
     page.mouse.wheel(0, 120)
-    playwright.expect(page.locator(".bar-message")).to_contain_text("-15°")
+    playwright.expect(page.locator(".creator-bar .status")).to_contain_text("-15°")
     page.keyboard.down("Alt")
     click(page, -0.313, 0.207)
     page.keyboard.up("Alt")
@@ -488,3 +490,32 @@ def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page,
     fault = page.locator(".creator .fault")
     playwright.expect(fault).to_contain_text("This file is not a playground.")
     playwright.expect(fault.locator(".technical")).to_be_hidden()
+
+
+def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone(suite, page, tmp_path, monkeypatch):
+    installed = tmp_path / "site-packages"
+    plugin_page.lay_out(installed, plugin_page.files())
+    monkeypatch.setenv("PYTHONPATH", f"{installed}{os.pathsep}{os.environ.get('PYTHONPATH', '')}")
+    open_creator(page, suite)
+    tool = page.locator("[data-tool=slalom]")
+    assert tool.get_attribute("title") == "Slalom posts"
+    tool.click()
+    click(page, -0.4, 0.3)
+    wait_for_items(page, 3)
+    page.keyboard.press("Escape")
+    click(page, -0.4, 0.3, 0.05)
+    page.locator("[data-field=gap_m]").fill("50")
+    page.locator("[data-field=gap_m]").press("Enter")
+    assert page.locator(".field", has=page.locator("[data-field=gap_m]")).locator("label").inner_text() == "Gap (cm)"
+    page.locator("[data-field=gap_m]").fill("0")
+    page.locator("[data-field=gap_m]").press("Enter")
+    page.locator("[data-field=gap_m][aria-invalid=true]").wait_for()
+    with page.expect_download() as saving:
+        page.click("#creator-save")
+    saved = json.loads(saving.value.path().read_text())
+    assert saved["shapes"][1] == {
+        "kind": "slalom", "name": "slalom_1", "x_m": -0.4, "y_m": 0.3, "length_m": 1, "gap_m": 0.5,
+    }  # fmt: skip
+    page.click("#creator-try")
+    page.locator(".palette").wait_for(state="detached")
+    page.wait_for_function("() => window.thymio.state().markers > 4")

@@ -5,6 +5,7 @@ Each document is read and compressed once for each version of its file. Thread-s
 
 from __future__ import annotations
 
+import functools
 import gzip
 import hashlib
 import re
@@ -13,6 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from thymio_sim_ros.playground_index import PlaygroundIndex
+from thymio_sim_ros.sim.playground import declarations
+from thymio_sim_ros.sim.shapes import all_shapes
 
 __all__ = ["TYPES", "Content", "Document"]
 
@@ -49,7 +52,10 @@ class Document:
 
 
 class Content:
-    """The built page in a folder, the shipped playgrounds as `/playgrounds/NAME.json`, and `/config.json`."""
+    """The built page in a folder, the shipped playgrounds as `/playgrounds/NAME.json`, and two documents of its own.
+
+    `/config.json` is given, `/shapes.json` declares the installed shapes.
+    """
 
     def __init__(self, folder: Path | None, config: bytes) -> None:
         """`folder` has the built page, None if it has not been built; `config` is the JSON text of `/config.json`."""
@@ -74,9 +80,16 @@ class Content:
             return None
         if names == ("config.json",):
             return self._config
+        if names == ("shapes.json",):
+            return self._shapes
         if len(names) == 2 and names[0] == _PLAYGROUNDS and names[1].endswith(_PLAYGROUND_ENDING):
             return self._playground(names[1].removesuffix(_PLAYGROUND_ENDING))
         return self._file(names or ("index.html",))
+
+    @functools.cached_property
+    def _shapes(self) -> Document:
+        """The declarations of the installed shapes, with those of plug-ins."""
+        return _document(declarations.as_json(all_shapes()).encode(), ".json")
 
     def _playground(self, name: str) -> Document | None:
         text = self._index.text(name)

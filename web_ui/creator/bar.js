@@ -23,7 +23,7 @@ export function bar(t, model) {
   const on = h("select", { "aria-label": t("bar.snap"), "data-verb": "snap" });
   on.append(...["lines", "centers"].map((choice) => h("option", { value: choice }, t(`bar.${choice}`))));
   on.addEventListener("change", () => model.setGrid({ on: /** @type {"lines" | "centers"} */ (on.value) }));
-  const output = h("output", { class: "bar-message" });
+  const output = h("output", { class: "status" });
   const element = h(
     "div",
     { class: "creator-bar", role: "toolbar", "aria-label": t("bar") },
@@ -42,7 +42,7 @@ export function bar(t, model) {
     render() {
       const { history, placing, grid, cameraOn } = model;
       undo.disabled = history.past.length === 0 && (placing?.points.length ?? 0) === 0;
-      redo.disabled = history.future.length === 0 && (placing?.takenBack.length ?? 0) === 0;
+      redo.disabled = history.future.length === 0 && (placing?.undonePoints.length ?? 0) === 0;
       setAttribute(camera, "aria-pressed", String(cameraOn));
       size.value = String(grid.size);
       on.value = grid.on;

@@ -80,7 +80,7 @@ export class CreatorHost {
     if (!this.isOpen) {
       this.isOpen = true;
       window.addEventListener("pagehide", this.#keep);
-      document.body.classList.add("building");
+      document.body.classList.add("creator-open");
       this.slot("creator").hidden = false;
       context.dragController.setMode(false);
       context.editor.close(); // there is no room for both
@@ -107,7 +107,7 @@ export class CreatorHost {
     window.removeEventListener("pagehide", this.#keep);
     this.creator?.destroy();
     this.creator = null;
-    document.body.classList.remove("building");
+    document.body.classList.remove("creator-open");
     this.slot("creator").hidden = true;
     this.scene().camera.setInset(0);
     this.scene().setView("home");
@@ -147,7 +147,7 @@ export class CreatorHost {
     const { module, session, context } = this;
     if (module === null || session === null || context === null) return;
     this.creator?.destroy();
-    this.creator = module.createCreator({
+    this.creator = new module.Creator({
       session,
       language: context.language,
       pageText: context.t,
