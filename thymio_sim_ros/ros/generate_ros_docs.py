@@ -26,7 +26,7 @@ from thymio_sim_ros.ros.ros_docs_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, 
 from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_topics
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
-from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
+from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 from thymio_sim_ros.suite_config import SuiteConfig

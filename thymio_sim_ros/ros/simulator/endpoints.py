@@ -15,7 +15,7 @@ from thymio_sim_ros.ros.simulator.clock_publisher import ClockPublisher
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
 from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
-from thymio_sim_ros.ros.simulator.transforms import POSE_SENSOR, Transforms
+from thymio_sim_ros.ros.simulator.visualization.transforms import POSE_SENSOR, Transforms
 from thymio_sim_ros.ros.simulator.world_endpoints import WorldEndpoints
 from thymio_sim_ros.sim.plugin_api.reading_table import select_rows
 from thymio_sim_ros.sim.world import StepResult, World

@@ -18,7 +18,7 @@ from thymio_sim_ros.ros.interface.sensor_topics import JOINTS, TRUTH
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, EndpointOptions
-from thymio_sim_ros.ros.simulator.transforms import TransformOptions
+from thymio_sim_ros.ros.simulator.visualization.transforms import TransformOptions
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.clock import TICK_NS

@@ -10,7 +10,7 @@ from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext
 from thymio_sim_ros.ros.simulator.diagnostics import MessageCounters
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
-from thymio_sim_ros.ros.simulator.transforms import frames_of
+from thymio_sim_ros.ros.simulator.visualization.transforms import frames_of
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose

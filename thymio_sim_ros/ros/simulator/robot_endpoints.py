@@ -26,7 +26,7 @@ from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
-from thymio_sim_ros.ros.simulator.urdf import urdf
+from thymio_sim_ros.ros.simulator.visualization.urdf import urdf
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose, Tilt, Twist

@@ -16,9 +16,9 @@ from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, RobotNames
-from thymio_sim_ros.ros.simulator.markers import playground_markers
-from thymio_sim_ros.ros.simulator.occupancy_grid import occupancy
 from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
+from thymio_sim_ros.ros.simulator.visualization.markers import playground_markers
+from thymio_sim_ros.ros.simulator.visualization.occupancy_grid import occupancy
 from thymio_sim_ros.ros.simulator.world_topics import TOPICS
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError

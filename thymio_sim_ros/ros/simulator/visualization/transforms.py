@@ -21,7 +21,7 @@ from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.cdr_fields import rotation, wheel_rotation
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, SIDES, RobotNames
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
-from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
+from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 

@@ -11,9 +11,9 @@ from visualization_msgs.msg import Marker
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.resources import playgrounds
 from thymio_sim_ros.ros.interface.names import RobotNames
-from thymio_sim_ros.ros.simulator.markers import playground_markers
-from thymio_sim_ros.ros.simulator.transforms import origin_of
-from thymio_sim_ros.ros.simulator.urdf import fixed_frames, urdf
+from thymio_sim_ros.ros.simulator.visualization.markers import playground_markers
+from thymio_sim_ros.ros.simulator.visualization.transforms import origin_of
+from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, urdf
 from thymio_sim_ros.sim.model.geometry import Pose
 
 
