@@ -127,15 +127,15 @@ class Viewer:
 
     def answer(self) -> str:
         """What became of it."""
-        told: list[str] = []
+        reported: list[str] = []
 
         def is_last(message: ms.ServerMessage) -> bool:
             if isinstance(message, ms.Status) and "playground" in message.message:
-                told.append(message.message)
+                reported.append(message.message)
             return isinstance(message, ms.ParameterValues) and message.id == "set"
 
         self.until(is_last, ANSWER_S)
-        return told[-1] if told else "accepted"
+        return reported[-1] if reported else "accepted"
 
 
 def longest_call(viewer: Viewer, service: int, stop: threading.Event, found: list[float]) -> None:

@@ -130,9 +130,9 @@ def test_a_broken_one_is_named_and_the_others_go_on(
         assert "compass" not in [sensor.name for sensor in sensors.all_sensors()]
         assert "hop" in [actuator.name for actuator in actuators.all_actuators()]
         World(make([FLOOR])).step()
-    (told,) = (record.getMessage() for record in caplog.records)
-    assert told.startswith("plug-in 'compass' of the package thymio_extras (thymio_sim_ros.sensors) is left out")
-    assert said in told
+    (reported,) = (record.getMessage() for record in caplog.records)
+    assert reported.startswith("plug-in 'compass' of the package thymio_extras (thymio_sim_ros.sensors) is left out")
+    assert said in reported
 
 
 @pytest.mark.parametrize(
@@ -149,8 +149,8 @@ def test_programs_see_nothing_of_one_that_does_not_fit_the_robot(
         runner = Runner(make([FLOOR]), load_program("motor.left.target = 100", "a"))
         runner.run(0.2)
         assert name in {plugin.name for plugin in (*sensors.all_sensors(), *actuators.all_actuators())}
-    (told,) = (record.getMessage() for record in caplog.records)
-    assert told.startswith(f"programs see nothing of the plug-in '{name}': {said}")
+    (reported,) = (record.getMessage() for record in caplog.records)
+    assert reported.startswith(f"programs see nothing of the plug-in '{name}': {said}")
 
 
 def test_a_folder_that_is_missing_is_named(variant: Variant, caplog: pytest.LogCaptureFixture) -> None:

@@ -60,13 +60,13 @@ def test_the_line_program_goes_round_five_times_at_any_speed(speed):
 
 def test_the_line_program_emits_an_event_when_it_turns():
     runner = line_runner(0)
-    told = []
+    reported = []
     for _ in range(1000):
         runner.step()
-        told += [(robot, event.name, event.args) for robot, event in runner.emitted]
-    assert told[0] == ("thymio", "line", (0,))
-    assert {args for _, _, args in told} >= {(0,), (-1,)}
-    assert all(before != after for before, after in itertools.pairwise(told))
+        reported += [(robot, event.name, event.args) for robot, event in runner.emitted]
+    assert reported[0] == ("thymio", "line", (0,))
+    assert {args for _, _, args in reported} >= {(0,), (-1,)}
+    assert all(before != after for before, after in itertools.pairwise(reported))
 
 
 def test_the_same_seed_gives_the_same_poses_bit_for_bit():
@@ -298,15 +298,15 @@ def test_a_robot_follows_the_line_that_another_one_draws():
 def runaway(path, engine, card):
     options = DeviceOptions(card=card, settings=card.with_name(f"{card.name}-settings"))
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(path.read_text(), path.name), options=options)
-    told = []
+    reported = []
     for device in runner.devices.values():
         device._vm.use_engine(engine)
     for _ in range(4):
         before = [device._vm.instructions for device in runner.devices.values()]
         runner.step()
         spent = [device._vm.instructions - each for device, each in zip(runner.devices.values(), before, strict=True)]
-        told.append((spent, [device.variables.words() for device in runner.devices.values()], list(runner.emitted)))
-    return told
+        reported.append((spent, [device.variables.words() for device in runner.devices.values()], list(runner.emitted)))
+    return reported
 
 
 @pytest.mark.parametrize("path", RUNAWAYS, ids=lambda path: path.stem)

@@ -167,11 +167,11 @@ def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         server.publish(1, 7, b"x")
-        server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "told")))
+        server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "sent")))
         while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
-        assert wire.decode_server(client.recv(timeout=DEADLINE_S)) == ms.Status(StatusLevel.INFO, "told")
+        assert wire.decode_server(client.recv(timeout=DEADLINE_S)) == ms.Status(StatusLevel.INFO, "sent")
         sink.may_go_on.set()
     server.close()
 

@@ -1,4 +1,4 @@
-"""thymio-sim convert: what is written, what is told, and how it ends."""
+"""thymio-sim convert: files, messages and exit codes."""
 
 from __future__ import annotations
 
@@ -85,8 +85,8 @@ def test_the_result_goes_into_a_file(maze: Path, capsys: pytest.CaptureFixture[s
 def test_what_cannot_be_converted_is_reported_on_stderr(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:
     maze.write_text(MAZE.format(FEEDER))
     assert main(["convert", str(maze)]) == 0
-    told = capsys.readouterr().err
-    assert told == (f"thymio-sim convert: {maze}: line 1: <feeder> skipped: energy feeders are for e-pucks only\n")
+    reported = capsys.readouterr().err
+    assert reported == (f"thymio-sim convert: {maze}: line 1: <feeder> skipped: energy feeders are for e-pucks only\n")
 
 
 def test_strict_writes_nothing_then(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:

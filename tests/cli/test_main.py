@@ -330,8 +330,8 @@ def test_the_runner_reports_what_the_robot_could_not_do(capsys, tmp_path):
     program.write_text("onevent prox\ncall _system.settings.flash()\n")
     with disk.files_end_at(100):
         assert main.main(["runner", "--seconds", "0.5", "--program", str(program), "--settings", str(tmp_path)]) == 0
-    told = f"settings are not stored: {tmp_path / 'settings.json'}: {disk.TOLD}"
-    assert capsys.readouterr().err == f"thymio-sim: thymio, at 0.10 s: {told}\n"
+    reported = f"settings are not stored: {tmp_path / 'settings.json'}: {disk.FILE_TOO_LARGE}"
+    assert capsys.readouterr().err == f"thymio-sim: thymio, at 0.10 s: {reported}\n"
     assert list(tmp_path.iterdir()) == [program]
 
 

@@ -139,18 +139,18 @@ def test_lights_set_to_the_same_levels_again_cause_one_command():
         "onevent tap\ncall _leds.set(30, 9)"
     )
 
-    def told(sensor, words):
+    def reported(sensor, words):
         device.feed(sensor, words)
         device.run(BUDGET)
         return [command for command in device.pop_commands() if isinstance(command, SetLeds)]
 
     both = [SetLeds("top", (1, 2, 3)), SetLeds("microphone", (4,))]
-    assert told("proximity", NEAR) == both
-    assert told("proximity", NEAR) == []
-    assert told("motor", (0, 0, 0, 0)) == [SetLeds("top", (0, 0, 0))]
-    assert told("proximity", NEAR) == both[:1]
-    told("tap", (1,))
-    assert told("proximity", NEAR) == both
+    assert reported("proximity", NEAR) == both
+    assert reported("proximity", NEAR) == []
+    assert reported("motor", (0, 0, 0, 0)) == [SetLeds("top", (0, 0, 0))]
+    assert reported("proximity", NEAR) == both[:1]
+    reported("tap", (1,))
+    assert reported("proximity", NEAR) == both
 
 
 def test_the_same_reading_again_takes_back_what_the_program_wrote_over_it():

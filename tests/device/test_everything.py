@@ -72,7 +72,7 @@ def device(tmp_path: Path) -> AsebaDevice:
     assert device.services.card is not None
     device.services.card.write_sound("p1", b"\x80\x90" * 100)
     device.services.card.write_sound("r1", bytes([128]) * 7812)
-    events = "".join(f'<event size="2" name="{name}"/>' for name in ("told", "off", "again"))
+    events = "".join(f'<event size="2" name="{name}"/>' for name in ("received", "off", "again"))
     code = SOURCE.replace("&", "&amp;").replace("<", "&lt;")
     device.load(load_program(f'<network>{events}<node name="thymio-II">{code}</node></network>', "everything.aesl"))
     device.pop_commands()
@@ -105,7 +105,7 @@ def test_every_variable_of_a_sensor_is_given_something() -> None:
 
 def test_every_native_and_variable_gives_what_the_program_expects(device: AsebaDevice) -> None:
     sensed(device)
-    device.receive_event("told", (8, 9), source=3)
+    device.receive_event("received", (8, 9), source=3)
     run(device)
     assert device.status.state == "running"
     assert {name: device.variables.get(name) for name, _ in expectations()} == dict(expectations())

@@ -70,8 +70,8 @@ def test_programs_of_either_layout_see_and_move_the_same_robot(layout: str) -> N
     robot.feed("proximity", (0, 0, 4000, 0, 0, 0, 0))
     robot.run(1000)
     assert robot.variables.get("seen") == (4000, 800)
-    told = [str(command) for command in robot.pop_commands()]
-    assert told == [
+    reported = [str(command) for command in robot.pop_commands()]
+    assert reported == [
         "SetLeds(group='bottom_left', levels=(1, 2, 3))",
         "SetLeds(group='circle', levels=(1, 2, 3, 4, 5, 6, 7, 8))",
         "MotorTargets(left=100, right=0)",

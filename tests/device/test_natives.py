@@ -47,7 +47,7 @@ def run(device: AsebaDevice) -> list[Command]:
     return device.pop_commands()
 
 
-def told(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[str] = ()) -> list[Command]:
+def reported(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[str] = ()) -> list[Command]:
     return run(start(source, options, sounds=sounds))
 
 
@@ -110,7 +110,7 @@ def test_a_program_that_begins_anew_finds_no_open_file(options: DeviceOptions) -
 def test_sounds_come_from_the_robot_or_from_the_card(
     options: DeviceOptions, call: str, expected: list[Command]
 ) -> None:
-    assert told(f"call {call}", options, sounds=("p1", "r3", "s12", "s0")) == expected
+    assert reported(f"call {call}", options, sounds=("p1", "r3", "s12", "s0")) == expected
 
 
 def test_a_missing_sound_is_reported(options: DeviceOptions) -> None:
@@ -136,7 +136,7 @@ def test_an_address_out_of_settings_is_a_fault_of_the_program(call: str) -> None
 
 def test_the_volume_and_the_motors_obey_the_settings_at_once() -> None:
     source = "call _system.settings.write(0, 4)\ncall _system.settings.write(8, 300)\nmotor.left.target = 256"
-    assert told(source) == [SetVolume(4), SetVolume(4), MotorTargets(300, 0)]
+    assert reported(source) == [SetVolume(4), SetVolume(4), MotorTargets(300, 0)]
 
 
 def test_a_new_calibration_moves_wheels_that_turn_already() -> None:

@@ -41,8 +41,8 @@ def shown(message):
 
 def test_moving_objects_have_their_own_markers(ros, simulation):
     sim = simulation(playground=PUSHING, noise=False)
-    fixed = ros.collect(MarkerArray, "/_markers", latched=True)
-    objects = ros.collect(MarkerArray, "/_markers/objects", latched=True)
+    fixed = ros.collect(MarkerArray, "/_markers", transient_local=True)
+    objects = ros.collect(MarkerArray, "/_markers/objects", transient_local=True)
     ros.until(lambda: fixed and objects)
     assert "solid/can" not in shown(fixed[-1])
     assert shown(objects[-1]) == {"solid/can": 0.15}
@@ -56,7 +56,7 @@ def test_moving_objects_have_their_own_markers(ros, simulation):
 
 def test_resting_objects_are_not_published_again(ros, simulation):
     sim = simulation(playground=PUSHING)
-    objects = ros.collect(MarkerArray, "/_markers/objects", latched=True)
+    objects = ros.collect(MarkerArray, "/_markers/objects", transient_local=True)
     ros.until(lambda: objects)
     sim.step(1.0)
     assert len(objects) == 1
@@ -64,7 +64,7 @@ def test_resting_objects_are_not_published_again(ros, simulation):
 
 def test_an_added_robot_has_topics_until_it_is_removed(ros, simulation):
     sim = simulation(playground=PUSHING)
-    states = ros.collect(String, "/simulator/_state", latched=True)
+    states = ros.collect(String, "/simulator/_state", transient_local=True)
     old = ros.collect(Odometry, "/_ground_truth/odom")
     sim.until(lambda: old)
     sim.world.spawn(RobotStart("late", -0.5, 0.0, 1.0))
@@ -88,11 +88,11 @@ def test_an_added_robot_has_topics_until_it_is_removed(ros, simulation):
 
 def test_the_static_frames_of_an_added_robot_are_published(simulation, monkeypatch):
     sim = simulation(playground=PUSHING)
-    told = []
-    monkeypatch.setattr(sim.simulator.endpoints._transforms, "set_robots", told.append)
+    reported = []
+    monkeypatch.setattr(sim.simulator.endpoints._transforms, "set_robots", reported.append)
     sim.world.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.02)
-    assert [[names.frame("base_link") for names in robots] for robots in told] == [["base_link", "late/base_link"]]
+    assert [[names.frame("base_link") for names in robots] for robots in reported] == [["base_link", "late/base_link"]]
 
 
 def test_reset_brings_back_the_robots_of_the_playground(ros, simulation):

@@ -147,7 +147,7 @@ def test_each_executable_ends_with_0(ros, process, module, name):
 
 
 @pytest.mark.parametrize(
-    ("module", "parameter", "told"),
+    ("module", "parameter", "reported"),
     [
         ("simulator.node", "playground:=nowhere", "nowhere"),
         ("simulator.node", "real_time_factor:=5000.0", "real_time_factor"),
@@ -156,8 +156,8 @@ def test_each_executable_ends_with_0(ros, process, module, name):
         ("foxglove.node", "port:=-1", "port"),
     ],
 )
-def test_a_bad_parameter_is_one_line_and_exit_code_2(process, module, parameter, told):
+def test_a_bad_parameter_is_one_line_and_exit_code_2(process, module, parameter, reported):
     node = process(f"thymio_sim_ros.ros.{module}", "--ros-args", "-p", parameter)
     assert node.wait() == 2, node.output
     (line,) = node.output.splitlines()
-    assert told in line
+    assert reported in line

@@ -68,7 +68,7 @@ def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
 def test_an_overload_is_reported_until_it_ends(ros, threaded):
     threaded(source=FLOOD)
     status = Status(ros)
-    diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     ros.until(lambda: diagnostics and diagnostics[-1].level == DiagnosticStatus.WARN)
     assert "call leds.top" in status["overload"]
     assert "slowed down" in diagnostics[-1].message

@@ -89,7 +89,7 @@ def test_a_run_with_a_program_is_replayed_without_it(tmp_path: Path) -> None:
 def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: str
 ) -> None:
-    """Twenty robots sense as a crowd, compiled where wasmtime is installed; the log does not tell which it was."""
+    """Twenty robots are a batch, compiled where wasmtime is installed; the log does not depend on that."""
 
     def engine(name: str) -> None:
         monkeypatch.undo()

@@ -52,13 +52,13 @@ class FullWhen(io.StringIO):
 
 @pytest.mark.parametrize("method", ["flush", "close"])
 def test_a_disk_that_becomes_full_is_reported_once_and_the_world_continues(method: str) -> None:
-    told: list[OSError] = []
-    log = RunLog(FullWhen(method), on_error=told.append)
+    reported: list[OSError] = []
+    log = RunLog(FullWhen(method), on_error=reported.append)
     world = World(make([FLOOR]))
     log.begin("small", world)
     run(world, 2.5)
     log.close()
-    assert [error.errno for error in told] == [28]
+    assert [error.errno for error in reported] == [28]
     assert world.now_ns == 2_500_000_000
 
 
@@ -118,15 +118,15 @@ def test_every_line_is_json_and_names_the_format_first(written: Path) -> None:
 
 
 def test_a_full_disk_ends_the_log_and_not_the_world() -> None:
-    told: list[OSError] = []
-    log = RunLog(Full(3), on_error=told.append)
+    reported: list[OSError] = []
+    log = RunLog(Full(3), on_error=reported.append)
     world = World(make([FLOOR]))
     log.begin("small", world)
     for _ in range(5):
         send(world, MotorTargets(1, 1))
     run(world, 2.0)
     log.close()
-    assert [error.strerror for error in told] == ["No space left on device"]
+    assert [error.strerror for error in reported] == ["No space left on device"]
 
 
 def test_without_a_callback_a_full_disk_is_an_error() -> None:

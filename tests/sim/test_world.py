@@ -268,7 +268,7 @@ def test_robots_stand_in_the_order_of_the_playground() -> None:
 
 def test_a_command_for_an_unknown_robot_is_refused() -> None:
     with pytest.raises(KeyError):
-        World(make([FLOOR])).post("nobody", MotorTargets(0, 0))
+        World(make([FLOOR])).post("unknown", MotorTargets(0, 0))
 
 
 def test_what_is_no_command_is_refused() -> None:

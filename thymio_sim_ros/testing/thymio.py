@@ -141,7 +141,7 @@ class Thymio:
         return self.record.events
 
     def emit(self, event: str, *args: int) -> None:
-        """An event arrives from the Aseba network, as if somebody else had emitted it; all robots hear it."""
+        """Send an event to all robots, as if another node of the Aseba network had emitted it."""
         __tracebackhide__ = True
         self.stage.emit(event, args)
 
@@ -191,7 +191,7 @@ class Thymio:
             self.run(seconds)
 
     def clap(self, loudness: int = 200) -> None:
-        """Clap beside it, as loud as mic.intensity tells: 0…255."""
+        """Clap beside it; `loudness` is in units of mic.intensity, 0…255."""
         self.post(Clap(loudness))
 
     def tap(self) -> None:

@@ -51,7 +51,7 @@ export function groupsOf(t, language, sensors) {
 
 /** @param {SensorInfo} sensor @param {string} language @returns {Group} */
 function declaredGroup(sensor, language) {
-  const title = textIn(sensor.label, language) || sensor.name;
+  const title = chooseText(sensor.label, language) || sensor.name;
   return [title, declaredRows(sensor, title, language)];
 }
 
@@ -64,7 +64,7 @@ function declaredRows({ name, values }, title, language) {
     /** @param {Robot} robot */
     const wordsOf = ({ raw }) => (raw[name] ?? []).slice(from, from + words);
     return {
-      label: textIn(label, language) || title,
+      label: chooseText(label, language) || title,
       value: (robot) => scaled(wordsOf(robot), scale, digits, unit),
       words: wordsOf,
       full: full_scale,
@@ -177,7 +177,7 @@ function scaled(words, scale, digits, unit) {
 }
 
 /** The text in a language, else in English. @param {import("../state/index.js").Label} label @param {string} language */
-function textIn(label, language) {
+function chooseText(label, language) {
   return label[language] ?? label.en ?? "";
 }
 

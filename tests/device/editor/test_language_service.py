@@ -1,4 +1,4 @@
-"""The language service: what an editor is told."""
+"""Answers of the language service to an editor."""
 
 import json
 
@@ -124,26 +124,26 @@ def test_every_program_we_ship_is_without_errors_and_warnings(name):
 
 
 def test_the_target_lists_all_that_a_program_can_use():
-    told = json.loads(json.dumps(describe_target()))
+    reported = json.loads(json.dumps(describe_target()))
     assert {
         "name": "button.center",
         "size": 1,
         "address": target().addresses["button.center"][0],
         "hidden": False,
         "help": texts("help")["variables.button.center"],
-    } in told["variables"]
-    assert {"name": "prox", "help": texts("help")["events.prox"]} in told["events"]
-    natives = {entry["name"]: entry for entry in told["natives"]}
+    } in reported["variables"]
+    assert {"name": "prox", "help": texts("help")["events.prox"]} in reported["events"]
+    natives = {entry["name"]: entry for entry in reported["natives"]}
     assert natives["leds.top"]["parameters"][0] == {"name": "red", "size": 1}
     assert natives["_poweroff"]["hidden"]
-    assert told["limits"]["bytecode"] == 1534
-    assert "onevent" in told["keywords"]
-    assert len(describe_target(PLAYGROUND)["natives"]) < len(told["natives"])
+    assert reported["limits"]["bytecode"] == 1534
+    assert "onevent" in reported["keywords"]
+    assert len(describe_target(PLAYGROUND)["natives"]) < len(reported["natives"])
 
 
 def test_what_beginners_need_most_comes_first():
-    told = describe_target()
-    names = {kind: [entry["name"] for entry in told[kind]] for kind in ("variables", "natives", "events")}
+    reported = describe_target()
+    names = {kind: [entry["name"] for entry in reported[kind]] for kind in ("variables", "natives", "events")}
     assert names["variables"][:2] == ["motor.left.target", "motor.right.target"]
     assert names["natives"][0] == "leds.top"
     families = list(dict.fromkeys(name.split(".")[0] for name in names["natives"] if not name.startswith("_")))
@@ -160,26 +160,26 @@ def test_every_name_for_beginners_has_its_place_and_no_other_name(kind):
 
 
 def test_every_name_of_the_robot_has_help():
-    told = describe_target()
-    entries = [entry for kind in ("variables", "natives", "events") for entry in told[kind]]
+    reported = describe_target()
+    entries = [entry for kind in ("variables", "natives", "events") for entry in reported[kind]]
     assert [entry["name"] for entry in entries if not entry["help"]] == []
 
 
 def test_help_comes_in_the_language_that_has_it(add_language):
     add_language("xx", help={"variables.acc": "xx"})
-    told = {entry["name"]: entry["help"] for entry in describe_target(language="xx")["variables"]}
-    assert told["acc"] == "xx"
-    assert told["leds.top"] == texts("help")["variables.leds.top"]
+    reported = {entry["name"]: entry["help"] for entry in describe_target(language="xx")["variables"]}
+    assert reported["acc"] == "xx"
+    assert reported["leds.top"] == texts("help")["variables.leds.top"]
 
 
 def test_a_loaded_program_is_described_with_the_topics_of_its_events():
     text = FILE.replace("targt", "target")
-    told = describe_program(load_program(text, "maze.aesl"), {"ping": "ping"})
-    assert (told["name"], told["node"], told["first_line"]) == ("maze.aesl", "thymio-II", 4)
-    assert told["source"].startswith("var counter")
-    assert told["file"] == text
-    assert told["events"] == [{"name": "ping", "size": 1, "topic": "ping"}]
-    assert told["variables"][0]["line"] == 4
+    reported = describe_program(load_program(text, "maze.aesl"), {"ping": "ping"})
+    assert (reported["name"], reported["node"], reported["first_line"]) == ("maze.aesl", "thymio-II", 4)
+    assert reported["source"].startswith("var counter")
+    assert reported["file"] == text
+    assert reported["events"] == [{"name": "ping", "size": 1, "topic": "ping"}]
+    assert reported["variables"][0]["line"] == 4
 
 
 def test_doubts_about_a_program_have_their_place():

@@ -62,7 +62,7 @@ def test_settings_outlive_a_disk_that_is_full(tmp_path: Path) -> None:
     settings.flash()
     settings[0] = 3
     with disk.files_end_at(100):
-        assert settings.flash() == f"settings are not stored: {file}: {disk.TOLD}"
+        assert settings.flash() == f"settings are not stored: {file}: {disk.FILE_TOO_LARGE}"
     assert Settings(file)[0] == 2
     assert list(tmp_path.iterdir()) == [file]
 

@@ -1,4 +1,4 @@
-"""A record of what the microphone told."""
+"""Recordings of the microphone."""
 
 from __future__ import annotations
 

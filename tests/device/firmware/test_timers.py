@@ -1,4 +1,4 @@
-"""Timers count simulated milliseconds and lose nothing while somebody listens."""
+"""Timers count simulated milliseconds and lose nothing while a program handles their event."""
 
 from __future__ import annotations
 

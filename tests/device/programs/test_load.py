@@ -1,4 +1,4 @@
-"""What a program asks of its robot is charged; what is too much is told, and ends."""
+"""What a program asks of its robot is charged; too much is reported and stops it."""
 
 from __future__ import annotations
 

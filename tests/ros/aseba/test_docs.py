@@ -94,7 +94,7 @@ def test_the_service_calls_of_the_examples_are_answered(ros, runtime):
         request = json_messages.from_json(_json(text[0] if text else "{}"), service.Request)
         answer = ros.call(service, name, request)
         results = [answer.result] if hasattr(answer, "result") else getattr(answer, "results", [])
-        expected = name != "/aseba_runtime/check"  # the example has a mistake to be told
+        expected = name != "/aseba_runtime/check"  # the example has a mistake to be reported
         assert all(result.successful is expected for result in results)
 
 
@@ -125,11 +125,11 @@ def test_the_node_starts_as_in_the_examples(ros, command, maze):
 
 def test_the_refusal_of_the_text_is_ours(ros, runtime):
     runtime("var me = 1")
-    (told,) = re.findall(r"`(maze\.aesl: line [^`]+)`", DOC)
+    (reported,) = re.findall(r"`(maze\.aesl: line [^`]+)`", DOC)
     nodes = '<node name="thymio-II" nodeId="1">\n\n\n\n</node><node name="thymio-II" nodeId="2">\n\n\n\n      '
     text = f"<network>\n\n\n{nodes}motor.left.targt = 1</node></network>"
     result = set_parameters(ros, {"script.name": "maze.aesl", "script.source": text})
-    assert result.reason == told
+    assert result.reason == reported
 
 
 def _json(text):

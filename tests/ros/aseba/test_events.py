@@ -100,9 +100,9 @@ def test_an_event_whose_name_is_too_long_for_a_topic_has_none(ros, runtime):
 
 def test_robots_receive_events_of_others_but_not_their_own(ros, runtime):
     runtime(HEAR, **TWO)
-    told = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
+    reported = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
     press_left(ros, "anna")
-    ros.until(lambda: told and list(told[0].data) == [7, 8])
+    ros.until(lambda: reported and list(reported[0].data) == [7, 8])
     assert get_variables(ros, "heard", "from", robot="/bert") == [[7, 8], [1]]
     assert get_variables(ros, "times", robot="/anna") == [[0]]
 
@@ -183,7 +183,7 @@ def test_robots_of_different_runtimes_receive_events_once(ros, runtime):
     other = second(ros, "carl")
     ros.until(lambda: ros.node.count_subscribers(TOPIC) == 2)
     air = ros.collect(Int16MultiArray, TOPIC)
-    told = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
+    reported = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
     press_left(ros, "carl")
     carl = other.robots[0].device
     ros.until(lambda: get_variables(ros, "heard", "from", robot="/bert") == [[7, 8], [7]])
@@ -192,7 +192,7 @@ def test_robots_of_different_runtimes_receive_events_once(ros, runtime):
     ros.until(lambda: len(air) == 2)
     times = {robot: get_variables(ros, "times", robot=f"/{robot}")[0] for robot in ("anna", "bert", "carl")}
     assert times == {"anna": [1], "bert": [2], "carl": [1]}
-    assert len(told) == 1
+    assert len(reported) == 1
 
 
 def test_an_event_from_ros_reaches_robots_of_other_runtimes(ros, runtime):

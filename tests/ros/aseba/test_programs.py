@@ -117,7 +117,7 @@ def test_constants_are_parameters_for_all_and_for_one(ros, runtime):
         ("watch", None, "watch: found nothing, expected a value"),
         ("robots.anna.watch", "me", "found 'me', expected a list of names"),
         ("local_events", True, "found True, expected a list of names"),
-        ("script.path", "~nobody-knows/x.aesl", "~nobody-knows/x.aesl"),
+        ("script.path", "~no-such-user/x.aesl", "~no-such-user/x.aesl"),
         ("robots.anna.script.source", 3, "Wrong parameter type, expected 'Type.STRING'"),
         ("robots.absent.script.source", 3, "found 3, expected text"),
         ("robots.absent.script.source", "var 3", "line 1, column 5"),

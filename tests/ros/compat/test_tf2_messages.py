@@ -222,7 +222,7 @@ def test_several_nodes_of_one_process_may_come_and_go() -> None:
         first, second, viewer = peers
         early = first.publisher("/tf")
         first.node.destroy_publisher(early)
-        # Latched: the publisher that went may still be counted as one of two when the viewer comes.
+        # Transient local: the publisher that went may still be counted as one of two when the viewer comes.
         publishers = [first.publisher("/tf", TRANSIENT_LOCAL), second.publisher("/tf", TRANSIENT_LOCAL)]
         viewer.listen("/tf", TRANSIENT_LOCAL)
         publishers[0].publish(encode([BASE]))

@@ -119,10 +119,10 @@ def test_an_alarm_is_switched():
     assert decode("_alarm", Bool(data=True)) == SetAlarm(True)
 
 
-@pytest.mark.parametrize(("number", "told"), [(-129, -128), (127, 127), (128, 127), (32767, 127)])
-def test_an_unknown_sound_number_fits_into_the_message(number, told):
+@pytest.mark.parametrize(("number", "reported"), [(-129, -128), (127, 127), (128, 127), (32767, 127)])
+def test_an_unknown_sound_number_fits_into_the_message(number, reported):
     message = BY_TOPIC["_sound/system"].encode(PlaySystemSound(number))
-    assert decode("_sound/system", message) == PlaySystemSound(told)
+    assert decode("_sound/system", message) == PlaySystemSound(reported)
 
 
 def test_a_sound_is_stopped_by_a_negative_number():

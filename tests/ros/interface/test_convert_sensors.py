@@ -98,7 +98,7 @@ def test_a_program_gets_the_words_of_the_sensors(ros, simulation, runtime):
         "onevent acc\nif acc[1] > 20 then\ncall leds.prox.v(5, 6)\nend\n"
         "onevent mic\ncall leds.temperature(mic.intensity / 10, 1)"
     )
-    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     ros.publisher(Int16MultiArray, "/_press/rc5").publish(Int16MultiArray(data=[3, 11]))
     ros.publisher(Empty, "/_press/tap").publish(Empty())
     ros.publisher(Float32MultiArray, "/_press/tilt").publish(Float32MultiArray(data=[0.0, -1.5]))
@@ -127,7 +127,7 @@ def test_programs_of_two_robots_talk_by_infrared(ros, simulation, runtime):
         "onevent prox.comm\ncall leds.top(prox.comm.rx - 100, 0, 0)",
         robots=["anna", "bert"],
     )
-    states = [ros.collect(Float32MultiArray, f"/{name}/_led/state", latched=True) for name in ("anna", "bert")]
+    states = [ros.collect(Float32MultiArray, f"/{name}/_led/state", transient_local=True) for name in ("anna", "bert")]
     sim.until(lambda: all(states) and [round(32 * state[-1].data[0]) for state in states] == [2, 1])
 
 

@@ -32,29 +32,31 @@ def message(*parts, data):
 
 
 @given(readings)
-def test_the_message_is_an_array_with_a_dimension_for_each_reading(told):
-    found = deserialize_message(encode(told), Int16MultiArray)
-    labels = [f"{robot}/{sensor}" if robot else sensor for robot, sensor, _ in told]
-    sizes = [len(words) for _, _, words in told]
+def test_the_message_is_an_array_with_a_dimension_for_each_reading(reported):
+    found = deserialize_message(encode(reported), Int16MultiArray)
+    labels = [f"{robot}/{sensor}" if robot else sensor for robot, sensor, _ in reported]
+    sizes = [len(words) for _, _, words in reported]
     assert [(dim.label, dim.size, dim.stride) for dim in found.layout.dim] == list(
         zip(labels, sizes, sizes, strict=True)
     )
-    assert list(found.data) == [word for _, _, words in told for word in words]
+    assert list(found.data) == [word for _, _, words in reported for word in words]
 
 
 @given(st.lists(readings, max_size=3))
 def test_an_encoded_message_is_decoded_also_the_second_time(messages):
     decoder = RawDecoder()
     for _ in range(2):
-        for told in messages:
-            assert [(robot, sensor, tuple(words)) for robot, sensor, words in decoder.decode(encode(told))] == told
+        for message in messages:
+            assert [
+                (robot, sensor, tuple(words)) for robot, sensor, words in decoder.decode(encode(message))
+            ] == message
 
 
 def test_many_kinds_of_messages_are_read():
     decoder = RawDecoder()
     for count in range(1500):
-        told = [(f"r{count}", "motor", (count, 1))]
-        assert list(decoder.decode(encode(told))) == told
+        reported = [(f"r{count}", "motor", (count, 1))]
+        assert list(decoder.decode(encode(reported))) == reported
 
 
 def test_a_message_of_another_serializer_is_decoded():
@@ -107,13 +109,13 @@ def test_each_reading_is_one_event(ros, simulation, runtime):
     for _ in range(30):
         sim.simulator.runner.step(1)
 
-    def told(word):
+    def reported(word):
         return sum(dim.label == word for one in list(heard)[done:] for dim in one.layout.dim)
 
-    ros.until(lambda: told("motor") == 30, what="the readings of 30 ticks")
+    ros.until(lambda: reported("motor") == 30, what="the readings of 30 ticks")
     ros.settle()
-    assert count() == [motors + 30, looks + told("proximity")]
-    assert told("proximity") == 3
+    assert count() == [motors + 30, looks + reported("proximity")]
+    assert reported("proximity") == 3
 
 
 @pytest.fixture

@@ -136,16 +136,16 @@ class Stumbling:
         self.turns += 1
         executor.spin_once(timeout_sec=0.0)
         if self.turns <= self.faults:
-            raise ZeroDivisionError("nobody thought of it")
+            raise ZeroDivisionError("unexpected")
 
 
 def test_an_internal_error_does_not_end_a_node(ros, monkeypatch):
-    told = []
-    monkeypatch.setattr(RcutilsLogger, "error", lambda self, text, **_: told.append(text))
+    reported = []
+    monkeypatch.setattr(RcutilsLogger, "error", lambda self, text, **_: reported.append(text))
     runnable = Stumbling(Node("stumbling", context=ros.context), faults=MAX_CONSECUTIVE_ERRORS - 1)
     run_node(runnable, ros.context, lambda: runnable.turns == MAX_CONSECUTIVE_ERRORS + 1)
-    assert len(told) == MAX_CONSECUTIVE_ERRORS - 1
-    assert all("nobody thought of it" in text for text in told)
+    assert len(reported) == MAX_CONSECUTIVE_ERRORS - 1
+    assert all("unexpected" in text for text in reported)
     runnable.node.destroy_node()
 
 
@@ -168,10 +168,10 @@ def test_nothing_of_a_simulator_is_left_in_the_graph(ros, simulation):
 @pytest.fixture
 def logged(monkeypatch):
     """What nodes wrote to the log at these two levels."""
-    told = []
+    reported = []
     for level in ("info", "warning"):
-        monkeypatch.setattr(RcutilsLogger, level, lambda self, text, **_: told.append(text))
-    return told
+        monkeypatch.setattr(RcutilsLogger, level, lambda self, text, **_: reported.append(text))
+    return reported
 
 
 def test_an_executable_logs_what_runs_and_where(ros, logged, simulation, runtime):
@@ -211,15 +211,15 @@ def test_an_argument_outside_ros_args_is_reported_and_nothing_starts(capfd, argu
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (["-p", "seed=3"], "ROS cannot be initialized: Couldn't parse parameter override rule: '-p seed=3'"),
         (["--foo"], "not ROS arguments: ['--foo']"),
     ],
 )
-def test_an_invalid_ros_argument_is_reported_in_one_line(capfd, words, told):
+def test_an_invalid_ros_argument_is_reported_in_one_line(capfd, words, reported):
     assert run_main(lambda context: pytest.fail("started"), ["--ros-args", *words]) == 2
-    assert f"thymio-sim: {told}" in capfd.readouterr().err.splitlines()
+    assert f"thymio-sim: {reported}" in capfd.readouterr().err.splitlines()
 
 
 SLOW_TO_CLOSE = """

@@ -123,7 +123,7 @@ def test_a_runtime_checks_the_types_of_its_inputs(ros, runtime, stranger):
 
 
 @pytest.mark.parametrize(
-    ("topic", "found", "wanted", "told"),
+    ("topic", "found", "wanted", "reported"),
     [
         ("/r/cmd_vel", STAMPED, TWIST, "Publish it on /r/cmd_vel_stamped, or start the simulator with stamped_cmd"),
         ("/r/cmd_vel_stamped", TWIST, STAMPED, "Publish it on /r/cmd_vel"),
@@ -131,9 +131,9 @@ def test_a_runtime_checks_the_types_of_its_inputs(ros, runtime, stranger):
         ("/r/alarm", STAMPED, "std_msgs/msg/Bool", "Publish std_msgs/msg/Bool there"),
     ],
 )
-def test_the_cure_names_the_right_topic_or_type(topic, found, wanted, told):
+def test_the_cure_names_the_right_topic_or_type(topic, found, wanted, reported):
     inputs = {"/s/cmd_vel": TWIST, "/r/cmd_vel": TWIST, "/r/cmd_vel_stamped": STAMPED, "/r/alarm": "std_msgs/msg/Bool"}
-    assert type_mismatch.cure(topic, found, wanted, inputs).startswith(told)
+    assert type_mismatch.cure(topic, found, wanted, inputs).startswith(reported)
 
 
 def test_with_stamped_velocities_the_cure_is_the_other_topic():

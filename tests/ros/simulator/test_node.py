@@ -76,7 +76,7 @@ def test_an_internal_error_pauses_the_world_and_is_logged(ros, simulation, monke
     logs, states = ros.collect(Log, "/rosout"), ros.collect(String, "/simulator/_state")
 
     def fail():
-        raise ZeroDivisionError("nobody thought of it")
+        raise ZeroDivisionError("unexpected")
 
     monkeypatch.setattr(sim.world, "step", fail)
     assert sim.simulator.runner.paused
@@ -95,12 +95,12 @@ def test_retained_topics_are_published_again_after_a_reset(ros, simulation):
     ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
     sounds, trails = (
         ros.collect(Float32MultiArray, "/_sound/state"),
-        ros.collect(MarkerArray, "/_pen/trail", latched=True),
+        ros.collect(MarkerArray, "/_pen/trail", transient_local=True),
     )
     sim.until(lambda: sounds and sounds[-1].data[0] > 0 and trails and len(trails[-1].markers) > 1)
     assert ros.call(Trigger, "/simulator/reset", Trigger.Request()).success
-    late_sounds = ros.collect(Float32MultiArray, "/_sound/state", latched=True)
-    late_trails = ros.collect(MarkerArray, "/_pen/trail", latched=True)
+    late_sounds = ros.collect(Float32MultiArray, "/_sound/state", transient_local=True)
+    late_trails = ros.collect(MarkerArray, "/_pen/trail", transient_local=True)
     ros.until(lambda: late_sounds and late_trails)
     assert list(late_sounds[-1].data) == [0.0, 0.0, 1.0]
     assert [marker.action for marker in late_trails[-1].markers] == [Marker.DELETEALL]
@@ -198,7 +198,7 @@ def test_a_pressed_button_is_seen_once(ros, simulation):
 
 def test_leds_show_the_commanded_levels(ros, simulation):
     sim = simulation()
-    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     ros.publisher(ColorRGBA, "/led/body/top").publish(ColorRGBA(r=1.0, g=0.5, b=0.0, a=1.0))
     sim.until(lambda: state and list(state[-1].data[:3]) == [1.0, 0.5, 0.0])
     labels = {dimension.label: dimension.size for dimension in state[-1].layout.dim}
@@ -207,7 +207,7 @@ def test_leds_show_the_commanded_levels(ros, simulation):
 
 def test_a_short_led_array_is_refused(ros, simulation):
     sim = simulation()
-    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     publisher = ros.publisher(Float32MultiArray, "/led/circle")
     publisher.publish(Float32MultiArray(data=[1.0]))
     publisher.publish(Float32MultiArray(data=[1.0] * 8))
@@ -254,7 +254,7 @@ def test_pause_step_and_run(ros, simulation):
     refused = ros.call(Trigger, "/simulator/step")
     assert not refused.success
     assert "pause" in refused.message
-    states = ros.collect(String, "/simulator/_state", latched=True)
+    states = ros.collect(String, "/simulator/_state", transient_local=True)
     ros.until(lambda: states and json.loads(states[-1].data)["paused"] is False)
 
 
@@ -276,7 +276,7 @@ def test_the_true_pose_is_repeated_while_paused(ros, simulation):
 
 def test_the_playground_can_be_changed_and_a_bad_one_is_refused(ros, simulation):
     sim = simulation(playground="base")
-    markers = ros.collect(MarkerArray, "/_markers", latched=True)
+    markers = ros.collect(MarkerArray, "/_markers", transient_local=True)
     ros.until(lambda: markers)
     world = sim.world
     bad = set_parameter(ros, "playground", '{"format": 1, "title": "x", "shapes": [{"kind": "bx"}]}')
@@ -333,7 +333,7 @@ def test_the_state_lists_what_could_not_be_converted(ros, simulation):
     simulation(
         playground='<aseba-playground><color name="w"/><world w="90" h="90" color="w"/><feeder/></aseba-playground>'
     )
-    states = ros.collect(String, "/simulator/_state", latched=True)
+    states = ros.collect(String, "/simulator/_state", transient_local=True)
     ros.until(lambda: states)
     (note,) = json.loads(states[-1].data)["notes"]
     assert note.startswith("line 1: <feeder> skipped")
@@ -376,7 +376,7 @@ def test_a_rejected_start_parameter_has_a_reason(ros):
 
 def test_a_pen_draws_a_trail(ros, simulation):
     sim = simulation()
-    trails = ros.collect(MarkerArray, "/_pen/trail", latched=True)
+    trails = ros.collect(MarkerArray, "/_pen/trail", transient_local=True)
     ros.publisher(ColorRGBA, "/_pen/color").publish(ColorRGBA(r=1.0, a=1.0))
     ros.publisher(Float32, "/_pen/width").publish(Float32(data=0.03125))
     ros.publisher(Bool, "/pen/down").publish(Bool(data=True))
@@ -389,10 +389,10 @@ def test_a_pen_draws_a_trail(ros, simulation):
 
 def test_a_sound_from_ros_is_played_and_published(ros, simulation):
     sim = simulation()
-    told = ros.collect(Float32MultiArray, "/_sound/state")
+    reported = ros.collect(Float32MultiArray, "/_sound/state")
     ros.publisher(Float32MultiArray, "/sound/tone").publish(Float32MultiArray(data=[440.0, 0.5]))
-    sim.until(lambda: len(told) >= 2)
-    assert [list(message.data[:2]) for message in told] == [[440.0, 0.5], [0.0, 0.0]]
+    sim.until(lambda: len(reported) >= 2)
+    assert [list(message.data[:2]) for message in reported] == [[440.0, 0.5], [0.0, 0.0]]
 
 
 def test_an_unknown_motor_model_is_refused(ros):

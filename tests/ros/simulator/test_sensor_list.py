@@ -31,7 +31,7 @@ def test_built_in_sensors_are_listed_with_units():
 def test_the_declaration_of_a_plug_in_reaches_the_topic(ros, simulation, tmp_path, monkeypatch):
     with plugin_page.installed(tmp_path, plugin_page.files(), monkeypatch):
         simulation()
-        lists = ros.collect(String, "/simulator/_sensors", latched=True)
+        lists = ros.collect(String, "/simulator/_sensors", transient_local=True)
         ros.until(lambda: lists)
     (compass,) = (sensor for sensor in json.loads(lists[-1].data) if sensor["name"] == "compass")
     assert compass["label"] == {"en": "compass", "de": "Kompass", "fr": "boussole", "it": "bussola"}

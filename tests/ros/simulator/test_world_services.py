@@ -52,9 +52,9 @@ def poses(ros, *names):
 def test_the_playground_is_returned_as_json(ros, simulation):
     simulation(playground=ROOM)
     answer = ros.call(Trigger, "/simulator/get_playground", Trigger.Request())
-    told, given = playgrounds.loads(answer.message, "told.json"), playgrounds.loads(ROOM, "room.json")
+    reported, given = playgrounds.loads(answer.message, "answer.json"), playgrounds.loads(ROOM, "room.json")
     assert answer.success
-    assert (told.shapes, told.robots) == (given.shapes, given.robots)
+    assert (reported.shapes, reported.robots) == (given.shapes, given.robots)
 
 
 def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulation):
@@ -159,7 +159,7 @@ def test_a_dragged_robot_moves(ros, simulation, name, child):
 
 @pytest.mark.parametrize(
     "refused",
-    [transform("thymio", 0.0, 0.5), transform("nobody", 0.0, 0.0), transform("crate", 0.0, 0.0, frame="odom")],
+    [transform("thymio", 0.0, 0.5), transform("unknown", 0.0, 0.0), transform("crate", 0.0, 0.0, frame="odom")],
 )
 def test_a_drag_to_nowhere_is_refused_and_counted(ros, simulation, refused):
     sim = simulation(playground=ROOM)

@@ -124,13 +124,13 @@ def test_the_world_reports_what_sounds_and_when_it_has_finished() -> None:
     world = World(make([FLOOR]))
     send(world, PlaySystemSound(2))
     steps = run(world, 0.5)
-    told = readings(steps, "loudspeaker")
-    assert [(reading.frequency_hz, reading.duration_ns) for reading in told] == [
+    reported = readings(steps, "loudspeaker")
+    assert [(reading.frequency_hz, reading.duration_ns) for reading in reported] == [
         (110, 7 * BLOCK_NS), (220, 7 * BLOCK_NS), (0.0, 0)
     ]  # fmt: skip
-    assert [reading.began_ns for reading in told] == [0, 7 * BLOCK_NS, 14 * BLOCK_NS]
+    assert [reading.began_ns for reading in reported] == [0, 7 * BLOCK_NS, 14 * BLOCK_NS]
     (finished,) = readings(steps, "sound_finished")
-    assert finished.stamp_ns == told[-1].stamp_ns == 240_000_000
+    assert finished.stamp_ns == reported[-1].stamp_ns == 240_000_000
 
 
 def test_the_world_reports_samples_volume_and_silence() -> None:

@@ -201,10 +201,10 @@ def test_the_trail_is_published_only_when_it_has_grown() -> None:
     assert readings(run(world, 1.0), "pen") == []
     send(world, SetPen(down=True, color=RED))
     send(world, MotorTargets(300, 300))
-    told = readings(run(world, 1.0), "pen")
-    assert len(told) == 5
-    assert (told[0].down, told[0].color) == (True, RED)
-    ends = [reading.strokes[-1].points[-1][0] for reading in told]
+    reported = readings(run(world, 1.0), "pen")
+    assert len(reported) == 5
+    assert (reported[0].down, reported[0].color) == (True, RED)
+    ends = [reading.strokes[-1].points[-1][0] for reading in reported]
     assert ends == sorted(ends)
     send(world, MotorTargets(0, 0))
     run(world, 0.3)

@@ -17,12 +17,12 @@ SECOND = 1_000_000_000 // SAMPLE_NS
 CLICK = bytes(range(256))
 
 
-def stream(*told: tuple[float, Command]) -> SoundStream:
-    """What a robot says that is told these commands at these seconds, for three seconds."""
+def stream(*reported: tuple[float, Command]) -> SoundStream:
+    """The readings of three seconds of a robot that gets these commands at these times."""
     world, heard = World(make([FLOOR])), SoundStream()
     steps = []
     for tick in range(300):
-        for seconds, command in told:
+        for seconds, command in reported:
             if round(seconds * 100) == tick:
                 send(world, command)
         steps += run(world, 0.01)

@@ -18,7 +18,7 @@ from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 
 WAY_M = CHECK_INTERVAL_TICKS * MAX_TICK_DISTANCE_M
 LOOSE_M = 0.05
-"""A robot nearer than this to a fixed outline, beside its way, may be told to be near; farther it is not."""
+"""A robot nearer than this to a fixed outline, beside its way, may be reported as near; farther it is not."""
 TRIANGLE = Polygon(((0.0, 0.0), (0.1, 0.0), (0.0, 0.08)))
 Place = tuple[float, float, float]
 

@@ -169,7 +169,7 @@ SILL = {"kind": "wall", "start_x_m": 0.3, "start_y_m": SILL_Y_M, "end_x_m": 0.7,
 """A wall so near to the end of the closed gate that no robot has room between them."""
 
 
-@pytest.mark.parametrize("others", [0, 14], ids=["alone", "in a crowd"])
+@pytest.mark.parametrize("others", [0, 14], ids=["alone", "in a batch"])
 @pytest.mark.parametrize(("move_s", "tick_m"), [(2.0, 0.005), (5.0, 0.002)])
 @pytest.mark.parametrize("yaw_rad", [0.0, math.pi / 2, math.pi])
 def test_a_door_waits_for_a_robot_between_it_and_a_wall(

@@ -89,7 +89,7 @@ def test_a_fallen_robot_can_be_taken_away_and_its_name_used_again() -> None:
 
 def test_an_unknown_robot_cannot_be_taken_away() -> None:
     with pytest.raises(KeyError):
-        build().remove("nobody")
+        build().remove("unknown")
 
 
 def test_reset_brings_back_the_robots_of_the_playground() -> None:

@@ -1,4 +1,4 @@
-"""Whether something is touched, as it is told."""
+"""Reports of the collision sensor."""
 
 from __future__ import annotations
 

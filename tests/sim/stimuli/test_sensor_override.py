@@ -16,7 +16,7 @@ ALONE, AT_ONCE = 10**9, 1
 
 @pytest.fixture(params=[ALONE, AT_ONCE], ids=["alone", "at once"])
 def world(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> World:
-    """Before a wall, robot by robot and as a crowd."""
+    """Before a wall, one by one and as a batch."""
     monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", request.param)
     return World(make([FLOOR, post_wall(0.05)], [ROBOT]), noise=False)
 

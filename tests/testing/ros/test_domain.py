@@ -34,7 +34,7 @@ def test_a_domain_in_use_is_skipped(monkeypatch):
     context = Context()
     with reserved() as busy:
         rclpy.init(args=[], context=context, domain_id=busy)
-    node = rclpy.create_node("somebody", context=context)
+    node = rclpy.create_node("other", context=context)
     monkeypatch.setattr(domain, "DOMAINS", [busy])
     try:
         with pytest.raises(NoDomainError), reserved():

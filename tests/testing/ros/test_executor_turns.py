@@ -61,7 +61,7 @@ class Looping(Node):
             while rclpy.ok(context=self.context):
                 self.mouth.publish(String(data="la"))
                 pause.wait(0.05)
-        except Exception as error:  # whatever it is, it would be told in another test
+        except Exception as error:  # whatever it is, it would be reported in another test
             self.failures.append(error)
 
 

@@ -108,15 +108,15 @@ def test_of_several_classes_the_last_heir_or_the_named_one_is_taken(handed_in):
 
 
 @pytest.mark.parametrize(
-    ("text", "class_name", "told"),
+    ("text", "class_name", "reported"),
     [
         ("x = 1\n", "", "expected one class derived from rclpy.node.Node, found none"),
         (GREETER + GREETER.replace(HEAD, "").replace("Greeter", "Other"), "", "found Greeter, Other"),
         (GREETER, "Greter", "expected a class Greter derived from rclpy.node.Node, found Greeter"),
     ],
 )
-def test_what_is_no_node_is_refused(handed_in, text, class_name, told):
-    with pytest.raises(StudentError, match=told):
+def test_what_is_no_node_is_refused(handed_in, text, class_name, reported):
+    with pytest.raises(StudentError, match=reported):
         load_class(handed_in(text), class_name)
 
 

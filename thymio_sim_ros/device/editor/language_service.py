@@ -42,7 +42,7 @@ __all__ = [
 ]
 
 MOST_CHARACTERS = 64_000
-"""Longest text that is checked: several programs that fill a Thymio, so that nobody waits for a second."""
+"""Longest text that is checked: several programs that fill a Thymio. Longer ones would take more than a second."""
 
 _WORD = re.compile(rf"[{LETTER_OR_DIGIT}_.]+")
 
@@ -77,7 +77,7 @@ def check(question: Question) -> dict[str, Any]:
         constants=[{"name": name, "value": value} for name, value in network.constants],
     )
     for node in selection.nodes:
-        errors, warnings, told = _check_node(node, network, question)
+        errors, warnings, report = _check_node(node, network, question)
         if errors and is_skipped(node, selection):
             answer["notes"].append(_note("note-left-out-node", node, question, errors[0]["message"]))
             continue
@@ -86,7 +86,7 @@ def check(question: Question) -> dict[str, Any]:
             answer["notes"].append(_note(kind, node, question))
         answer["errors"] += errors
         answer["warnings"] += warnings
-        answer["nodes"].append(told)
+        answer["nodes"].append(report)
     return answer
 
 
@@ -194,7 +194,7 @@ def _check_node(
         errors.append(finding | {"hint": _hint(node, error.hint, question.language)})
     else:
         warnings = _doubts(node, program, question.language)
-    told = {
+    report = {
         "name": node.name,
         "id": node.node_id,
         "first_line": node.place(0)[0] + 1,
@@ -202,7 +202,7 @@ def _check_node(
         **_names(node, program),
         "use": None if program is None else memory_use(program, question.layout),
     }
-    return errors, warnings, told
+    return errors, warnings, report
 
 
 def _note(kind: str, node: aesl.Node, question: Question, *arguments: str) -> dict[str, Any]:

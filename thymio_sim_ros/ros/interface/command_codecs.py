@@ -77,7 +77,7 @@ def encode_single(command: commands.SetLed) -> Int16MultiArray:
 
 
 def decode_single(message: Int16MultiArray) -> Command:
-    """Return the command for `[number of the light, brightness 0…32]`."""
+    """Return the command for `[number of the light, brightness 0…32]`. Raises CommandError for an unknown light."""
     number, level = command_checks.sized(message.data, 2, "[number of the light, brightness 0…32]")
     if not 0 <= number < len(LED_NUMBERS) or LED_NUMBERS[number] is None:
         none = ", ".join(str(place) for place, light in enumerate(LED_NUMBERS) if light is None)
@@ -92,7 +92,7 @@ def encode_own(command: commands.ShowOnLeds) -> Float32MultiArray:
 
 
 def decode_own(message: Float32MultiArray) -> Command:
-    """Return the command for the intensities that firmware behavior shows on a group."""
+    """Return the command for the intensities that firmware behavior shows; raises CommandError for an unknown group."""
     group = message.layout.dim[0].label if message.layout.dim else ""
     if group not in commands.LED_GROUPS:
         raise CommandError(f"group {group!r} found in layout.dim[0].label, expected {', '.join(commands.LED_GROUPS)}")
@@ -133,7 +133,7 @@ def encode_samples(command: commands.PlaySamples) -> UInt8MultiArray:
 
 
 def decode_samples(message: UInt8MultiArray) -> Command:
-    """Return the command for at most `MAX_SAMPLES` unsigned 8 bit samples."""
+    """Return the command for at most `MAX_SAMPLES` unsigned 8 bit samples; raises CommandError for more."""
     if len(message.data) > MAX_SAMPLES:
         raise CommandError(f"found {len(message.data)} samples, expected at most {MAX_SAMPLES}")
     return commands.PlaySamples(bytes(message.data))
@@ -156,7 +156,10 @@ def encode_volume(command: commands.SetVolume) -> Int8:
 
 
 def decode_volume(message: Int8) -> Command:
-    """Return the command for the number of bits that samples lose: 0 (loudest) to `VOLUME_OFF`."""
+    """Return the command for the number of bits that samples lose: 0 (loudest) to `VOLUME_OFF`.
+
+    Raises CommandError outside this range.
+    """
     if not 0 <= message.data <= VOLUME_OFF:
         raise CommandError(f"found {message.data}, expected 0 (loudest) to {VOLUME_OFF} (off)")
     return commands.SetVolume(int(message.data))
@@ -194,7 +197,10 @@ def decode_payload(message: Int16) -> Command:
 
 
 def decode_gesture(message: Float32, *, name: str) -> Command:
-    """Return the command for a gesture from its period in s; the sign is the direction."""
+    """Return the command for a gesture from its period in s; the sign is the direction.
+
+    Raises CommandError for a period out of range.
+    """
     try:
         return commands.PlayGesture(name, float(message.data))
     except ValueError as error:
@@ -230,7 +236,7 @@ def decode_pen_color(message: ColorRGBA) -> Command:
 
 
 def decode_pen_width(message: Float32) -> Command:
-    """Return the command for the width of the line in m."""
+    """Return the command for the width of the line in m; raises CommandError if it is out of range."""
     low, high = PEN_WIDTHS_M
     if not math.isfinite(message.data) or not low <= message.data <= high:
         raise CommandError(f"found {message.data:g} m, expected {low:g} to {high:g}")

@@ -35,7 +35,7 @@ class MotorState:
     ends_ns: int | None = None
     control: tuple[WheelControl, WheelControl] | None = None
     batch_changes: tuple[set[int], int] | None = None
-    """Where a crowd wants to read that a command has come, and the number to be written there."""
+    """In a batch: the set of robots with a new command, and the number of this robot in it."""
 
 
 def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
@@ -98,7 +98,7 @@ def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> 
 
 
 class _BatchTargets:
-    """What a crowd's motors aim at, kept from tick to tick; looked at again when a command has come."""
+    """Target speeds of the motors of a batch, updated when a command has come."""
 
     def __init__(self, states: Sequence[MotorState]) -> None:
         self.commanded = np.zeros((2, len(states)))

@@ -126,7 +126,7 @@ def nothing_beside(name: str) -> bytes:
 
 
 def folder(path: Path) -> Beside:
-    """Return a function that reads files of a folder and its subfolders, and of no other."""
+    """Return a function that reads files of a folder and its subfolders, and raises FieldError for any other."""
 
     def read_file(name: str) -> bytes:
         try:

@@ -24,7 +24,7 @@ WALLS = {"height_m": 6 * UNIT_M, "thickness_m": UNIT_M}
 TRACK_WIDTH_M = UNIT_M
 
 KEYS = ("planes", "octagons", "boxes", "cylinders", "uShapes", "tracks", "thymios")
-"""What tells such a file from others, besides "playground", its title."""
+"""Keys that only such files have, besides "playground", the title."""
 
 
 def convert(data: Mapping[str, object], name: str) -> Conversion:
