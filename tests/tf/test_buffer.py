@@ -170,7 +170,7 @@ def test_the_robot_and_its_sensors_are_on_the_map(ros, simulation):
     buffer = Buffer()
     listener = TransformListener(buffer, ros.make_node("hearer"))
     ros.until(lambda: ros.node.count_subscribers("/tf"))
-    sim.simulator._poll_subscribers()
+    sim.simulator.endpoints.poll()
     sim.step(0.5)
     ros.until(lambda: buffer.can_transform("map", "proximity_center_link", Time()))
     truth = sim.world.robots["thymio"].pose
@@ -206,7 +206,7 @@ def test_a_reset_of_the_simulator_empties_the_buffer_of_a_node_on_its_time(ros, 
     sim = simulation()
     node = ros.start(Watcher)
     sim.until(lambda: node.buffer.can_transform("map", "base_link", Time(seconds=0.5)))
-    sim.simulator.reset()
+    sim.simulator.runner.reset()
     sim.until(lambda: node.places and node.places[-1] < 0.3)
     latest = node.buffer.lookup_transform("odom", "base_link", Time()).header.stamp
     assert latest.sec == 0

@@ -262,6 +262,8 @@ import sys, threading, time
 from rclpy.node import Node
 from thymio_sim_ros.ros.rclpy_ext import node_runner
 
+ALL_RUN = threading.Event()
+
 class Turning:
     def __init__(self, context, name):
         self.node = Node(name, context=context)
@@ -277,6 +279,7 @@ class Turning:
 
 class InPython(Turning):
     def run_once(self, executor):
+        ALL_RUN.wait()
         print("begun", flush=True)
         here = True
         while here:
@@ -284,6 +287,7 @@ class InPython(Turning):
 
 class InC(Turning):
     def run_once(self, executor):
+        ALL_RUN.wait()
         print("begun", flush=True)
         threading.Lock().acquire() and time.sleep(1e6)
 
@@ -299,6 +303,7 @@ def build(context):
 
 node_runner.LEAVE_S = 10.0
 def ready():
+    ALL_RUN.set()
     if not {"python", "c"} & set(sys.argv[1].split(",")):  # a stuck node says so itself, once it is stuck
         print("begun", flush=True)
 

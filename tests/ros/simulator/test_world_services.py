@@ -124,7 +124,7 @@ def test_robots_and_objects_are_moved(ros, simulation):
     sim.step(0.01)
     thymio, crate, post = poses(ros, "thymio", "crate", "post")
     assert (thymio, crate, post) == ([-0.5, 0.0, 1.0], [0.25, 0.25, 0.0], [])
-    assert "'post' is in its way" in ask(ros, "set_poses", crate=numbers(0.0, 0.5))["crate"]
+    assert "occupied by 'post'" in ask(ros, "set_poses", crate=numbers(0.0, 0.5))["crate"]
 
 
 @pytest.mark.parametrize("place", [numbers(-0.5, 0.5, math.nan), numbers(math.inf, 0.5)])
