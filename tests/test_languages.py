@@ -136,30 +136,30 @@ def test_the_page_uses_every_text(file: str) -> None:
 # -- a new language ----------------------------------------------------------------------------------------------------
 
 
-def add_esperanto(folder: Path) -> None:
-    """Add a language of three texts to a copy of the folders."""
+def add_test_language(folder: Path) -> None:
+    """Add a language of three texts, with a code that no language has, to a copy of the folders."""
     tables = {
-        "language": {"name": "Esperanto"},
+        "language": {"name": "Zzish"},
         "page": {"stop": "Haltu"},
         "compiler": {"unknown-variable": "neniu variablo nomiĝas '{0}'"},
     }
-    (folder / "eo").mkdir()
+    (folder / "zz").mkdir()
     for file, table in tables.items():
-        (folder / "eo" / f"{file}.json").write_text(json.dumps(table), encoding="utf-8")
+        (folder / "zz" / f"{file}.json").write_text(json.dumps(table), encoding="utf-8")
 
 
 def test_a_language_that_lacks_texts_is_english_where_it_does(add_language) -> None:
-    add_language("eo", compiler={"label-hint": "Konsilo"})
-    assert texts("compiler", "eo") == texts("compiler") | {"label-hint": "Konsilo"}
-    assert texts("help", "eo") == texts("help")
+    add_language("zz", compiler={"label-hint": "Konsilo"})
+    assert texts("compiler", "zz") == texts("compiler") | {"label-hint": "Konsilo"}
+    assert texts("help", "zz") == texts("help")
     assert texts("page", "xx") == texts("page", "../en") == texts("page")
 
 
 @pytest.mark.process
 def test_the_command_speaks_a_language_whose_folder_was_added(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "aseba_vm", tmp_path / "aseba_vm", ignore=shutil.ignore_patterns("__pycache__"))
-    add_esperanto(tmp_path / "aseba_vm" / "languages")
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "LC_ALL": "eo.UTF-8"}
+    add_test_language(tmp_path / "aseba_vm" / "languages")
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "LC_ALL": "zz.UTF-8"}
 
     def said(program: str) -> str:
         command = [sys.executable, "-m", "aseba_vm", "check", "-"]
@@ -182,16 +182,16 @@ def test_the_page_offers_a_language_whose_folder_was_added(tmp_path: Path) -> No
     (tmp_path / "web_ui" / "node_modules").symlink_to((PAGE / "node_modules").resolve())
     shutil.copytree(FOLDER, tmp_path / "aseba_vm" / "languages")
     without = build.digest(tmp_path / "web_ui")
-    add_esperanto(tmp_path / "aseba_vm" / "languages")
+    add_test_language(tmp_path / "aseba_vm" / "languages")
     assert build.digest(tmp_path / "web_ui") != without
     program = """
         import { LANGUAGES, translator } from "./i18n/index.js";
-        const t = translator("eo");
-        console.log(JSON.stringify([LANGUAGES.eo, t("stop"), t("program.run")]));
+        const t = translator("zz");
+        console.log(JSON.stringify([LANGUAGES.zz, t("stop"), t("program.run")]));
     """
     command = [str(node.folder / "node"), "--input-type=module", "--eval", program]
     done = subprocess.run(command, cwd=tmp_path / "web_ui", capture_output=True, text=True, check=True)
-    assert json.loads(done.stdout) == ["Esperanto", "Haltu", "Run"]
+    assert json.loads(done.stdout) == ["Zzish", "Haltu", "Run"]
     assert build.script(tmp_path / "web_ui", "build") == 0
     scripts = list((tmp_path / "web_ui" / "dist" / "assets").glob("index-*.js"))
-    assert any("Esperanto" in script.read_text(encoding="utf-8") for script in scripts)
+    assert any("Zzish" in script.read_text(encoding="utf-8") for script in scripts)

@@ -23,27 +23,29 @@ def device(layout: str) -> AsebaDevice:
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_layout_is_that_of_its_reference(layout: str) -> None:
+def test_a_layout_begins_with_that_of_its_reference(layout: str) -> None:
     targets = json.loads((DATA / "vectors" / "aseba-targets.json").read_text())
     reference, ours = TargetDescription.from_data(targets[REFERENCES[layout]]), target(layout)
-    assert [(v.name, v.size) for v in ours.variables] == [(v.name, v.size) for v in reference.variables]
-    assert [e.name for e in ours.local_events] == [e.name for e in reference.local_events]
-    assert [(n.name, [p.size for p in n.parameters]) for n in ours.natives] == [
-        (n.name, [p.size for p in n.parameters]) for n in reference.natives
+    variables, events, natives = reference.variables, reference.local_events, reference.natives
+    assert [(v.name, v.size) for v in ours.variables[: len(variables)]] == [(v.name, v.size) for v in variables]
+    assert [e.name for e in ours.local_events[: len(events)]] == [e.name for e in events]
+    assert [(n.name, [p.size for p in n.parameters]) for n in ours.natives[: len(natives)]] == [
+        (n.name, [p.size for p in n.parameters]) for n in natives
     ]
-    sizes = (ours.variables_size, ours.bytecode_size, ours.stack_size)
-    assert sizes == (reference.variables_size, reference.bytecode_size, reference.stack_size)
+    sizes = (ours.variables_size - ours.variables_end, ours.bytecode_size, ours.stack_size)
+    assert sizes == (reference.variables_size - reference.variables_end, reference.bytecode_size, reference.stack_size)
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_every_variable_lies_where_the_table_says(layout: str) -> None:
     expected = {name: (places[layout], size) for name, size, places in TABLE["variables"] if layout in places}
-    assert target(layout).addresses == expected
+    assert target(layout).addresses.items() >= expected.items()
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_natives_have_the_numbers_of_the_table(layout: str) -> None:
-    assert [native.name for native in target(layout).natives] == TABLE["natives"][layout]
+    expected = TABLE["natives"][layout]
+    assert [native.name for native in target(layout).natives[: len(expected)]] == expected
 
 
 @pytest.mark.parametrize(("layout", "firmware"), [(THYMIO, (14, 1)), (PLAYGROUND, (11, 0))])

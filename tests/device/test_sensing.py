@@ -8,7 +8,7 @@ from unittest.mock import ANY
 
 import pytest
 
-from thymio_sim_ros.device.layout import target
+from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
@@ -26,7 +26,7 @@ from thymio_sim_ros.sim.commands import (
 )
 from thymio_sim_ros.sim.playground import reader as playground
 
-EVENTS = [event.name for event in target().local_events]
+EVENTS = [event.name for event in THYMIO_II.local_events]
 
 
 def pair(gap_m=0.2, names=("anna", "bert")):
@@ -170,7 +170,7 @@ def test_a_program_reads_every_variable_that_is_there_to_be_read():
         "acc._tap": [1],
         "sd.present": [0],
     }
-    names = [name for name in target().addresses if name not in WRITTEN]
+    names = [name for name in THYMIO_II.addresses if name not in WRITTEN]
     assert names == list(expected)
     copies, place = [], 0
     for name, words in expected.items():

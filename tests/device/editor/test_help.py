@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from aseba_vm.languages import LANGUAGES, texts
-from aseba_vm.targets import THYMIO_II
+from thymio_sim_ros.device.layout import target
 
-KINDS = {"variables": THYMIO_II.variables, "events": THYMIO_II.local_events, "natives": THYMIO_II.natives}
+KINDS = {"variables": target().variables, "events": target().local_events, "natives": target().natives}
 
 
 def test_there_is_help_for_every_name_of_the_robot_and_no_other():

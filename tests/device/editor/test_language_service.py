@@ -71,7 +71,7 @@ def test_a_program_that_compiles_has_addresses_and_memory_use():
         {"name": "a", "line": 1, "column": 5, "address": end, "size": 3},
         {"name": "b", "line": 2, "column": 5, "address": end + 3, "size": 1},
     ]
-    assert node["use"]["variables"] == (end + 4, 640)
+    assert node["use"]["variables"] == (end + 4, target().variables_size)
     assert node["use"]["bytecode"][1] == 1534
 
 
