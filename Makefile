@@ -35,14 +35,15 @@ run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NA
 	@read -r _ _ _ _ group _ _ front _ </proc/$$$$/stat; \
 	if [ "$$group" = "$$front" ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
 
-# Tests of single modules, without ROS, browser or other processes. Vectors, physics and batches take minutes: `make test`.
-QUICK := aseba_vm/frontend aseba_vm/cli aseba_vm/machine bridge cli device/editor device/firmware device/programs runlog \
-    sim/actuators sim/model sim/sensors testing web test_citations.py test_errors.py test_imports.py test_loading.py
-check: lint $(VENV)/.ready-test  ## lint and the quick tests (no ROS, browser, other processes): about a minute
+# Tests of single modules, without ROS, browser, sockets or other processes: about 80 s of processor time, shared by two
+# workers. Tests of the servers, vectors, physics and batches take minutes: `make test`.
+QUICK := test_imports.py test_errors.py test_citations.py test_loading.py \
+    aseba_vm/frontend aseba_vm/machine aseba_vm/cli cli device/editor device/firmware device/programs runlog \
+    sim/actuators sim/model sim/sensors testing
+check: lint $(VENV)/.ready-test  ## lint and quick tests (no ROS, browser, sockets, other processes), within a minute
 	@$(PYTHON) -m pytest -n 2 -q -m 'not process and not browser and not ros and not slow' \
 	    $(addprefix tests/,$(QUICK)) $(ARGS)
 
-# Each worker may start a suite and a browser: more than four workers would run out of memory.
 test: platform $(VENV)/.ready-test web  ## run all tests in parallel; ARGS='-n 0 -k name' goes to pytest
 	@$(PYTHON) -m pytest -n auto --maxprocesses 4 $(ARGS)
 
@@ -50,7 +51,7 @@ lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m ruff check .
 	@git ls-files -z | xargs -0 $(PYTHON) -m codespell_lib --dictionary - --dictionary .ci/glossary.txt
-	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros
+	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros web_ui/build.py
 
 docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site
 	@rm -rf build/site docs/apidocs
@@ -58,13 +59,13 @@ docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site
 	@echo "The site is build/site/docs/index.html"
 
 web-test: $(VENV)/.created  ## run the tests of the page's modules
-	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
-	@$(PYTHON) -m thymio_sim_ros.webbuild --script test
+	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)
+	@$(PYTHON) web_ui/build.py --script test
 
 web: $(VENV)/.created  ## build the web page if its sources changed
-	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
+	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)
 	@[ -f $(PAGE) ] || echo "Building the web page (once, some seconds)."
-	@$(PYTHON) -m thymio_sim_ros.webbuild
+	@$(PYTHON) web_ui/build.py
 
 clean:  ## remove the environments and all build results
 	rm -rf .venv .venv-* web_ui/dist web_ui/node_modules build dist docs/apidocs install log .pytest_cache .mypy_cache .ruff_cache

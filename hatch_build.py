@@ -1,6 +1,6 @@
-"""Build hook: the web page goes into every wheel and source distribution.
+"""Build hook: builds the web page and adds it to wheels and source distributions.
 
-Node is a build requirement from PyPI only where the page must be built and no fitting Node is installed.
+The Node wheel of PyPI is a build requirement only if the page must be built and no suitable Node is installed.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ _PAGE_SHARE = "share/thymio_sim_ros/web_ui"
 
 
 class WebPageHook(BuildHookInterface[Any]):
-    """Builds web_ui/dist when it is missing or older than its sources, and ships it."""
+    """Builds web_ui/dist if it is missing or outdated, and adds it to the wheel."""
 
     PLUGIN_NAME = "custom"
 
     def dependencies(self) -> list[str]:
         """The Node wheel, if the coming build needs it."""
-        webbuild = _webbuild(self.root)
-        return [] if webbuild.is_ready(self._page) else [webbuild.NODE_WHEEL]
+        page_build = _page_build(self.root)
+        return [] if page_build.is_ready(self._page) else [page_build.NODE_WHEEL]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build the page. An editable install goes on without one: `make web` builds it later."""
-        webbuild = _webbuild(self.root)
+        """Build the page. If that fails, an editable installation continues: `make web` builds the page later."""
+        page_build = _page_build(self.root)
         try:
-            webbuild.build(self._page)
-        except webbuild.WebBuildError as error:
+            page_build.build(self._page)
+        except page_build.WebBuildError as error:
             if version != "editable":
                 self.app.abort(f"The web page could not be built. {error}")
             self.app.display_warning(f"Installed without the web page. {error}")
@@ -44,16 +44,12 @@ class WebPageHook(BuildHookInterface[Any]):
         return Path(self.root, "web_ui")
 
 
-def _webbuild(root: str) -> ModuleType:
-    """Load the module from its path: the package is not installed while it is being built."""
-    spec = importlib.util.spec_from_file_location("_thymio_webbuild", Path(root, "thymio_sim_ros", "webbuild.py"))
+def _page_build(root: str) -> ModuleType:
+    """Load `web_ui/build.py`, which is not part of an installed package."""
+    spec = importlib.util.spec_from_file_location("_thymio_page_build", Path(root, "web_ui", "build.py"))
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # dataclasses look their module up
-    sys.path.insert(0, root)  # the module imports thymio_sim_ros.errors
-    try:
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(root)
+    sys.modules[spec.name] = module  # for `dataclass`, which looks up the module of its class
+    spec.loader.exec_module(module)
     return module

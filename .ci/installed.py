@@ -103,7 +103,7 @@ def wait_for(nodes: set[str], observer: Node, process: subprocess.Popen[bytes]) 
 
 
 def reserve_domain() -> tuple[int, socket.socket]:
-    """A domain id that nobody else on this machine has, held by a loopback port."""
+    """An unused domain id, reserved by a loopback port."""
     for domain in range(1, 101):
         held = socket.socket()
         try:

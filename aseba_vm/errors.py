@@ -78,7 +78,7 @@ class CompileError(AsebaError):
     """A rejected program: the first error in the order of docs/spec/aseba-language.md section 11.
 
     ``kind`` is a stable identifier, ``arguments`` are its ordered values, ``pos`` is the position or None. ``hint``
-    suggests what was probably meant, if that is known (:mod:`aseba_vm.frontend.hints`).
+    suggests what was probably meant, if that is known (:mod:`aseba_vm.frontend.hints.finder`).
     """
 
     def __init__(self, kind: str, arguments: tuple[Argument, ...] = (), pos: SourcePos | None = None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from aseba_vm.languages import texts
 from aseba_vm.target import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
 
 # Name and size in words of each variable, in order of address.
@@ -83,26 +84,6 @@ _NATIVES = """
     _poweroff
 """
 
-_DESCRIPTIONS = {
-    "button.backward": "the backward button was pressed or released",
-    "button.left": "the left button was pressed or released",
-    "button.center": "the center button was pressed or released",
-    "button.forward": "the forward button was pressed or released",
-    "button.right": "the right button was pressed or released",
-    "buttons": "the buttons were read (50 Hz)",
-    "prox": "the proximity and ground sensors were read (10 Hz)",
-    "prox.comm": "a value was received by infrared",
-    "tap": "a shock was felt",
-    "acc": "the accelerometer was read (16 Hz)",
-    "mic": "the sound was louder than mic.threshold",
-    "sound.finished": "a sound ended by itself",
-    "temperature": "the temperature was read (1 Hz)",
-    "rc5": "a remote control was heard",
-    "motor": "the motors were controlled (100 Hz)",
-    "timer0": "timer.period[0] milliseconds have passed",
-    "timer1": "timer.period[1] milliseconds have passed",
-}
-
 
 def _sized(word: str) -> tuple[str, int]:
     name, _, size = word.partition(":")
@@ -121,6 +102,6 @@ THYMIO_II = TargetDescription(
     bytecode_size=1534,
     stack_size=32,
     variables=tuple(Variable(*_sized(word)) for word in _VARIABLES.split()),
-    local_events=tuple(LocalEvent(name, _DESCRIPTIONS[name]) for name in _LOCAL_EVENTS.split()),
+    local_events=tuple(LocalEvent(name, texts("help")[f"events.{name}"]) for name in _LOCAL_EVENTS.split()),
     natives=tuple(_native(line) for line in _NATIVES.strip().splitlines()),
 )

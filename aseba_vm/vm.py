@@ -134,7 +134,10 @@ class VirtualMachine:
         self.reset()
 
     def load(self, program: Program) -> None:
-        """Write a compiled program and resume: the next ``run`` executes its initialization."""
+        """Write a compiled program and resume: the next ``run`` executes its initialization.
+
+        Raises ValueError if the program does not fit into the memory.
+        """
         self.set_bytecode(program.words)
         self.resume()
 
@@ -233,7 +236,8 @@ class VirtualMachine:
     def receive(self, event: int, source: int, arguments: Sequence[int]) -> None:
         """Start a global event from the network after storing source and arguments; this kills an active event.
 
-        Does nothing while the machine is paused inside an event.
+        Does nothing while the machine is paused inside an event. Arguments that do not fit are dropped, so this raises
+        no error.
         """
         if self.flags & STEP_BY_STEP and self.flags & ACTIVE:
             return
@@ -246,7 +250,7 @@ class VirtualMachine:
         self.setup(event)
 
     def start_local(self, index: int) -> bool:
-        """Start local event ``index`` of the target; return False if another event is active."""
+        """Start local event ``index`` of the target; return False if another event is active. Raises no error."""
         if self.flags & ACTIVE:
             return False
         declared = self.target.variables

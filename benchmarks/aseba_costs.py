@@ -76,7 +76,7 @@ def measure(rounds: int) -> None:
                 charged = 1 + signature.call_cost(popped) + machine.extra_cost
                 machine.extra_cost = 0
                 device.pop_commands()
-                device.pop_load()
+                device.load_meter.pop()
                 machine.pop_messages()
                 taken = statistics.median(times) / unit_us
                 mark = "  short" if taken > SHORT * charged else ""

@@ -2,7 +2,8 @@
 
 Each library runs in a process of its own and sends the same stream; clients count here. Measured per scene: share of
 messages that arrived at healthy clients, latency from the call that publishes to the client's read, and CPU of the
-server's process per delivery, less what the same process needs to pace the stream for nobody. The libraries take turns,
+server's process per delivery, less what the same process needs to pace the stream without clients. The libraries take
+turns,
 and medians of the rounds are printed, so that other work on the machine meets all of them. Libraries that are not
 installed are left out (foxglove-sdk, foxglove-websocket). `foxglove_throughput.py` measures without pacing.
 """
@@ -32,7 +33,7 @@ CATCH_UP_S = 0.1
 WARM_UP_S = 0.5
 """What a connection costs at its begin is not counted."""
 STUCK_S = 10.0
-"""A scene that takes so much longer than it should is given up: its server answers nobody."""
+"""A scene that takes this much longer than it should is given up: its server does not answer."""
 HEADER = 1 + 4 + 8  # opcode, subscription, time
 CHANNEL = {"topic": "/t", "encoding": "cdr", "schemaName": "t", "schema": "uint8[] data", "schemaEncoding": "ros2msg"}
 
@@ -63,7 +64,9 @@ def payload(size: int) -> bytes:
 
 def serve_ours(port: int, rate: float, size: int) -> None:
     """The server of this project, fed from another thread as the node does it."""
-    from thymio_sim_ros.bridge import ServerInfo, ServerThread, events, messages
+    from thymio_sim_ros.bridge import ServerInfo, ServerThread
+    from thymio_sim_ros.bridge.protocol import messages
+    from thymio_sim_ros.bridge.switchboard import events
 
     class Sink:
         def is_full(self, client: int) -> bool:
@@ -71,7 +74,7 @@ def serve_ours(port: int, rate: float, size: int) -> None:
             return False
 
         def post(self, event: events.Event) -> None:
-            """Nobody is interested."""
+            """Ignore the message."""
 
     server = ServerThread(ServerInfo("ours", ()), Sink(), port=port)
     channel = messages.Channel(1, CHANNEL["topic"], "cdr", "t", CHANNEL["schema"], "ros2msg")

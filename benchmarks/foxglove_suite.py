@@ -1,6 +1,6 @@
 """CPU of the whole suite with a viewer: python benchmarks/foxglove_suite.py [--seconds S] [--rounds N]
 
-One robot follows the line. Measured in turn, CPU seconds of the suite's process per second: with nobody connected, and
+One robot follows the line. Measured in turn, CPU seconds of the suite's process per second: without clients, and
 with a client that is subscribed to every topic of the shipped layout, to all parameters and to the graph, as if all
 panels were seen at once. CPU time is compared, since other work on the machine does not count in it.
 """
@@ -67,7 +67,7 @@ async def receive(client: ClientConnection, seconds: float, channels: dict[str, 
 
 
 def alone(process: int, seconds: float) -> float:
-    """CPU share with nobody connected."""
+    """CPU share without clients."""
     before_s, started_s = cpu_s(process), time.monotonic()
     time.sleep(seconds)
     return (cpu_s(process) - before_s) / (time.monotonic() - started_s)
@@ -93,7 +93,7 @@ def main() -> None:
                 quiet = alone(suite.pid, options.seconds)
                 watched, topics, count = asyncio.run(view(int(ports[1]), suite.pid, options.seconds))
                 viewer = f"{topics} topics with {count / options.seconds:.0f} messages/s"
-                print(f"round {number + 1}: nobody {quiet:.1%} of a core; {viewer}: {watched:.1%}", flush=True)
+                print(f"round {number + 1}: no client {quiet:.1%} of a core; {viewer}: {watched:.1%}", flush=True)
         finally:
             suite.terminate()
 

@@ -27,8 +27,9 @@ from pathlib import Path
 from PIL import Image
 from websockets.sync.client import ClientConnection, connect
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import SUBPROTOCOLS
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
 
 COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(sys.argv[1:]))"
 SERVICE = "/simulator/get_poses"
@@ -126,15 +127,15 @@ class Viewer:
 
     def answer(self) -> str:
         """What became of it."""
-        told: list[str] = []
+        reported: list[str] = []
 
         def is_last(message: ms.ServerMessage) -> bool:
             if isinstance(message, ms.Status) and "playground" in message.message:
-                told.append(message.message)
+                reported.append(message.message)
             return isinstance(message, ms.ParameterValues) and message.id == "set"
 
         self.until(is_last, ANSWER_S)
-        return told[-1] if told else "accepted"
+        return reported[-1] if reported else "accepted"
 
 
 def longest_call(viewer: Viewer, service: int, stop: threading.Event, found: list[float]) -> None:

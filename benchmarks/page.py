@@ -68,7 +68,7 @@ def playground(folder: Path, robots: int) -> Path:
         for number, (x, y) in enumerate(places)
     ]
     path = folder / f"robots_{robots}.json"
-    path.write_text(json.dumps({"format": 1, "title": "Crowd", "shapes": shapes, "robots": placed}))
+    path.write_text(json.dumps({"format": 1, "title": "Many robots", "shapes": shapes, "robots": placed}))
     return path
 
 

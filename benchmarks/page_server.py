@@ -129,7 +129,7 @@ async def attack(server: Server, name: str, count: int, begin: bytes, *, is_read
     row(name, f"{_said(own)}, same address {_said(same)}", cost, later)
 
 
-async def crowd(server: Server, count: int) -> None:
+async def many_browsers(server: Server, count: int) -> None:
     """So many page loads at once."""
     begin = time.perf_counter()
     loads = await asyncio.gather(*(load(server.port, VISITOR) for _ in range(count)))
@@ -143,8 +143,8 @@ def _said(one: Load) -> str:
 
 def row(name: str, result: str, *costs: tuple[int, int, int, int]) -> None:
     """Print a line of the table."""
-    told = " → ".join("/".join(str(value) for value in cost) for cost in costs)
-    print(f"| {name} | {result} | {told} |", flush=True)
+    reported = " → ".join("/".join(str(value) for value in cost) for cost in costs)
+    print(f"| {name} | {result} | {reported} |", flush=True)
 
 
 async def measure(server: Server, page: str) -> None:
@@ -156,8 +156,8 @@ async def measure(server: Server, page: str) -> None:
         await asyncio.sleep(0.2)
     print("| attack | page load | threads/files/MB/bytes of log, at once → 12 s later |\n|---|---|---|")
     row("none", _said(await load(server.port, VISITOR)), server.cost)
-    await crowd(server, 30)
-    await crowd(server, 180)
+    await many_browsers(server, 30)
+    await many_browsers(server, 180)
     await attack(server, "300 half requests", 300, b"GET / HTTP/1.1\r\nHost: localhost\r\n")
     await attack(server, "1000 silent connections", 1000, b"")
     whole = f"GET {page} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode()

@@ -2,7 +2,7 @@
 
 Run: PYTHONPATH=. python benchmarks/ros_load.py [--seconds S] [--rounds N] [--only WORD] [--profile FILE] [--json FILE].
 Percentages are CPU seconds of the node's process, with all threads of DDS, for each simulated second, of one core: the
-median of the rounds, and the best. The factor is what `/diagnostics` told as achieved, on average; below 1 real time
+median of the rounds, and the best. The factor is what `/diagnostics` reported as achieved, on average; below 1 time
 was lost, by the simulator or by other work. "Start" is the CPU time until all robots listen. Other work on the machine
 makes everything dearer, by caches alone two to three times: the load is printed too.
 
@@ -74,7 +74,7 @@ class Scene:
         return f"{self.robots} robot{'s' * (self.robots > 1)}, {rate}, {self.heard}"
 
 
-NOTHING, THIRTEEN, ALL = "nobody listens", "13 topics", "all topics"
+NOTHING, THIRTEEN, ALL = "no subscriber", "13 topics", "all topics"
 
 SCENES = (
     Scene(1, 10.0, ALL, 1.5),
@@ -235,11 +235,11 @@ class Driver:
             publisher.publish(Twist(linear=Vector3(x=SPEED_M_S), angular=Vector3(z=TURN_RAD_S)))
 
     def until_heard(self, names: list[str]) -> None:
-        """Wait until somebody subscribes to all of these."""
+        """Wait until all of these topics have a subscriber."""
         end = time.monotonic() + START_S
         while missing := [name for name in names if not self.node.count_subscribers(name)]:
             if time.monotonic() > end:
-                raise TimeoutError(f"nobody listens to {len(missing)} of {len(names)} topics, such as {missing[0]}")
+                raise TimeoutError(f"{len(missing)} of {len(names)} topics have no subscriber, such as {missing[0]}")
             self.spin(0.5)
 
     def close(self) -> None:

@@ -19,7 +19,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from simulator_enki import Enki, driver
-from simulator_scene import crowd, targets
+from simulator_scene import dense_scene, targets
 
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.model.clock import TICK_NS
@@ -58,7 +58,7 @@ def ours(scene: Playground, mode: str) -> Callable[[int], float]:
 
 def measure(count: int, rounds: int) -> dict[str, float]:
     """Microseconds per robot-step, by mode and for Enki."""
-    scene = crowd(count)
+    scene = dense_scene(count)
     runs = {mode: ours(scene, mode) for mode in MODES}
     program = driver()
     peer = Enki(program, scene) if program is not None else None

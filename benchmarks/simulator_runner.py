@@ -3,7 +3,7 @@
     python benchmarks/simulator_runner.py [--rounds 5] [--json FILE]
 
 One robot follows the line with its program, with the optional WebAssembly engine where wasmtime is installed; or it
-drives there without a program. Twenty robots explore a crowd of boxes, each with a program. Processor time of one
+drives there without a program. Twenty robots explore between boxes, each with a program. Processor time of one
 thread, median of the rounds.
 """
 
@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from simulator_scene import crowd
+from simulator_scene import dense_scene
 
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
@@ -33,7 +33,7 @@ def runners() -> dict[str, Runner]:
     return {
         "one robot, no program": driving,
         "one robot follows the line": Runner(line, read_program(str(BEHAVIOURS / "line_follower.aesl"))),
-        "20 robots explore": Runner(crowd(20), read_program(str(BEHAVIOURS / "explorer.aesl"))),
+        "20 robots explore": Runner(dense_scene(20), read_program(str(BEHAVIOURS / "explorer.aesl"))),
     }
 
 

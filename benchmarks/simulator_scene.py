@@ -1,4 +1,4 @@
-"""The scene on which simulators are compared: a crowd in a walled square, boxes, lines on the ground, commands.
+"""The scene on which simulators are compared: many robots in a walled square, boxes, lines on the ground, commands.
 
 0.36 m² for each robot, a box for every second one, half of them movable, black lines on a gray ground. New targets
 between -100 and 500 come from a generator that the driver of Enki has too.
@@ -26,7 +26,7 @@ def side_m(robots: int) -> float:
     return math.ceil(math.sqrt(robots)) * CELL_M
 
 
-def crowd(count: int) -> Playground:
+def dense_scene(count: int) -> Playground:
     """So many robots; the square's corner is the origin."""
     side = side_m(count)
     columns = round(side / CELL_M)
@@ -55,7 +55,7 @@ def crowd(count: int) -> Playground:
             size = dict(zip(("size_x_m", "size_y_m", "height_m"), BOX_M, strict=True))
             mass = {"mass_kg": BOX_KG} if index % 4 == 0 else {}
             shapes.append({"kind": "box", "color": "#9fa3bd", **place, **size, **mass})
-    data = {"format": 1, "title": "crowd", "shapes": shapes, "robots": []}
+    data = {"format": 1, "title": "dense scene", "shapes": shapes, "robots": []}
     return dataclasses.replace(reader.loads(json.dumps(data), f"{count} robots"), robots=tuple(robots))
 
 

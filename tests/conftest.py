@@ -1,11 +1,14 @@
 """Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
+import json
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import hypothesis
 import pytest
+
+from aseba_vm import languages
 
 # Whatever a shell starts in the background ignores Ctrl-C, and so would every program that a test starts.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -27,6 +30,26 @@ def _signal_handlers() -> Iterator[None]:
     for number, handler in zip(numbers, before, strict=True):
         if signal.getsignal(number) is not handler:
             signal.signal(number, handler)
+
+
+@pytest.fixture
+def add_language(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[..., None]]:
+    """Adds a language beside those that are shipped: its code, and the texts of each of its files by key."""
+    shipped = languages._FOLDER
+
+    def add(code: str, **files: Mapping[str, str]) -> None:
+        folder = tmp_path / "languages"
+        (folder / code).mkdir(parents=True)
+        for path in shipped.glob("*/language.json"):
+            (folder / path.parent.name).symlink_to(path.parent)
+        for name, table in {"language": {"name": code}, **files}.items():
+            (folder / code / f"{name}.json").write_text(json.dumps(table), encoding="utf-8")
+        monkeypatch.setattr(languages, "_FOLDER", folder)
+        monkeypatch.setattr(languages, "LANGUAGES", languages._languages())
+        languages.texts.cache_clear()
+
+    yield add
+    languages.texts.cache_clear()
 
 
 def pytest_addoption(parser):

@@ -8,7 +8,7 @@ import resource
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-TOLD = os.strerror(errno.EFBIG)
+FILE_TOO_LARGE = os.strerror(errno.EFBIG)
 """What the system says when a file would become too large."""
 
 

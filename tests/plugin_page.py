@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.device import bindings, layout
-from thymio_sim_ros.device.firmware import behavior_host
+from thymio_sim_ros.device import behavior_host, bindings, layout
 
 PAGE = Path(__file__).parents[1] / "docs" / "plugins.md"
 _BLOCK = re.compile(r"^\*\*`([^`]+)`\*\*\n\n```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)

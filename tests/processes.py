@@ -68,21 +68,21 @@ class Process:
 
 
 def wait_for_port(port: int) -> None:
-    """Block until somebody listens there; fails after `START_S`."""
+    """Block until a process listens there; fails after `START_S`."""
     deadline = time.monotonic() + START_S
     while True:
         with socket.socket() as probe:
             probe.settimeout(0.1)
             if probe.connect_ex(("127.0.0.1", port)) == 0:
                 return
-        assert time.monotonic() < deadline, f"nobody listens on port {port}"
+        assert time.monotonic() < deadline, f"no process listens on port {port}"
         select.select([], [], [], 0.05)
 
 
 def free_port() -> int:
-    """A TCP port of loopback that nobody uses now, and that no system gives to somebody who asks for any.
+    """A TCP port of loopback that is free now, and that the system does not give to a process that asks for any port.
 
-    Such a one could go to a server of another test before the program that is told to use it has started; processes
+    Such a one could go to a server of another test before the program that is to use it has started; processes
     begin to count at places of their own, and take none twice.
     """
     while True:

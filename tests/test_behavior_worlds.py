@@ -45,7 +45,7 @@ def touch(runner: Runner, *buttons: str, robot: str = ROBOT) -> None:
 
 
 def targets(runner: Runner, robot: str = ROBOT) -> tuple[int, int]:
-    left, right = (runner.devices[robot].get_variable(f"motor.{side}.target")[0] for side in ("left", "right"))
+    left, right = (runner.devices[robot].variables.get(f"motor.{side}.target")[0] for side in ("left", "right"))
     return left, right
 
 
@@ -115,7 +115,7 @@ def test_friendly_follows_another_robot_and_does_not_touch_it() -> None:
 def test_friendly_comes_to_rest_in_front_of_a_hand() -> None:
     hand = box(0.22, 0.0, size_x_m=0.05, size_y_m=0.1)
     runner = alone("friendly", hall({ROBOT: (0.0, 0.0, 0.0)}, hand))
-    assert runner.until(lambda: runner.devices[ROBOT].get_variable("arrived") == (1,), 10.0)
+    assert runner.until(lambda: runner.devices[ROBOT].variables.get("arrived") == (1,), 10.0)
     assert runner.until(lambda: not is_silent(runner), 0.1)
     assert targets(runner) == (0, 0)
     assert contacts_in(runner, 1.0) == 0
@@ -135,7 +135,7 @@ def test_fearful_cries_while_it_is_trapped() -> None:
     for _ in range(20):
         assert targets(runner) == (0, 0)
         runner.run(0.1)
-        assert runner.devices[ROBOT].get_variable("crying") == (1,)
+        assert runner.devices[ROBOT].variables.get("crying") == (1,)
     runner.post(ROBOT, MoveRobot(1.0, 1.0, 0.0))
     assert runner.until(lambda: is_silent(runner), 1.0)
 
@@ -268,7 +268,7 @@ def test_explorer_of_the_thesis_turns_by_hand() -> None:
 def test_track_follower_of_the_thesis_stops_at_the_end_of_the_track() -> None:
     runner = alone("thesis_track_follower", "borderless")
     touch(runner, "forward")
-    assert runner.until(lambda: runner.devices[ROBOT].get_variable("doing") == (0,), 60.0)
+    assert runner.until(lambda: runner.devices[ROBOT].variables.get("doing") == (0,), 60.0)
     end = runner.world.robots[ROBOT].pose
     assert math.dist((end.x_m, end.y_m), (1.04, -0.64)) < 0.1
     assert targets(runner) == (0, 0)
@@ -282,14 +282,14 @@ def test_track_follower_of_the_thesis_goes_round_between_the_obstacles() -> None
     corners = [(0.7, -0.45), (-0.4, -0.8), (-0.36, 0.0), (-0.8, 0.6), (0.0, 0.9), (0.7, 0.45), (0.3, 0.0)]
     for corner in corners:
         assert runner.until(lambda at=corner: math.dist((robot.pose.x_m, robot.pose.y_m), at) < 0.1, 60.0), corner
-    assert runner.until(lambda: runner.devices[ROBOT].get_variable("doing") == (0,), 60.0)
+    assert runner.until(lambda: runner.devices[ROBOT].variables.get("doing") == (0,), 60.0)
     assert math.hypot(robot.pose.x_m, robot.pose.y_m) < 0.15
 
 
 def test_two_friendly_robots_find_each_other_and_dance() -> None:
     playground = hall({"anna": (-0.2, 0.0, 0.0), "bert": (0.2, 0.0, math.pi)})
     runner = Runner(playground, behaviour="friendly")
-    assert runner.until(lambda: runner.devices["anna"].get_variable("friend")[0] > 0, 10.0)
+    assert runner.until(lambda: runner.devices["anna"].variables.get("friend")[0] > 0, 10.0)
     colors = {(top(runner, "anna"), top(runner, "bert"))}
     for _ in range(500):
         runner.step()
@@ -297,7 +297,7 @@ def test_two_friendly_robots_find_each_other_and_dance() -> None:
     assert any(red and green for (red, green, _), _ in colors)
     assert any(green and blue for _, (_, green, blue) in colors)
     assert gap(runner, "anna", "bert") < 0.25
-    assert runner.devices["anna"].get_variable("prox.comm.tx") == (2,)
+    assert runner.devices["anna"].variables.get("prox.comm.tx") == (2,)
 
 
 def test_a_friend_is_followed_farther_than_it_is_seen() -> None:
@@ -382,9 +382,9 @@ def test_no_light_but_the_colour_is_on_in_the_menu() -> None:
 def test_fearful_cries_and_blinks_while_it_falls() -> None:
     runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
     runner.post(ROBOT, MoveRobot(5.0, 5.0, 0.0))
-    assert runner.until(lambda: runner.devices[ROBOT].get_variable("falling") == (1,), 0.3)
+    assert runner.until(lambda: runner.devices[ROBOT].variables.get("falling") == (1,), 0.3)
     colors = {top(runner) for _ in range(20) if runner.step()}
     assert colors >= {(0, 0, 0), (32, 0, 0)}
     assert not is_silent(runner)
-    assert runner.until(lambda: runner.devices[ROBOT].get_variable("falling") == (0,), 1.0)
+    assert runner.until(lambda: runner.devices[ROBOT].variables.get("falling") == (0,), 1.0)
     assert runner.until(lambda: is_silent(runner), 0.5)

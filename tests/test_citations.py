@@ -22,7 +22,7 @@ SECTIONS = re.compile(
 #: `docs/architecture.md, "Threads"`
 TITLES = re.compile(rf"(?P<page>[\w./-]+\.md),{GAP}\"(?P<title>[^\"\n]+)\"")
 PAGES = re.compile(r"(?<![\w/])docs/[\w./-]+\.md")
-#: Documents without a file name: nobody could open them.
+#: Documents without a file name cannot be opened.
 NAMELESS = re.compile(rf"(?i)\b(?:spec|paper|language|vm|protocol|architecture|performance),?{GAP}section{GAP}\d")
 
 

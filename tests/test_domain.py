@@ -10,7 +10,7 @@ RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 
 
 @pytest.mark.parametrize(
-    ("environment", "told"),
+    ("environment", "reported"),
     [
         ({}, "ROS_DOMAIN_ID 0, this network"),
         ({"ROS_DOMAIN_ID": "7", RANGE: "SUBNET"}, "ROS_DOMAIN_ID 7, this network"),
@@ -20,8 +20,8 @@ RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
         ({RANGE: "SUBNET", "ROS_LOCALHOST_ONLY": "1"}, "ROS_DOMAIN_ID 0, this computer only"),
     ],
 )
-def test_domain_and_reach_are_one_line(environment, told):
-    assert describe_domain(environment) == told
+def test_domain_and_reach_are_one_line(environment, reported):
+    assert describe_domain(environment) == reported
 
 
 def test_a_domain_that_is_known_goes_first():

@@ -69,9 +69,9 @@ def test_what_the_table_says_can_be_done(tmp_path: Path) -> None:
     x_m = runner.world.robots["red"].pose.x_m
     assert runner.until(lambda: runner.world.robots["red"].pose.x_m > x_m + 0.01, 5)
     runner.press("blue", "forward")
-    assert runner.until(lambda: runner.devices["blue"].get_variable("button.forward") == (1,), 1)
+    assert runner.until(lambda: runner.devices["blue"].variables.get("button.forward") == (1,), 1)
     runner.press("blue", "forward", pressed=False)
-    runner.devices["blue"].set_variable("leds.top", [32, 0, 0])
+    runner.devices["blue"].variables.set("leds.top", [32, 0, 0])
     assert runner.emitted == []
     log.close()
     assert json.loads(file.read_text().splitlines()[-1]) == {"end": True}

@@ -70,8 +70,8 @@ RULES = {
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
-    f"{OURS}.banner": Rule(ALL_OF_OURS, frozenset({"segno"})),
-    # resources, loading, suite, webbuild: helpers of the commands, without ROS
+    f"{OURS}.cli.banner": Rule(ALL_OF_OURS, frozenset({"segno"})),
+    # resources, loading, addresses, suite_config: helpers of the commands, without ROS
     OURS: Rule(ALL_OF_OURS),
 }
 STARTERS = {f"{OURS}.cli", f"{OURS}.testing.ros", f"{OURS}.pytest_plugin", f"{OURS}.ros", f"{OURS}.tf"}

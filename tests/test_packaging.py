@@ -142,15 +142,20 @@ def test_setup_cfg_takes_every_file_of_a_built_page() -> None:
 
 
 def test_every_data_file_of_a_package_has_a_pattern() -> None:
-    patterns = _setup()["options.package_data"]["*"].replace(" ", "").split(",")
+    patterns = {name: value.replace(" ", "").split(",") for name, value in _setup()["options.package_data"].items()}
+    taken = {
+        file
+        for init in (init for package in ("aseba_vm", NAME) for init in (ROOT / package).rglob("__init__.py"))
+        for pattern in [*patterns["*"], *patterns.get(".".join(init.parent.relative_to(ROOT).parts), [])]
+        for file in init.parent.glob(pattern)
+    }
     data = {
         file
         for package in ("aseba_vm", NAME)
         for file in (ROOT / package).rglob("*")
         if file.is_file() and file.suffix not in {".py", ".pyc"}
     }
-    names = {file.name for file in data if not any(file.match(pattern) for pattern in patterns)}
-    assert names == set()
+    assert {str(file.relative_to(ROOT)) for file in data - taken} == set()
 
 
 def test_every_folder_with_modules_is_a_package_for_setuptools() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import math
 from collections.abc import Callable, Iterator
@@ -21,7 +22,9 @@ from thymio_sim_ros.sim import actuators, sensors, shapes
 from thymio_sim_ros.sim.model.primitives import Disc
 from thymio_sim_ros.sim.playground import reader
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.web import Content
 
+SLALOM = Path(__file__).parent / "data" / "web" / "slalom.json"
 Variant = Callable[[str, str, str], AbstractContextManager[None]]
 
 
@@ -94,10 +97,25 @@ def test_the_shape_becomes_primitives_and_part_of_the_schema() -> None:
     assert "slalom" in [kind["properties"]["kind"]["const"] for kind in kinds]
 
 
+@pytest.mark.usefixtures("extras")
+def test_the_server_of_the_page_declares_the_shape_with_its_labels_and_its_sample() -> None:
+    document = Content(None, b"{}").find("/shapes.json")
+    assert document is not None
+    assert document.media_type == "application/json"
+    shapes_by_name = json.loads(document.body)["shapes"]
+    assert {"box", "slalom"} <= set(shapes_by_name)
+    slalom = shapes_by_name["slalom"]
+    assert slalom["labels"]["de"] == "Slalomstangen"
+    assert slalom["field_labels"]["gap_m"]["en"] == "Gap"
+    assert slalom["fields"]["gap_m"]["default"] == 0.25
+    assert [part["pose"]["x"] for part in slalom["primitives"]] == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    assert slalom == json.loads(SLALOM.read_text()), "the declaration that tests/web_ui/plugin_shape.test.js reads"
+
+
 @pytest.mark.parametrize(
     ("name", "old", "new", "said"),
     [
-        ("thymio_extras/compass.py", "import math", "import math", "ModuleNotFoundError"),
+        ("thymio_extras/compass.py", "import math", "import no_such_module", "ModuleNotFoundError"),
         ("thymio_extras/compass.py", "SENSOR = Sensor(", "OTHER = Sensor(", "expected SENSOR of type Sensor"),
         ("thymio_extras/compass.py", 'name="compass"', 'name="proximity"', "which exists"),
         ("thymio_extras/compass.py", 'name="compass"', 'name="My Compass"', "small letters"),
@@ -112,9 +130,9 @@ def test_a_broken_one_is_named_and_the_others_go_on(
         assert "compass" not in [sensor.name for sensor in sensors.all_sensors()]
         assert "hop" in [actuator.name for actuator in actuators.all_actuators()]
         World(make([FLOOR])).step()
-    (told,) = (record.getMessage() for record in caplog.records)
-    assert told.startswith("plug-in 'compass' of the package thymio_extras (thymio_sim_ros.sensors) is left out")
-    assert said in told
+    (reported,) = (record.getMessage() for record in caplog.records)
+    assert reported.startswith("plug-in 'compass' of the package thymio_extras (thymio_sim_ros.sensors) is left out")
+    assert said in reported
 
 
 @pytest.mark.parametrize(
@@ -131,8 +149,8 @@ def test_programs_see_nothing_of_one_that_does_not_fit_the_robot(
         runner = Runner(make([FLOOR]), load_program("motor.left.target = 100", "a"))
         runner.run(0.2)
         assert name in {plugin.name for plugin in (*sensors.all_sensors(), *actuators.all_actuators())}
-    (told,) = (record.getMessage() for record in caplog.records)
-    assert told.startswith(f"programs see nothing of the plug-in '{name}': {said}")
+    (reported,) = (record.getMessage() for record in caplog.records)
+    assert reported.startswith(f"programs see nothing of the plug-in '{name}': {said}")
 
 
 def test_a_folder_that_is_missing_is_named(variant: Variant, caplog: pytest.LogCaptureFixture) -> None:

@@ -24,10 +24,10 @@ from thymio_sim_ros.sim.model.readings import ButtonsReading
 from thymio_sim_ros.sim.sensors import Sensor
 
 SENSOR = Sensor(
-    name="compass",
+    name="turn_sensor",
     period_ns=500_000_000,
     measure=lambda view: ButtonsReading(view.now_ns, (round(100 * view.pose.yaw_rad),)),
-    aseba=AsebaFace(variables=(("compass.heading", 1),), event="compass"),
+    aseba=AsebaFace(variables=(("turn_sensor.angle", 1),), event="turn_sensor"),
 )
 """
 
@@ -210,10 +210,10 @@ def test_every_light_can_be_reached_by_a_program() -> None:
 
 
 def test_a_new_sensor_file_is_enough(add_plugin: Callable[[ModuleType, str, str], None]) -> None:
-    add_plugin(sensors, "compass", TOY_SENSOR)
+    add_plugin(sensors, "turn_sensor", TOY_SENSOR)
     world = World(make([FLOOR]), noise=False)
     send(world, MotorTargets(-100, 100))
-    words = [reading.words for step in run(world, 1.0) for _, name, reading in step.readings if name == "compass"]
+    words = [reading.words for step in run(world, 1.0) for _, name, reading in step.readings if name == "turn_sensor"]
     assert words == [(35,), (71,)]
 
 
@@ -223,7 +223,7 @@ def test_a_new_sensor_does_not_change_what_the_others_read(add_plugin: Callable[
         return [reading for step in steps for _, name, reading in step.readings if name == "ground"]
 
     before = ground()
-    add_plugin(sensors, "compass", TOY_SENSOR)
+    add_plugin(sensors, "turn_sensor", TOY_SENSOR)
     assert ground() == before
 
 

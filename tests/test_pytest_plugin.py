@@ -91,7 +91,7 @@ def test_without_ros_its_tests_are_skipped_with_a_reason_and_the_others_run(
 
 
 @pytest.mark.parametrize(
-    ("mark", "told"),
+    ("mark", "reported"),
     [
         ('playgruond="line"', "found 'playgruond', expected keywords playground, program, programs, seed, noise"),
         ('"line"', "found 'line', expected keywords playground"),
@@ -100,11 +100,11 @@ def test_without_ros_its_tests_are_skipped_with_a_reason_and_the_others_run(
         ('program="motor.left.target = "', "program: line 1, column 20: expected one of"),
     ],
 )
-def test_a_wrong_mark_says_why(pytester: pytest.Pytester, run: Run, mark: str, told: str) -> None:
+def test_an_invalid_mark_is_explained(pytester: pytest.Pytester, run: Run, mark: str, reported: str) -> None:
     pytester.makepyfile(f"import pytest\n@pytest.mark.thymio({mark})\ndef test_it(thymio): pass")
     result = run()
     result.assert_outcomes(errors=1)
-    result.stdout.fnmatch_lines([f"*{told}*"])
+    result.stdout.fnmatch_lines([f"*{reported}*"])
 
 
 def test_the_nearest_mark_wins_keyword_by_keyword(pytester: pytest.Pytester, run: Run) -> None:
@@ -196,7 +196,7 @@ def test_the_world_and_program_of_a_mark_are_those_of_the_nodes(pytester: pytest
         @pytest.mark.thymio(playground="line", seed=3, program=PROGRAM)
         def test_it(simulation, runtime):
             sim = simulation()
-            assert sim.simulator.params.seed == 3
+            assert sim.simulator.params.values.seed == 3
             runtime()
             sim.until(emitted(sim.thymio, "seen", [3]), seconds=2)
             sim.thymio.load("line_follower")

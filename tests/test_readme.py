@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from thymio_sim_ros.cli import main
+from thymio_sim_ros.cli import runner, suite
 
 pytest.importorskip("rclpy")
 
@@ -92,7 +92,7 @@ def test_the_test_of_the_readme_passes(pytester, monkeypatch):
 def test_the_commands_of_the_readme_exist():
     shell = "\n".join(code("sh"))
     options = set(re.findall(r"(--[a-z-]+)", "\n".join(line for line in shell.splitlines() if "thymio-sim" in line)))
-    known = main._suite_parser().format_help() + main._runner_parser().format_help()
+    known = suite._parser().format_help() + runner._parser().format_help()
     assert options <= set(re.findall(r"(--[a-z-]+)", known))
     makefile = (Path(__file__).parents[1] / "Makefile").read_text()
     for target in re.findall(r"make ([a-z-]+)", README):

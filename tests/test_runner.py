@@ -58,15 +58,15 @@ def test_the_line_program_goes_round_five_times_at_any_speed(speed):
     assert farthest_in_laps(runner, 5) < 0.02
 
 
-def test_the_line_program_tells_when_it_turns():
+def test_the_line_program_emits_an_event_when_it_turns():
     runner = line_runner(0)
-    told = []
+    reported = []
     for _ in range(1000):
         runner.step()
-        told += [(robot, event.name, event.args) for robot, event in runner.emitted]
-    assert told[0] == ("thymio", "line", (0,))
-    assert {args for _, _, args in told} >= {(0,), (-1,)}
-    assert all(before != after for before, after in itertools.pairwise(told))
+        reported += [(robot, event.name, event.args) for robot, event in runner.emitted]
+    assert reported[0] == ("thymio", "line", (0,))
+    assert {args for _, _, args in reported} >= {(0,), (-1,)}
+    assert all(before != after for before, after in itertools.pairwise(reported))
 
 
 def test_the_same_seed_gives_the_same_poses_bit_for_bit():
@@ -95,16 +95,16 @@ def test_reset_repeats_the_run():
 def test_robots_hear_each_other_s_events_but_not_their_own():
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(TALK, "talk.aesl"))
     runner.press("anna", "center")
-    assert runner.until(lambda: runner.devices["bert"].get_variable("heard") == (1, 42), 1.0)
-    assert runner.devices["anna"].get_variable("heard") == (0, 0)
+    assert runner.until(lambda: runner.devices["bert"].variables.get("heard") == (1, 42), 1.0)
+    assert runner.devices["anna"].variables.get("heard") == (0, 0)
 
 
 def test_every_event_of_one_handler_is_heard_in_the_same_tick():
     source = TALK.replace("emit hello 42", "emit hello 4\n        emit hello 2").replace("heard = [", "heard += [")
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "talk.aesl"))
     runner.press("bert", "center")
-    assert runner.until(lambda: runner.devices["bert"].get_variable("button.center") == (1,), 1.0)
-    assert runner.devices["anna"].get_variable("heard") == (4, 6)
+    assert runner.until(lambda: runner.devices["bert"].variables.get("button.center") == (1,), 1.0)
+    assert runner.devices["anna"].variables.get("heard") == (4, 6)
 
 
 def test_robots_that_answer_each_other_for_ever_do_not_hold_the_world_up():
@@ -119,16 +119,16 @@ def test_robots_that_answer_each_other_for_ever_do_not_hold_the_world_up():
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "ball.aesl"))
     runner.press("anna", "center")
     runner.run(1.0)
-    assert runner.devices["bert"].get_variable("n")[0] > 50
+    assert runner.devices["bert"].variables.get("n")[0] > 50
 
 
 def test_a_timer_started_at_the_beginning_fires_on_time():
     program = load_program("var n = 0\ntimer.period[0] = 100\nonevent timer0\nn++", "timer")
     runner = Runner(load_playground("base")[1], program)
     runner.run(0.09)
-    assert runner.devices["thymio"].get_variable("n") == (0,)
+    assert runner.devices["thymio"].variables.get("n") == (0,)
     runner.run(0.01)
-    assert runner.devices["thymio"].get_variable("n") == (1,)
+    assert runner.devices["thymio"].variables.get("n") == (1,)
 
 
 def test_a_program_can_be_given_to_some_robots_only():
@@ -158,7 +158,7 @@ def test_an_event_sets_the_speed_of_the_line_program():
     runner.run(1.0)
     runner.devices["thymio"].receive_event("speed", (9999,))
     runner.run(0.5)
-    assert runner.devices["thymio"].get_variable("cruise") == (500,)
+    assert runner.devices["thymio"].variables.get("cruise") == (500,)
 
 
 def test_a_ros_command_takes_over_for_its_time():
@@ -196,17 +196,17 @@ def test_robots_of_different_radio_networks_do_not_hear_each_other(network, hear
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(TALK.replace("onevent button.center", setup), "talk"))
     runner.press("anna", "center")
     runner.run(0.5)
-    assert runner.devices["bert"].get_variable("heard") == heard
+    assert runner.devices["bert"].variables.get("heard") == heard
 
 
 def test_a_sound_that_ends_raises_its_event_in_simulated_time():
     source = "var n = 0\ncall sound.freq(440, 30)\nonevent sound.finished\nn = n + 1"
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "sound"))
     device = runner.devices["anna"]
-    assert runner.until(lambda: device.get_variable("n") == (1,), 1.0)
+    assert runner.until(lambda: device.variables.get("n") == (1,), 1.0)
     assert runner.now_ns == pytest.approx(30 * 16_384_000, abs=20_000_000)
     runner.run(2.0)
-    assert device.get_variable("n") == (1,)
+    assert device.variables.get("n") == (1,)
 
 
 def test_the_robot_s_lights_show_an_obstacle_until_the_program_takes_them():
@@ -235,8 +235,8 @@ def test_a_reset_forgets_settings_and_radio():
     assert runner.devices["bert"].services.network == (3, 4)
     runner.reset()
     assert runner.devices["bert"].services.network == (0, 0)
-    assert runner.devices["bert"].get_variable("was") == (0,)
-    assert runner.devices["bert"].get_variable("_id") == (2,)
+    assert runner.devices["bert"].variables.get("was") == (0,)
+    assert runner.devices["bert"].variables.get("_id") == (2,)
 
 
 def test_the_program_of_a_robot_that_left_rests_and_begins_anew_when_it_is_back():
@@ -252,8 +252,8 @@ def test_the_program_of_a_robot_that_left_rests_and_begins_anew_when_it_is_back(
     assert speakers == {"bert"}
     runner.world.spawn(RobotStart("anna", 0.0, 0.5))
     runner.run(0.5)
-    assert runner.devices["anna"].get_variable("n") == (24,)
-    assert runner.devices["bert"].get_variable("n") == (75,)
+    assert runner.devices["anna"].variables.get("n") == (24,)
+    assert runner.devices["bert"].variables.get("n") == (75,)
 
 
 def test_a_world_that_is_reset_has_the_programs_of_robots_that_had_left():
@@ -263,7 +263,7 @@ def test_a_world_that_is_reset_has_the_programs_of_robots_that_had_left():
     runner.run(0.5)
     runner.reset()
     runner.run(0.5)
-    assert [device.get_variable("n") for device in runner.devices.values()] == [(50,), (50,)]
+    assert [device.variables.get("n") for device in runner.devices.values()] == [(50,), (50,)]
 
 
 def test_a_robot_follows_the_line_that_another_one_draws():
@@ -284,8 +284,8 @@ def test_a_robot_follows_the_line_that_another_one_draws():
     painter, follower = (runner.world.robots[name] for name in ("painter", "follower"))
     runner.post("painter", MoveRobot(0.9, 0.9, 0.0))
     runner.post("follower", MoveRobot(0.0, -0.4, 0.0))
-    runner.devices["follower"].reset()
-    runner.devices["follower"].resume()
+    runner.devices["follower"].run_control.reset()
+    runner.devices["follower"].run_control.resume()
     way = []
     for _ in range(1500):
         runner.step()
@@ -298,15 +298,15 @@ def test_a_robot_follows_the_line_that_another_one_draws():
 def runaway(path, engine, card):
     options = DeviceOptions(card=card, settings=card.with_name(f"{card.name}-settings"))
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(path.read_text(), path.name), options=options)
-    told = []
+    reported = []
     for device in runner.devices.values():
         device._vm.use_engine(engine)
     for _ in range(4):
         before = [device._vm.instructions for device in runner.devices.values()]
         runner.step()
         spent = [device._vm.instructions - each for device, each in zip(runner.devices.values(), before, strict=True)]
-        told.append((spent, [device.memory() for device in runner.devices.values()], list(runner.emitted)))
-    return told
+        reported.append((spent, [device.variables.words() for device in runner.devices.values()], list(runner.emitted)))
+    return reported
 
 
 @pytest.mark.parametrize("path", RUNAWAYS, ids=lambda path: path.stem)

@@ -1,4 +1,4 @@
-"""The configuration of RViz: displays that RViz of Jazzy has, on topics of ours, with a QoS that fits theirs."""
+"""The configuration of RViz: displays of RViz in Jazzy, on topics of this project, with compatible QoS."""
 
 from __future__ import annotations
 
@@ -76,17 +76,17 @@ def test_every_display_shows_a_topic_of_its_type_with_the_durability_it_has(conf
         if topic is None:
             assert DISPLAYS[display["Class"]] is None
             continue
-        latched = topic["Durability Policy"] == "Transient Local"
+        is_transient_local = topic["Durability Policy"] == "Transient Local"
         assert topic["Reliability Policy"] == "Reliable"
-        shown[topic["Value"]] = (DISPLAYS[display["Class"]], "latched" if latched else "volatile")
+        shown[topic["Value"]] = (DISPLAYS[display["Class"]], "transient local" if is_transient_local else "volatile")
     kinds = {
-        name: (kind, "latched" if profile == "transient local" else "volatile")
+        name: (kind, profile if profile == "transient local" else "volatile")
         for name, (kind, profile) in published.items()
     }
     assert shown == {name: kinds.get(name) for name in shown}
 
 
-def test_robot_playground_movable_things_ranges_and_odometry_are_shown_at_once(config):
+def test_robot_playground_objects_ranges_and_odometry_are_shown_by_default(config):
     enabled = {(_topic(display) or {}).get("Value") for display in _all(config) if display["Enabled"]}
     sides = ("left", "center_left", "center", "center_right", "right", "rear_left", "rear_right")
     wanted = {"robot_description", "/_markers", "/_markers/objects", "odom", *(f"proximity/{side}" for side in sides)}

@@ -16,9 +16,9 @@ _RANGES = {
 
 
 def describe_domain(environment: Mapping[str, str], number: int | None = None) -> str:
-    """Domain and reach in one line, from ROS's own variables. `number`: the domain, where it is known already."""
+    """Describe domain and discovery range in one line, from the variables of ROS; `number` is the domain, if known."""
     domain = environment.get("ROS_DOMAIN_ID") or "0"
     given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
-    if environment.get("ROS_LOCALHOST_ONLY") == "1":  # older, and still the stronger one
+    if environment.get("ROS_LOCALHOST_ONLY") == "1":  # older, and has priority
         given = "LOCALHOST"
     return f"ROS_DOMAIN_ID {domain if number is None else number}, {_RANGES.get(given, _RANGES[''])}"

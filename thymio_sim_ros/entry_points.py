@@ -1,8 +1,8 @@
 """The console scripts: each imports its program here, so that Ctrl-C also ends the start without a traceback.
 
-Imports cannot be interrupted by an exception: it may be raised in an extension that turns it into another one, or in a
-destructor that prints and drops it. So SIGINT ends the process at once, until nodes or a batch run install a handler
-of their own (`ros/rclpy_ext/node_runner.py`, `interruption.py`): nothing has begun by then that needs an end.
+Imports cannot be interrupted by an exception: it may be raised in an extension that converts it to another one, or in a
+destructor that prints and drops it. Therefore SIGINT ends the process at once until nodes or a headless run install
+their handler (`ros/rclpy_ext/node_runner.py`, `cli/signal_handling.py`): until then nothing needs to be closed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ __all__ = ["aseba_runtime", "foxglove_bridge", "simulator", "thymio", "thymio_si
 
 
 def thymio_sim() -> int:
-    """The whole suite, or what works without ROS; the exit code, as of all here."""
+    """The command `thymio-sim`. Returns the exit code, as all functions here."""
     return _run("thymio_sim_ros.cli.main", signal.SIG_DFL)
 
 
@@ -47,16 +47,17 @@ def web_ui() -> int:
 
 
 def _leave(_number: int, _frame: FrameType | None) -> None:
-    """A node that is ended has done its work."""
+    """End the process with exit code 0: an interrupted node has no result to report."""
     os._exit(0)
 
 
 def _run(program: str, on_interrupt: Callable[[int, FrameType | None], None] | signal.Handlers = _leave) -> int:
-    """The exit code of a program. The handler stays: the end of the interpreter is as hard to interrupt as the start.
+    """Run the `main` of a module; return its exit code.
 
-    By the default of the system (`SIG_DFL`) a process dies by the signal, so that the loop of a shell ends, too.
+    The handler stays installed, because the end of the interpreter cannot be interrupted safely either. With the
+    default handler (`SIG_DFL`) the process is ended by the signal, so that the loop of a shell ends too.
     """
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored, as in the background
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # otherwise it is ignored, as in the background
         signal.signal(signal.SIGINT, on_interrupt)
     import_module("aseba_vm.cli.output").open_standard_streams()
     return int(import_module(program).main())

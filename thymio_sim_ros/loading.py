@@ -1,4 +1,4 @@
-"""From what a user names to what the core takes: playgrounds and programs by name, path or text."""
+"""Loads playgrounds and programs by name, path or text."""
 
 from __future__ import annotations
 
@@ -23,27 +23,26 @@ from thymio_sim_ros.sim.playground.format_detection import MAX_BYTES, is_recogni
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 
 NO_PROGRAM = "none"
-"""In place of a program's name: the robot does nothing by itself."""
-
+"""Name of the empty program."""
 
 _UPLOAD = re.compile(r"data:[^;,]*(?:;name=(?P<name>[^;,]*))?;base64,(?P<content>.*)", re.DOTALL)
 _UNNAMED = "uploaded playground"
 _PLAYGROUNDS = 'JSON with "format": 1, XML with <aseba-playground>, or a zip that holds one'
 _PROGRAMS = (".aesl", ".aseba", ".txt")
-"""Endings of files that are read as programs: errors quote from them, so others are not opened."""
+"""Suffixes of program files. Other files are not opened, because error messages quote from the content."""
 _BEFORE_TEXT = "\ufeff \t\r\n"
 
 
 def is_playground_text(value: str) -> bool:
-    """Whether `load_playground` takes a value as content, and opens no file for it."""
+    """Whether `load_playground` uses a value as content and opens no file."""
     return _UPLOAD.fullmatch(value) is not None or value.lstrip(_BEFORE_TEXT).startswith(("{", "<"))
 
 
 def load_playground(value: str) -> tuple[str, Playground]:
-    """(name, playground) from a shipped name, a path, the text itself, or a file as data:;name=my.json;base64,...
+    """Load a playground from a shipped name, a path, the text itself, or a file as data:;name=my.json;base64,...
 
-    Files and texts may be of any format that is read (sim/playground/format_detection.py).
-    Raises PlaygroundError for what the file says, ResourceError for a file that is not there, OSError.
+    Returns its name and the playground. Files and texts may have any known format (sim/playground/format_detection.py).
+    Raises PlaygroundError for invalid content, ResourceError for a missing file, OSError for one that cannot be read.
     """
     upload = _UPLOAD.fullmatch(value)
     if upload is not None:
@@ -61,12 +60,12 @@ def load_playground(value: str) -> tuple[str, Playground]:
 
 
 def _may_be_quoted(path: Path) -> bool:
-    """Whether an error may say what a file contains: not what lies on this computer for other purposes."""
+    """Whether an error may quote from a file: only if it looks like a playground, since any path can be given."""
     try:
         with path.open("rb") as file:
             return is_recognized(file.read(MAX_BYTES))
     except OSError:
-        return True  # which is all that the error says
+        return True  # the error has no content
 
 
 def _load_upload(name: str, content: str) -> tuple[str, Playground]:
@@ -79,15 +78,15 @@ def _load_upload(name: str, content: str) -> tuple[str, Playground]:
 
 
 def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
-    """The program of a built-in behaviour's name or a file, for a layout; "none" is the empty one.
+    """Load the program of a built-in behavior or of a file for a layout; "none" is the empty program.
 
-    Raises ProgramError for what the text says, ResourceError for a file that cannot be read.
+    Raises ProgramError for an error in the program, ResourceError for a file that is missing or cannot be read.
     """
     return load_program(*read_text(path), layout)
 
 
 def read_assignments(path: str, robots: Sequence[str], layout: str = THYMIO) -> dict[str, Assignment]:
-    """What each robot of a playground gets of a file, as from the Aseba runtime. Errors as `read_program`."""
+    """Assign the programs of a file to robots, as the Aseba runtime does. Raises the exceptions of `read_program`."""
     is_alone = len(robots) == 1
     members = {robot: RobotId("" if is_alone else robot, number) for number, robot in enumerate(robots, start=1)}
     names = [member.name for member in members.values() if member.name]
@@ -96,7 +95,7 @@ def read_assignments(path: str, robots: Sequence[str], layout: str = THYMIO) -> 
 
 
 def read_text(path: str) -> tuple[str, str]:
-    """Text and name of what `path` stands for in `read_program`. ResourceError."""
+    """Return text and name of the program that `path` denotes in `read_program`. Raises ResourceError."""
     if path == NO_PROGRAM:
         return "", NO_PROGRAM
     found = resources.find_program(path)
@@ -111,9 +110,9 @@ def read_text(path: str) -> tuple[str, str]:
 
 
 def check_behaviour(name: str, layout: str = THYMIO) -> str:
-    """The name itself, of a built-in behaviour that a robot of this layout can run; empty is none.
+    """Return the name of a built-in behavior if a robot of this layout can run it; an empty name is valid too.
 
-    Raises ResourceError for another name, ProgramError for what the robot does not have.
+    Raises ResourceError for an unknown name, ProgramError if the behavior uses what the robot does not have.
     """
     if resources.check_behaviour(name):
         read_program(name, layout)
@@ -121,7 +120,7 @@ def check_behaviour(name: str, layout: str = THYMIO) -> str:
 
 
 def shipped_behaviours() -> dict[str, str]:
-    """Every built-in program by name: what its first comment says, in one line. What cannot be read is left out."""
+    """First comment of each built-in program, as one line, by name. Unreadable programs are logged and skipped."""
     found = {}
     for name, path in resources.behaviours().items():
         try:

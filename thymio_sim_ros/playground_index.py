@@ -20,9 +20,9 @@ class PlaygroundIndex:
         self._lock = threading.Lock()
 
     def text(self, name: str) -> bytes | None:
-        """One playground in our format with its pictures inside, UTF-8; None for a name that is not shipped.
+        """Return a playground in this project's format with its images, in UTF-8; None for a name that is not shipped.
 
-        PlaygroundError for a file that cannot be read.
+        Raises PlaygroundError for an invalid file.
         """
         path = resources.playgrounds().get(name)
         if path is None:

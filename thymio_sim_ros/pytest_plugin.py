@@ -1,7 +1,7 @@
-"""The pytest plug-in of Thymio Sim ROS: its fixtures are there as soon as the package is installed (docs/grading.md).
+"""pytest plug-in of Thymio Sim ROS: its fixtures are available wherever the package is installed (docs/grading.md).
 
-pytest imports this module in every project of the environment: it costs nothing, since each fixture imports what it
-needs. Those that need ROS skip their test where there is none.
+pytest imports this module in all projects of the environment. It is fast to import, because each fixture imports what
+it needs. Fixtures that need ROS skip the test if ROS is not installed.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ NO_ROS = (
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the mark known."""
+    """Register the mark."""
     about = f"{MARK}({', '.join(KEYWORDS)}): the simulated world of a test"
     config.addinivalue_line("markers", about)
 
 
 def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
-    """What the marks of a test say; the nearest wins, and parameters of the test that have such a name win over all."""
+    """Options in the marks of a test. The nearest mark has priority, and parameters of the test over all marks."""
     wanted: dict[str, Any] = {}
     for mark in reversed(list(request.node.iter_markers(MARK))):
         unknown = [*mark.args, *(name for name in mark.kwargs if name not in KEYWORDS)]
@@ -48,7 +48,7 @@ def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
 
 @pytest.fixture
 def classroom(request: pytest.FixtureRequest) -> Classroom:
-    """A simulated world with its robots, without ROS; the mark `thymio` says which."""
+    """A simulated world with its robots, without ROS; the mark `thymio` has its options."""
     from thymio_sim_ros.testing import Classroom
 
     wanted = _wanted(request)
@@ -68,7 +68,7 @@ def thymio(classroom: Classroom) -> Thymio:
 
 @pytest.fixture
 def ros_domain() -> Iterator[int]:
-    """A ROS domain that no other test of this machine uses; children of this process inherit it."""
+    """A ROS domain that no other test on this computer uses; child processes inherit it."""
     from thymio_sim_ros.testing.ros.domain import reserved
 
     with reserved() as domain:
@@ -77,7 +77,7 @@ def ros_domain() -> Iterator[int]:
 
 @pytest.fixture
 def ros(request: pytest.FixtureRequest) -> Iterator[Ros]:
-    """A private context and executor in a private domain; afterwards no thread of ours is left."""
+    """A private context and executor in a private domain. The test fails if threads are still running at its end."""
     if importlib.util.find_spec("rclpy") is None:
         pytest.skip(NO_ROS)
     domain = request.getfixturevalue("ros_domain")

@@ -3,7 +3,7 @@
 A package of plug-ins is its own registry (docs/plugins.md): a file in the folder is a plug-in. Another package adds
 plug-ins by entry points of the groups `thymio_sim_ros.sensors`, `.actuators`, `.stimuli` and `.shapes`, and whole
 folders by `.behaviours` and `.playgrounds`. A broken module of this package raises RegistryError; a broken plug-in of
-another package is logged and left out. Name order makes every walk over a registry repeatable.
+another package is logged and skipped. Plug-ins are in order of name, so that every loop over them is repeatable.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = ["RegistryError", "clear_cache", "collect", "folders", "own_names"]
 
 PREFIX = "thymio_sim_ros"
 NAME = re.compile(r"[a-z](_?[a-z0-9])*")
-"""Names of plug-ins are parts of topics, keys and events."""
+"""Valid names of plug-ins, which become parts of topics, keys and events."""
 
 
 class Named(Protocol):
@@ -33,7 +33,7 @@ class Named(Protocol):
 
     @property
     def name(self) -> str:
-        """Its name, once per registry."""
+        """Its name, unique in the registry."""
         ...
 
 
@@ -58,11 +58,11 @@ def collect(
     check: Callable[[T], object] = id,
     guard: Callable[[T], T] = lambda plugin: plugin,
 ) -> tuple[T, ...]:
-    """The `export` (such as "SENSOR") of every module of `package`, and those that other packages add, in name order.
+    """Collect the `export` (such as "SENSOR") of each module of `package` and of other packages, in order of name.
 
-    Modules whose name begins with an underscore are helpers. Raises RegistryError for a module of ours without
-    the export, or with one that is no `kind`. What others add is left out where `check` raises, and goes through
-    `guard`, which should let it break alone.
+    Modules whose name begins with an underscore are helpers. Plug-ins of other packages are skipped if `check` raises,
+    and passed through `guard`, which should isolate their errors. Raises RegistryError for a module of this package
+    without the export, or with one of another type.
     """
     found: dict[str, T] = {}
     for name in own_names(package):
@@ -77,14 +77,14 @@ def collect(
 
 
 def own_names(package: ModuleType) -> tuple[str, ...]:
-    """Names of the modules of a folder of plug-ins, which are those of the plug-ins."""
+    """Names of the modules in a folder of plug-ins, in order."""
     names = (info.name for info in pkgutil.iter_modules(package.__path__))
     return tuple(sorted(name for name in names if not name.startswith("_")))
 
 
 @functools.cache
 def folders(group: str) -> tuple[Path, ...]:
-    """Folders of the packages that other packages offer in `thymio_sim_ros.<group>`, in the order of their names."""
+    """Folders that other packages offer in the group `thymio_sim_ros.<group>`, in order of name."""
     found: list[Path] = []
     for entry in _entries(f"{PREFIX}.{group}"):
         try:

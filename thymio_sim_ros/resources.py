@@ -1,8 +1,8 @@
-"""Where the files that travel with the code lie: playgrounds, behaviours, the built page.
+"""Finds the files that are installed with the code: playgrounds, behaviors, the built page.
 
-The same look-up serves a source tree, a wheel, an editable install and a colcon workspace: first the
-source tree, then `share/thymio_sim_ros` beside the installed code, then the ament prefixes, then the
-interpreter's prefix (docs/spec/ros-packaging.md section 1.1: the wheels leave AMENT_PREFIX_PATH unset).
+The same search works in a source tree, a wheel, an editable installation and a colcon workspace: first the source
+tree, then `share/thymio_sim_ros` beside the installed code, then the ament prefixes, then the prefix of the interpreter
+(docs/spec/ros-packaging.md section 1.1: the wheels leave AMENT_PREFIX_PATH unset).
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ _PLAYGROUND_FILES = ("*.json", "*.playground")
 _SHARE = Path("share") / "thymio_sim_ros"
 
 PAGE_BUILD_HINT = "The page is not built yet: run `make web` in the source folder, then start again."
-"""One sentence for a person who finds no built page (a colcon workspace has none)."""
+"""Hint for the user if the page is not built, as in a colcon workspace."""
 
 
 class ResourceError(ThymioSimError):
-    """A file that was asked for by name or path is not there; the text says what was looked for."""
+    """A file that is missing or cannot be read; the text has the name or path."""
 
 
 def _roots() -> Iterator[Path]:
-    """Folders that may hold `playgrounds/`, best first."""
+    """Folders that may contain `playgrounds/`, in order of preference."""
     yield _PACKAGE.parent
     for parent in _PACKAGE.parents:
         yield parent / _SHARE
@@ -40,7 +40,7 @@ def _roots() -> Iterator[Path]:
 
 
 def _folder(*names: str) -> Path | None:
-    """The first folder of one of these names below a root, or None."""
+    """Return the first folder with one of these names below a root, or None."""
     for root in _roots():
         for name in names:
             folder = root / name
@@ -50,18 +50,18 @@ def _folder(*names: str) -> Path | None:
 
 
 def playgrounds() -> dict[str, Path]:
-    """The shipped playgrounds, then those of other packages, name → file, each in name order."""
+    """Files of the shipped playgrounds by name, then those of other packages, each in order of name."""
     folder = _folder("playgrounds")
     return _files([folder] if folder else [], "playgrounds", _PLAYGROUND_FILES)
 
 
 def behaviours() -> dict[str, Path]:
-    """The built-in behaviours, then those of other packages, name → `.aesl` file, each in name order."""
+    """`.aesl` files of the built-in behaviors by name, then those of other packages, each in order of name."""
     return _files([_PACKAGE / "device" / "firmware" / "behaviors"], "behaviours", ("*.aesl",))
 
 
 def _files(ours: list[Path], group: str, patterns: tuple[str, ...]) -> dict[str, Path]:
-    """Files of our folder and of the folders that other packages offer, by name; the first of a name counts."""
+    """Files of these folders and of those of other packages, by name; the first file of a name is used."""
     found: dict[str, Path] = {}
     for folder in (*ours, *registry.folders(group)):
         for path in sorted(path for pattern in patterns for path in folder.glob(pattern)):
@@ -71,24 +71,24 @@ def _files(ours: list[Path], group: str, patterns: tuple[str, ...]) -> dict[str,
 
 
 def find_playground(name: str) -> Path:
-    """The file of a shipped playground or of a path; ResourceError when there is neither."""
+    """Return the file of a shipped playground or of a path. Raises ResourceError if there is neither."""
     return _find(name, playgrounds(), "playground")
 
 
 def find_program(name: str) -> Path:
-    """The file of a built-in behaviour or of a path; ResourceError when there is neither."""
+    """Return the file of a built-in behavior or of a path. Raises ResourceError if there is neither."""
     return _find(name, behaviours(), "program")
 
 
 def check_behaviour(name: str) -> str:
-    """The name itself; ResourceError when it is neither empty nor that of a built-in behaviour."""
+    """Return the name. Raises ResourceError if it is neither empty nor that of a built-in behavior."""
     if name and name not in behaviours():
         raise ResourceError(_unknown(name, behaviours(), "behaviour", "not"))
     return name
 
 
 def page() -> Path | None:
-    """The folder of the built web page, or None where it has not been built."""
+    """Folder of the built web page, or None if it has not been built."""
     for root in _roots():
         for folder in (root / "web_ui" / "dist", root / "web_ui"):
             if (folder / "index.html").is_file() and (folder / "assets").is_dir():
@@ -97,7 +97,7 @@ def page() -> Path | None:
 
 
 def expanded(text: str) -> Path:
-    """A path with the home folder for ~; of a user that this machine does not know, the text as it is."""
+    """Path with `~` expanded; unchanged if the user is unknown."""
     path = Path(text)
     try:
         return path.expanduser()
@@ -114,7 +114,7 @@ def _find(name: str, shipped: dict[str, Path], kind: str) -> Path:
             return path
         if path.is_dir():
             raise ResourceError(f"{kind} '{name}' is a folder; expected a file")
-    except OSError as error:  # a folder that may not be looked into, a name that is too long
+    except OSError as error:  # a folder that cannot be read, a name that is too long
         raise ResourceError(f"{kind} '{name}': {error.strerror}; expected a file that can be read") from error
     raise ResourceError(_unknown(name, shipped, kind, "neither a file nor"))
 

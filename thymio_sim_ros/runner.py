@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
-from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
+from thymio_sim_ros.device.behavior_host import BehaviorHost
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.runlog.run_log import RunLog

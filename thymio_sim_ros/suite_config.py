@@ -17,14 +17,17 @@ ADDRESS = "localhost"
 
 @dataclass(frozen=True)
 class SuiteConfig:
-    """One start of simulator, Aseba runtime, Foxglove bridge and page.
+    """Options of simulator, Aseba runtime, Foxglove bridge and page.
 
-    `playground`: shipped name, path or JSON text; `program`: behaviour or path; `behaviour`: what the robot is
-    switched on with instead, the program then waiting in its menu; `log`: file of a run log, empty for none.
-    `address`: where page and bridge listen, `ADDRESS` or an IPv4 number.
-    `tokens`: what clients of page and bridge need; None leaves it to the bridge.
-    `cmd_vel_timeout_s`: browser teleop sends nothing on release, hence half a second (docs/spec/ros-interface.md
-    section 13).
+    Attributes:
+        playground: shipped name, path or JSON text.
+        program: name of a behavior, or path.
+        behaviour: built-in behavior after switching on, from whose menu the program can be started; empty for none.
+        address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
+        log: file of a run log, empty for none.
+        cmd_vel_timeout_s: time after which a velocity ends; short, because teleoperation in the browser sends nothing
+            on release (docs/spec/ros-interface.md section 13).
+        tokens: tokens that clients of page and bridge need; None lets the bridge choose.
     """
 
     playground: str = "line"

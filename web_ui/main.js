@@ -1,27 +1,37 @@
-// Entry point: connects protocol, state, scene and panels.
+// Entry point: creates the objects of the page and connects them. Each has one concern:
+//
+//   Store            state of the page
+//   Client           connection to the bridge
+//   Actions          what the user does to the simulator
+//   SceneView        3D view
+//   DragController   moving robots and objects in the view
+//   Speaker          sound
+//   PageLanguage     language and texts
+//   PanelHost, EditorHost, CreatorHost, TourHost    parts of the page
 
-import { Actions, isProgram } from "./input/actions.js";
-import { CreatorHost } from "./hosts/creator_host.js";
+import { exposeForTests } from "./browser/test_access.js";
+import { resolveToken, tokenIn } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
-import { EditorHost } from "./hosts/editor_host.js";
+import { localStore, tabStore } from "./browser/local_storage.js";
 import { ThumbnailCache } from "./gallery/thumbnail_cache.js";
-import { chooseLanguage, translator } from "./i18n/index.js";
+import { CreatorHost } from "./hosts/creator_host.js";
+import { EditorHost } from "./hosts/editor_host.js";
+import { PanelHost } from "./hosts/panel_host.js";
+import { TourHost } from "./hosts/tour_host.js";
+import { PageLanguage } from "./i18n/page_language.js";
+import { Actions, isProgram } from "./input/actions.js";
 import { watchKeyboard } from "./input/keyboard.js";
-import { localStore, trySetItem, tabStore } from "./browser/local_storage.js";
-import { PANELS } from "./panels/index.js";
 import { DragController } from "./move/drag_controller.js";
+import { GraphicsNotice } from "./panels/graphics_notice.js";
 import { MUTED_KEY } from "./panels/sound.js";
+import { fetchShapes } from "./playground/declarations.js";
+import { registerShapes } from "./playground/kinds/index.js";
+import { bridgeAddress } from "./protocol/bridge_address.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
 import { Speaker } from "./sound/speaker.js";
-import { snapshot } from "./state/index.js";
 import { isWatched, PARAMETERS, subscriptionKey } from "./state/names.js";
 import { Store } from "./state/store.js";
-import { resolveToken, tokenIn } from "./browser/access_token.js";
-import { TourHost } from "./hosts/tour_host.js";
-
-const DEFAULT_PORT = 8765;
-const LANGUAGE_KEY = "language";
 
 /** @param {string} selector @returns {HTMLElement} */
 function element(selector) {
@@ -30,31 +40,51 @@ function element(selector) {
   return /** @type {HTMLElement} */ (found);
 }
 
-/** The WebSocket address of the bridge: the port comes from the page's server, the host from the page's address. */
-async function bridgeAddress() {
-  const answer = await fetch("config.json").catch(() => null);
-  const config = answer?.ok ? await answer.json().catch(() => ({})) : {};
-  return `ws://${location.hostname || "localhost"}:${config.foxglove_port ?? DEFAULT_PORT}`;
+/** @param {string} selector */
+function canvasElement(selector) {
+  return /** @type {HTMLCanvasElement} */ (element(selector));
 }
 
-async function main() {
-  const token = resolveToken(tabStore, location.href, (shown) => history.replaceState(null, "", shown));
+/** Write to the live region for screen readers. @param {string} text */
+function announce(text) {
+  element("#live").textContent = text;
+}
+
+/** The access token of this visit; it is removed from the address that the browser shows. */
+function readToken() {
   // Browsers do not reload a page if only the fragment with the token changes.
   window.addEventListener("hashchange", () => {
     if (tokenIn(location.href) !== null) location.reload();
   });
-  const address = await bridgeAddress();
+  return resolveToken(tabStore, location.href, (shown) => history.replaceState(null, "", shown));
+}
+
+/** Update the subscriptions when the state wants other topics. @param {Store} store @param {Client} client */
+function watchSubscriptions(store, client) {
+  let subscribed = "";
+  store.subscribe(() => {
+    const wanted = subscriptionKey(store.state);
+    if (wanted === subscribed) return;
+    subscribed = wanted;
+    client.refresh();
+  });
+}
+
+async function main() {
+  const token = readToken();
+  const [address, shapes] = await Promise.all([bridgeAddress(), fetchShapes()]);
+  if (shapes !== null) registerShapes(shapes); // before the first playground is read
   const store = new Store();
-  let language = chooseLanguage([localStore.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
-  let t = translator(language);
-  /** @type {import("./panels/index.js").Panel[]} */ let panels = [];
+  const pageLanguage = new PageLanguage(navigator.languages);
+  const { t } = pageLanguage;
+  const redraw = () => scene.invalidate();
 
   const editor = new EditorHost({
     slot: element('[data-slot="editor"]'),
     client: () => client,
     changed: () => {
       if (editor.isOpen) creator.close();
-      scene.invalidate();
+      redraw();
     },
   });
   const creator = new CreatorHost({
@@ -62,6 +92,7 @@ async function main() {
     scene: () => scene,
   });
   const tour = new TourHost();
+  const panels = new PanelHost(element);
   const client = new Client({
     address,
     token,
@@ -72,46 +103,29 @@ async function main() {
     wants: (topic) => isWatched(store.state, topic) || editor.wants(topic),
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
-  const actions = new Actions({ client, store, t: (key, values) => t(key, values), language: () => language });
-  const live = element("#live");
-  /** @param {string} text */
-  const announce = (text) => {
-    live.textContent = text;
-  };
-
+  const actions = new Actions({ client, store, t, language: () => pageLanguage.language });
   const speaker = new Speaker({
     createContext: "AudioContext" in window ? () => new AudioContext() : null,
     muted: localStore.getItem(MUTED_KEY) === "true",
-    changed: () => scene.invalidate(),
+    changed: redraw,
   });
-  const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
-  const trouble = element("#trouble");
-  /** @type {"lost" | "gone" | null} state of the 3D view; null: working */ let graphics = null;
-  const showTrouble = () => {
-    trouble.hidden = graphics === null;
-    trouble.dataset.kind = graphics ?? "";
-    trouble.textContent = graphics === null ? "" : t(graphics === "lost" ? "app.contextLost" : "app.noWebgl");
-  };
-
   const dragController = new DragController({
     state: () => store.state,
     place: (name, pose) => actions.place(name, pose),
-    changed: () => scene.invalidate(),
+    changed: redraw,
     report: (key, values) => announce(t(key, values)),
   });
+  const graphics = new GraphicsNotice(element("#trouble"), t);
   const scene = new SceneView({
-    canvas,
-    flatCanvas: /** @type {HTMLCanvasElement} */ (element("#flat")),
+    canvas: canvasElement("#view"),
+    flatCanvas: canvasElement("#flat"),
     labels: element("#labels"),
     state: () => creator.world ?? store.state,
     sketch: () => creator.sketch,
     beforeDraw: () => {
       creator.render();
       tour.render();
-      panels.forEach((panel) => panel.render?.(store.state));
-      for (const driving of document.querySelectorAll("[data-drives]")) {
-        driving.toggleAttribute("inert", store.state.readOnly);
-      }
+      panels.render(store.state);
     },
     press: ({ robot, button }, pressed) => {
       store.dispatch({ type: "select", robot });
@@ -119,81 +133,47 @@ async function main() {
     },
     dragController,
     robotTitle: (name) => name || t("app.robot"),
-    contextLost: (found) => {
-      graphics = found;
-      showTrouble();
-    },
+    contextLost: (trouble) => graphics.set(trouble),
   });
-
   const thumbnails = new ThumbnailCache((world) => scene.photograph(world));
 
+  /** Create all texts in the current language. */
   const build = () => {
-    t = translator(language);
-    document.documentElement.lang = language;
-    document.title = t("app.title");
-    element("#title").textContent = t("app.title");
-    element("#drop").textContent = t("app.drop");
-    element("aside").setAttribute("aria-label", t("app.panels"));
-    canvas.setAttribute("aria-label", t("view.canvas"));
-    if (scene.renderer === null) graphics = "gone";
-    showTrouble();
-    document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
-    for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, dragController, speaker, editor, creator, tour, thumbnails, address, announce };
-    panels = PANELS.map((create) => create(context));
-    for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
-    editor.setContext(context);
-    creator.setContext(context);
-    tour.setContext(context);
-    scene.invalidate();
+    const { language, translate } = pageLanguage;
+    const parts = { actions, store, scene, dragController, speaker, editor, creator, tour, thumbnails };
+    const context = { t: translate, language, setLanguage, address, announce, ...parts };
+    panels.build(context);
+    for (const host of [editor, creator, tour]) host.setContext(context);
+    if (scene.renderer === null) graphics.set("gone");
+    else graphics.render();
+    redraw();
   };
-  /** @param {string} chosen */
-  const setLanguage = (chosen) => {
-    language = chosen;
-    trySetItem(localStore, LANGUAGE_KEY, chosen);
+  /** @param {string} language */
+  const setLanguage = (language) => {
+    pageLanguage.choose(language);
     build();
   };
 
   build();
-  store.subscribe(() => scene.invalidate());
+  store.subscribe(redraw);
   store.subscribe(() => editor.redraw());
-  let watched = "";
-  store.subscribe(() => {
-    const now = subscriptionKey(store.state);
-    if (now === watched) return;
-    watched = now;
-    client.refresh();
-  });
   store.subscribe(() => speaker.update(store.state));
+  watchSubscriptions(store, client);
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
-  watchKeyboard(canvas, scene, dragController, (button, pressed) => actions.press(store.state.selected, button, pressed));
+  watchKeyboard(scene.canvas, scene, dragController, (button, pressed) =>
+    actions.press(store.state.selected, button, pressed),
+  );
   watchDrops(element("#drop"), (file) => {
     if (creator.isOpen && !isProgram(file)) creator.openFile(file);
-    else if (editor.isOpen && isProgram(file)) editor.editor?.open(file);
-    else actions.loadFile(file);
+    else if (editor.isOpen && isProgram(file)) void editor.editor?.commands.open(file);
+    else void actions.loadFile(file);
   });
   window.addEventListener("keydown", ({ key }) => {
-    if (key === "Escape" && store.state.connection === "connected") actions.stop();
+    if (key === "Escape" && store.state.connection === "connected") void actions.stop();
   });
   client.start();
   tour.start();
-
-  // Read-only access for tests: state, drawn frames, and screen positions of parts.
-  Object.defineProperty(window, "thymio", {
-    value: Object.freeze({
-      state: () => snapshot(store.state),
-      frames: () => scene.frames,
-      screenPosition: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) =>
-        scene.screenPosition(x, y, z),
-      held: () => dragController.held,
-      built: () => creator.snapshot(),
-      /** @param {string} part @param {string} [robot] */
-      partPosition: (part, robot) => scene.partPosition(part, robot),
-      get connected() {
-        return store.state.connection === "connected";
-      },
-    }),
-  });
+  exposeForTests({ store, scene, dragController, creator });
 }
 
-main();
+void main();

@@ -2,8 +2,23 @@
 
 import { defineConfig } from "vite";
 
+/**
+ * Modules `*.texts.js` read files, which a browser cannot: they run here, and the page gets their values.
+ *
+ * @type {import("vite").Plugin}
+ */
+const evaluatedTexts = {
+  name: "evaluated-texts",
+  async load(id) {
+    if (!id.endsWith(".texts.js")) return null;
+    const { default: texts } = await import(id);
+    return `export default ${JSON.stringify(texts)};`;
+  },
+};
+
 export default defineConfig({
   base: "./",
+  plugins: [evaluatedTexts],
   build: {
     outDir: "dist",
     emptyOutDir: true,

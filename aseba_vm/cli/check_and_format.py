@@ -22,11 +22,11 @@ from aseba_vm.cli.report import (
     finding_of_compile_error,
     finding_of_text_error,
     is_colored,
-    table_of,
 )
 from aseba_vm.errors import AeslError, CompileError, TextError
 from aseba_vm.frontend.formatter import format_program
 from aseba_vm.frontend.pipeline import assemble
+from aseba_vm.languages import texts
 from aseba_vm.messages import format_message
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
@@ -106,7 +106,7 @@ class _Run:
 
 def check(options: argparse.Namespace, target: TargetDescription) -> int:
     """Report the first error of each program, or its warnings; return the exit code."""
-    run = _Run(options, table_of(options.language))
+    run = _Run(options, texts("compiler", options.language))
     run.each(lambda name, file: _check_file(run, name, file.text, target))
     if run.is_json:
         print(json.dumps([finding.data() for finding in run.findings], indent=1, ensure_ascii=False))
@@ -151,7 +151,7 @@ def _check_source(run: _Run, source: Source, text: str, target: TargetDescriptio
 
 def format_files(options: argparse.Namespace) -> int:
     """Format programs; return the exit code."""
-    run = _Run(options, table_of(options.language))
+    run = _Run(options, texts("compiler", options.language))
     changed: list[str] = []
     run.each(lambda name, file: _format_file(run, name, file, changed))
     run.summarize("fmt-summary", len(changed), run.count(ERROR))

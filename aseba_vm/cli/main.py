@@ -25,14 +25,14 @@ from aseba_vm.cli.report import (
     finding_of_compile_error,
     finding_of_text_error,
     is_colored,
-    table_of,
     user_language,
 )
 from aseba_vm.errors import AeslError, CompileError, TargetError, TextError
 from aseba_vm.frontend.lexer import is_name
 from aseba_vm.frontend.pipeline import Program, assemble
+from aseba_vm.languages import LANGUAGES, texts
 from aseba_vm.machine.machine_messages import Emitted, NativeCalled
-from aseba_vm.messages import LANGUAGES, format_message
+from aseba_vm.messages import format_message
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import VirtualMachine
@@ -65,7 +65,10 @@ class _UseError(Exception):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Execute a command line and return the exit code."""
+    """Execute a command line and return the exit code.
+
+    Errors are printed, not raised, except SystemExit for `--help` and invalid options.
+    """
     open_standard_streams()
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
@@ -75,13 +78,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with standard_output():
             return command(options)
     except SourceError as error:
-        _print(options, finding_of_compile_error(error.source, error.error, table_of(options.language)))
+        _print(options, finding_of_compile_error(error.source, error.error, texts("compiler", options.language)))
         return WRONG_PROGRAM
     except AeslError as error:
-        _print(options, finding_of_text_error(options.file, error, table_of(options.language)))
+        _print(options, finding_of_text_error(options.file, error, texts("compiler", options.language)))
         return WRONG_USE if error.kind == "aesl-other-robot" else WRONG_PROGRAM
     except TextError as error:
-        _print(options, finding_of_text_error(options.file, error, table_of(options.language)))
+        _print(options, finding_of_text_error(options.file, error, texts("compiler", options.language)))
     except BrokenPipeError:
         pass  # the reader of the output has closed it
     except OSError as error:
@@ -217,13 +220,13 @@ def _compile_source(options: argparse.Namespace, source: Source, *, with_warning
         raise SourceError(source, error) from error
     for warning in program.warnings if with_warnings else ():
         row, col = source.place(warning.pos.offset)
-        sentence = format_message(warning.kind, warning.arguments, table_of(options.language))
+        sentence = format_message(warning.kind, warning.arguments, texts("compiler", options.language))
         _print(options, Finding(options.file, row + 1, col + 1, WARNING, warning.kind, sentence))
     return program
 
 
 def _print(options: argparse.Namespace, finding: Finding) -> None:
-    label = format_message("label-hint", (), table_of(options.language))
+    label = format_message("label-hint", (), texts("compiler", options.language))
     print(finding.text(options.text, label=label, is_colored=is_colored()), file=sys.stderr)
 
 

@@ -11,7 +11,8 @@ from pathlib import Path
 from aseba_vm.cli.inputs import Source
 from aseba_vm.cli.source_snippet import source_snippet
 from aseba_vm.errors import CompileError, Edit, Hint, TextError
-from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
+from aseba_vm.languages import LANGUAGES
+from aseba_vm.messages import format_message
 
 PROGRAM_ENDINGS = (".aesl", ".aseba")
 """Suffixes of program files in a folder."""
@@ -128,11 +129,6 @@ def user_language(environment: Mapping[str, str]) -> str:
         if language in LANGUAGES and not choice[2:3].isalpha():
             return language
     return "en"
-
-
-def table_of(language: str) -> Mapping[str, str]:
-    """Return the messages of a language."""
-    return LANGUAGES.get(language, MESSAGES)
 
 
 def is_colored() -> bool:

@@ -34,7 +34,11 @@ _PRIMARY = ("(", "[", "-", "~", "abs", "identifier", "integer")
 
 
 class ExpressionParser:
-    """Parses expressions from a token stream; shares stream and symbol table with the parser of statements."""
+    """Parses expressions from a token stream; shares stream and symbol table with the parser of statements.
+
+    A rule is a generator that the trampoline runs (:mod:`aseba_vm.frontend.trampoline`), so that deep nesting needs no
+    deep stack. Each rule raises CompileError at the first token that does not fit; its docstring is its grammar.
+    """
 
     def __init__(self, stream: TokenStream, symbols: SymbolTable) -> None:
         self.stream = stream

@@ -10,7 +10,8 @@ from aseba_vm.bytecode import EventEntry, Segment, SubEntry, instructions, link
 from aseba_vm.errors import CompileError
 from aseba_vm.frontend.codegen import check_stack, generate
 from aseba_vm.frontend.folding import optimize
-from aseba_vm.frontend.hints import Attempt, find_hint
+from aseba_vm.frontend.hints.context import GRAMMAR, LATER_PASSES, TOKENS, Attempt
+from aseba_vm.frontend.hints.finder import find_hint
 from aseba_vm.frontend.lexer import Token, tokenize
 from aseba_vm.frontend.lint import CompileWarning, find_warnings
 from aseba_vm.frontend.lowering import lower
@@ -120,14 +121,14 @@ def _attempt(
     constants: Sequence[tuple[str, int]],
 ) -> Attempt | Stages:
     """Run all passes; return their results, or the error and the pass that found it."""
-    stage = 0
+    stage = TOKENS
     try:
         if target.variables_end > target.variables_size:
             raise CompileError("target-too-small")
         tokens = tokenize(source)
-        stage = 1
+        stage = GRAMMAR
         tree = parse(tokens, target, events, constants)
-        stage = 2
+        stage = LATER_PASSES
         check_sizes(tree)
         expanded = lower(tree, target.variables_size)
         check_types(expanded)

@@ -14,7 +14,10 @@ INIT_EVENT = 0xFFFF
 
 
 class SymbolTable:
-    """All names in the order of declaration. A name that is defined twice has its last meaning."""
+    """All names in the order of declaration. A name that is defined twice has its last meaning.
+
+    Raises CompileError if the variables of the target do not fit into its memory.
+    """
 
     def __init__(
         self,

@@ -1,4 +1,8 @@
-"""How a translated function uses words of memory, and which of them it may keep in local variables."""
+"""How a translated function uses words of memory, and which of them it may keep in local variables.
+
+A word may be a local variable if the function accesses it only by its constant address. Then no array access, event or
+native can read or write it behind the back of the local variable; natives that may access any word are barriers.
+"""
 
 from __future__ import annotations
 

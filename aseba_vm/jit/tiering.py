@@ -44,9 +44,13 @@ ENGINES = (AUTO, INTERPRETER, PYTHON, WASM)
 
 
 _CACHE_SIZE = 64
+"""Programs whose translations are kept for the whole process."""
 _WARM_RUNS = 2
+"""Runs that begin at an address before it is translated."""
 _WARM_INSTRUCTIONS = 2000
+"""Budget that the interpreter gets first in a run that begins at a cold address; a longer run is translated."""
 _UNTRANSLATED_SLICE = 256
+"""Budget that the interpreter gets before it is tested again whether translated code starts at the next address."""
 _MAX_SLICE = 10_000_000
 """Instructions after which translated code returns, so that a user can interrupt an endless program."""
 
@@ -218,7 +222,12 @@ class Tiering:
             self._host = None
 
     def run(self, limit: int) -> int:
-        """Execute the active event up to ``limit``; return the budget used."""
+        """Execute the active event up to ``limit``; return the budget used.
+
+        Raises the exception of a native that raised one, and RuntimeError if translated code trapped (a bug).
+        """
+        # States of an address: cold (interpreted, runs counted), translated (`Translation.entry`), instantiated for
+        # this machine (`_instances`), ready (`_ready`: also certain to match the bytecode).
         machine = self._machine
         ready = self._ready.get(machine.pc)
         left = limit
@@ -228,6 +237,8 @@ class Tiering:
         while left > 0 and machine.flags & ACTIVE:
             if ready is None:
                 ready = self._ready.get(machine.pc) or self._ready_code(machine.pc)
+            # Not translated, or the stack might overflow in translated code, which does not check it: interpret. With
+            # a budget too small for translated code to start, interpret the rest.
             if ready is None or machine.sp > ready.highest:
                 left -= self._interpret(min(left, _UNTRANSLATED_SLICE))
             elif left < ready.need:
@@ -257,6 +268,7 @@ class Tiering:
         """Return the translation of the program that is in the machine now."""
         self._is_current = True
         words = self._machine.bytecode
+        # Running changes the edge flags in the bytecode, so programs are compared without them.
         known = self._translation
         if known.blocks is None or self._host is None or known.without_edges(words) != known.canonical:
             if self._is_wasm is None:
@@ -325,6 +337,7 @@ class Tiering:
     def _run_translated(self, run: Run, left: int) -> int:
         """Run translated code with a budget of ``left`` and apply its exit to the machine; return the budget used."""
         machine = self._machine
+        # From here on the edge flags are in the host, not in the bytecode.
         self._is_flushed = False
         rest, pc, kind, words = run(left)
         machine.pc = pc
@@ -343,6 +356,8 @@ class Tiering:
             if self._failure is not None:
                 failure, self._failure = self._failure, None
                 raise failure
+            # Translated code left before a statement that it cannot execute: the interpreter executes its first
+            # instruction, and reports the fault if there is one.
             if machine.flags & ACTIVE and rest > 0:
                 done += self._interpret(1)
         elif kind != CONTINUE:

@@ -185,7 +185,9 @@ class _Writer:
         self.expressions.bail_out = self._exit(branch.place, INTERPRET, uncharged)
         test = self.expressions.condition(branch.operator, branch.left, branch.right)
         start = uncharged + branch.cost
-        # Generate both arms first: their uncharged instructions are known only afterwards.
+        # Generate both arms first: their uncharged instructions are known only afterwards. The then-arm is charged the
+        # difference, so that both arms join with those of the else-arm. A `when` (edge) whose condition was already
+        # true takes the else-arm, which is therefore generated twice.
         outer, self.lines[:] = list(self.lines), []
         then = self._nodes(node.then, start)
         then_lines, self.lines[:] = list(self.lines), []
@@ -214,6 +216,9 @@ class _Writer:
     def _loop(self, node: Loop, uncharged: int) -> int:
         branch = node.branch
         emit_line = self.lines.append
+        # (block (loop check before (if test (then body (br 1))) rest-of-charge)): inside the `if`, label 0 is the `if`
+        # and label 1 the loop, so `br 1` repeats; falling through ends it. At each head the same number of instructions
+        # is uncharged.
         emit_line("(block (loop")
         self._check_budget(node.need + uncharged, self._exit(ProgramPoint(node.pc, ()), INTERPRET, uncharged))
         before = self._nodes(node.before, uncharged)

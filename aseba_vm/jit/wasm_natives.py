@@ -117,6 +117,9 @@ def _clamped(value: str, low: str, high: str) -> str:
 
 
 # -- functions
+#
+# Addresses are in bytes, so words advance by 2. Unsigned comparisons of addresses (lt_u), signed ones of words (lt_s).
+# `load16_s` extends the sign of a word and `store16` cuts a result to 16 bits, which is the wrap-around of the machine.
 
 _ELEMENTWISE: dict[str, tuple[Callable[..., str], int]] = {
     "math.copy": (lambda value: value, 1),

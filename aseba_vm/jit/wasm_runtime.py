@@ -18,7 +18,7 @@ _SAMPLE = '(module (import "" "memory" (memory 1)) (func (export "run") (i32.sto
 
 @cache
 def is_usable() -> bool:
-    """Return whether WebAssembly can be compiled and run here.
+    """Return whether WebAssembly can be compiled and run here. Never raises.
 
     If ``wasmtime`` is installed but fails, the reason is logged once: the package may be broken (a missing system
     library, a binary for another platform), or a memory limit too low.

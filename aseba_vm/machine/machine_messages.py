@@ -6,7 +6,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 from aseba_vm.bytecode import signed
-from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
+from aseba_vm.languages import texts
+from aseba_vm.messages import MESSAGES, format_message
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +74,8 @@ class _Fault(ABC):
         return self.message_in("en")
 
     def message_in(self, language: str) -> str:
-        """Return the fault as a sentence in a language of `LANGUAGES`, English for any other."""
-        return format_message(*self.kind_and_arguments, LANGUAGES.get(language, MESSAGES))
+        """Return the fault as a sentence in a language, such as "de"; English if the language is unknown."""
+        return format_message(*self.kind_and_arguments, texts("compiler", language))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,7 @@
 import string
 
-import pytest
-
-from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
+from aseba_vm.languages import texts
+from aseba_vm.messages import MESSAGES, format_message
 from tests.aseba_vm.vectors import as_tuple, load
 
 
@@ -43,21 +42,8 @@ def test_an_unknown_kind_is_shown_as_it_is():
     assert format_message("new-kind", (1, "a")) == "new-kind 1 a"
 
 
-@pytest.mark.parametrize("language", sorted(LANGUAGES))
-def test_a_translation_has_every_message_with_the_same_arguments(language):
-    table = LANGUAGES[language]
-    assert table.keys() == MESSAGES.keys()
-    found = {kind: arguments(text) for kind, text in table.items()}
-    assert found == {kind: arguments(text) for kind, text in MESSAGES.items()}
-
-
-@pytest.mark.parametrize("language", sorted(LANGUAGES.keys() - {"en"}))
-def test_nothing_is_left_in_english(language):
-    assert [kind for kind, text in LANGUAGES[language].items() if text == MESSAGES[kind]] == []
-
-
 def test_tokens_are_named_in_the_language_of_the_message():
-    german = LANGUAGES["de"]
+    german = texts("compiler", "de")
     assert format_message("expected-token", ("identifier", "end-of-input"), german) == (
         "erwartet wird ein Name, hier steht das Ende des Programms"
     )
@@ -68,8 +54,3 @@ def test_tokens_are_named_in_the_language_of_the_message():
     assert format_message("expected-one-of", (("integer", "("), ")"), german) == (
         "erwartet wird eins davon: eine Zahl, '('; hier steht ')'"
     )
-
-
-def arguments(text: str) -> set[str]:
-    """Return the arguments that a template uses."""
-    return {name for _, name, _, _ in string.Formatter().parse(text) if name}

@@ -11,10 +11,10 @@ import pytest
 
 
 def make_certificate(folder: Path) -> tuple[Path, Path]:
-    """A self-signed certificate for localhost and its key; skips the test where there is no openssl."""
+    """Create a self-signed certificate for localhost and its key; skip the test without openssl."""
     openssl = shutil.which("openssl")
     if openssl is None:
-        pytest.skip("no openssl here")
+        pytest.skip("openssl is not installed")
     cert, key = folder / "cert.pem", folder / "key.pem"
     command = [openssl, "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
     names = ["-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost", "-days", "2"]
@@ -23,10 +23,10 @@ def make_certificate(folder: Path) -> tuple[Path, Path]:
 
 
 def trusting(cert: Path | str) -> ssl.SSLContext:
-    """What a client needs that reads in one thread and writes in another, as the synchronous one of `websockets` does.
+    """Return a TLS context for clients that read and write in different threads, such as synchronous `websockets`.
 
-    TLS 1.3 sends tickets after the handshake; one in five hundred such clients, reading them while its request is
-    being written, waited for ever (Python 3.11), but none of its asynchronous siblings.
+    It excludes TLS 1.3, which sends tickets after the handshake: one in five hundred such clients, which read them
+    while the request was being written, waited forever (Python 3.11). Asynchronous clients are not affected.
     """
     context = ssl.create_default_context(cafile=cert)
     context.maximum_version = ssl.TLSVersion.TLSv1_2

@@ -14,12 +14,13 @@ from typing import Any, TypeVar
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.server import BridgeServer
 from thymio_sim_ros.bridge.server_thread import listen
-from thymio_sim_ros.bridge.switchboard import Switchboard
+from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 
 DEADLINE_S = 20.0
 
@@ -29,13 +30,13 @@ CHANNEL = ms.Channel(10, "/t", "cdr", "std_msgs/msg/String", "string data", "ros
 
 
 def run(scenario: Coroutine[Any, Any, T]) -> T:
-    """What a scenario gives. It has a thread of its own: tests in a browser leave a running loop in this one."""
+    """Run a scenario in its own thread and return its result: browser tests leave a running loop in this thread."""
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(asyncio.run, scenario).result()
 
 
 class Sink:
-    """Keeps what the server tells its owner, and answers for it who asks for parameters."""
+    """Records the events of a server, and answers requests for parameters."""
 
     def __init__(self) -> None:
         self.events: list[ev.Event] = []
@@ -44,7 +45,7 @@ class Sink:
         self._arrived = asyncio.Event()
 
     def post(self, event: ev.Event) -> None:
-        """Take an event."""
+        """Record an event."""
         if isinstance(event, ev.ParametersRequested):
             self.answer(ev.SendParameters(event.client, event.names or None, event.request_id))
             return
@@ -52,7 +53,7 @@ class Sink:
         self._arrived.set()
 
     def is_full(self, client: int) -> bool:
-        """Whether the owner is behind."""
+        """Whether the sink reports that it is full."""
         return self.full
 
     async def until(self, condition: Callable[[list[ev.Event]], bool]) -> None:
@@ -64,7 +65,7 @@ class Sink:
 
 
 class Client:
-    """A real client that speaks in messages."""
+    """A real client, which sends and receives messages."""
 
     def __init__(self, connection: ClientConnection) -> None:
         self.connection = connection
@@ -83,12 +84,12 @@ class Client:
                     return message
 
     async def subscribe(self, subscription: int, channel: int = CHANNEL.id) -> None:
-        """Subscribe; done when the server has seen it."""
+        """Subscribe, and wait until the server has processed it."""
         await self.send(ms.Subscribe((ms.Subscription(subscription, channel),)))
         await self.settle()
 
     async def settle(self) -> None:
-        """Wait until the server has handled all that was sent."""
+        """Wait until the server has processed all sent messages."""
         await self.send(ms.GetParameters((), "settle"))
         while (await self.next(ms.ParameterValues)).id != "settle":
             pass
@@ -104,7 +105,7 @@ class Bridge:
 
     @property
     def url(self) -> str:
-        """Where clients connect."""
+        """Address for clients."""
         return f"ws://127.0.0.1:{self.port}"
 
     @asynccontextmanager
@@ -132,7 +133,7 @@ class Bridge:
             self.server.publish(CHANNEL.id, time_ns, payload)
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        """Give way until the condition is true."""
+        """Run the event loop until the condition is true."""
         async with asyncio.timeout(DEADLINE_S):
             while not condition():
                 await asyncio.sleep(0)
@@ -154,8 +155,16 @@ async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge
         await server.close()
 
 
+def masked_frame(message: ms.ClientMessage) -> bytes:
+    """The WebSocket frame of a short message of a client, masked with zeros."""
+    frame = wire.encode_client(message)
+    body, opcode = (frame.encode(), 0x81) if isinstance(frame, str) else (frame, 0x82)
+    assert len(body) < 126
+    return bytes([opcode, 0x80 | len(body), 0, 0, 0, 0]) + body
+
+
 class StalledClient:
-    """Says what it is told to, and does not read until asked to: a bare socket, so that nothing reads ahead."""
+    """A client on a plain socket, which reads only in `connect` and `next`, so that nothing is read in advance."""
 
     def __init__(self, port: int) -> None:
         self._socket = socket.socket()
@@ -165,7 +174,7 @@ class StalledClient:
         self._read = bytearray()
 
     async def connect(self) -> None:
-        """Shake hands; reads no further than the headers."""
+        """Make the handshake; read only its headers."""
         loop = asyncio.get_running_loop()
         await loop.sock_connect(self._socket, ("127.0.0.1", self._port))
         key = base64.b64encode(os.urandom(16)).decode()
@@ -180,16 +189,11 @@ class StalledClient:
         self._read.clear()
 
     async def say(self, message: ms.ClientMessage) -> None:
-        """Send one short message, masked with zeros."""
-        frame = wire.encode_client(message)
-        body, opcode = (frame.encode(), 0x81) if isinstance(frame, str) else (frame, 0x82)
-        assert len(body) < 126
-        await asyncio.get_running_loop().sock_sendall(
-            self._socket, bytes([opcode, 0x80 | len(body), 0, 0, 0, 0]) + body
-        )
+        """Send one short message."""
+        await asyncio.get_running_loop().sock_sendall(self._socket, masked_frame(message))
 
     async def next(self, kind: type[T]) -> T:
-        """Read on to the next message of this kind."""
+        """Read until the next message of this kind."""
         async with asyncio.timeout(DEADLINE_S):
             while True:
                 message = await self._next()
@@ -197,7 +201,7 @@ class StalledClient:
                     return message
 
     def abort(self) -> None:
-        """Vanish."""
+        """Close the socket without a closing handshake."""
         self._socket.close()
 
     async def _next(self) -> ms.ServerMessage:

@@ -9,15 +9,16 @@ from typing import TypeVar
 
 from websockets.sync.client import ClientConnection, connect
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import CDR
+from thymio_sim_ros.bridge import SUBPROTOCOLS
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.protocol.constants import CDR
 
 T = TypeVar("T")
 
 
 class Studio:
-    """Knows what the server has advertised; `until` is the test's way of waiting (it spins the executor)."""
+    """Knows the advertised channels and services; `until`, given by the test, spins the executor."""
 
     def __init__(self, port: int, until: Callable[..., object], *, tls: ssl.SSLContext | None = None) -> None:
         url = f"ws://127.0.0.1:{port}" if tls is None else f"wss://localhost:{port}"
@@ -86,7 +87,7 @@ class Studio:
         return values[0].value
 
     def read(self) -> Studio:
-        """Take in what has arrived; returns itself."""
+        """Process received messages; return the client."""
         while True:
             try:
                 message = wire.decode_server(self._connection.recv(timeout=0))
@@ -105,11 +106,11 @@ class Studio:
 
 
 def set_and_answer(studio: Studio, *parameters: ms.Parameter) -> list[ms.ServerMessage]:
-    """Set parameters; everything told from the wish to its answer."""
+    """Set parameters; return all messages until the answer."""
     studio.read()
     studio.received.clear()
     studio.send(ms.SetParameters(parameters, "mine"))
-    told: list[ms.ServerMessage] = []
-    while not (told and isinstance(told[-1], ms.ParameterValues) and told[-1].id == "mine"):
-        told.append(studio.next(object))
-    return told
+    messages: list[ms.ServerMessage] = []
+    while not (messages and isinstance(messages[-1], ms.ParameterValues) and messages[-1].id == "mine"):
+        messages.append(studio.next(object))
+    return messages

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.bridge.access import TOKEN, AttemptLimiter, Role, Tokens, given_token, is_loopback, new_token
+from thymio_sim_ros.bridge.access import TOKEN, AttemptLimiter, Tokens, given_token, is_loopback, new_token
+from thymio_sim_ros.bridge.protocol.constants import Role
 
 TOKENS = Tokens("fulltoken", "looktoken")
 
@@ -29,23 +30,23 @@ def test_a_token_gives_its_role_and_no_other(given: str | None, role: Role | Non
 @pytest.mark.parametrize(
     ("given", "role"), [(None, Role.FULL), ("", Role.FULL), ("any", Role.FULL), ("looktoken", Role.READ_ONLY)]
 )
-def test_without_a_token_everyone_may_everything(given: str | None, role: Role) -> None:
+def test_without_a_token_all_clients_have_all_rights(given: str | None, role: Role) -> None:
     assert Tokens("", "looktoken").role(given) is role
 
 
-def test_tokens_are_not_in_what_is_printed_of_them() -> None:
+def test_tokens_are_not_part_of_their_representation() -> None:
     assert "token" not in repr(TOKENS)
 
 
 @pytest.mark.parametrize("address", ["localhost", "127.0.0.1", "127.9.9.9", "::1"])
-def test_on_this_computer_none_is_made(address: str) -> None:
+def test_no_token_is_created_for_loopback(address: str) -> None:
     assert is_loopback(address)
     assert Tokens.for_address(address) == Tokens()
     assert Tokens.for_address(address, "fulltoken").is_required
 
 
 @pytest.mark.parametrize("address", ["0.0.0.0", "::", "192.168.1.2", "class-pc", ""])
-def test_for_the_network_two_are_made(address: str) -> None:
+def test_two_tokens_are_created_for_the_network(address: str) -> None:
     assert not is_loopback(address)
     made = Tokens.for_address(address)
     assert TOKEN.fullmatch(made.full)
@@ -88,7 +89,7 @@ def test_wrong_tokens_may_be_tried_some_times_and_then_slowly() -> None:
     assert not attempts.is_allowed_to_try("10.0.0.1")
 
 
-def test_one_computer_does_not_get_more_attempts_by_more_numbers_of_ipv6() -> None:
+def test_one_computer_does_not_get_more_attempts_by_several_ipv6_addresses() -> None:
     attempts = AttemptLimiter(lambda: 0.0)
     for number in range(30):
         attempts.record_failure(f"fd00::{number:x}")
@@ -96,8 +97,8 @@ def test_one_computer_does_not_get_more_attempts_by_more_numbers_of_ipv6() -> No
     assert attempts.is_allowed_to_try("fd01::1")
 
 
-def test_so_many_addresses_are_remembered_and_no_more() -> None:
+def test_the_number_of_remembered_addresses_is_limited() -> None:
     attempts = AttemptLimiter(lambda: 0.0)
     for number in range(2000):
         attempts.record_failure(f"10.0.{number // 250}.{number % 250}")
-    assert len(attempts._left) == 1000
+    assert len(attempts._remaining_by_network) == 1000

@@ -1,4 +1,4 @@
-"""Turns of several threads."""
+"""The fair lock with several threads."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from thymio_sim_ros.bridge.fair_lock import FairLock
 DEADLINE_S = 20.0
 
 
-def test_one_at_a_time_has_the_turn() -> None:
+def test_one_thread_at_a_time_has_the_lock() -> None:
     lock = FairLock()
     count, rounds = 0, 2000
 
@@ -34,7 +34,7 @@ def test_one_at_a_time_has_the_turn() -> None:
     assert count == len(threads) * rounds
 
 
-def test_who_waits_has_the_turn_before_one_who_comes_back_at_once() -> None:
+def test_a_waiting_thread_gets_the_lock_before_the_thread_that_released_it() -> None:
     lock = FairLock()
     has_had_it, is_enough = threading.Event(), threading.Event()
 
@@ -61,7 +61,7 @@ def test_who_waits_has_the_turn_before_one_who_comes_back_at_once() -> None:
     assert came
 
 
-def test_an_error_ends_a_turn() -> None:
+def test_an_error_releases_the_lock() -> None:
     lock = FairLock()
     try:
         with lock:

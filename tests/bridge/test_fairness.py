@@ -1,4 +1,4 @@
-"""What one client costs the event loop: others have their turn in between, and there is an end to it."""
+"""The time of the event loop that one client can use is limited, and other clients are served in between."""
 
 from __future__ import annotations
 
@@ -11,29 +11,21 @@ from contextlib import asynccontextmanager, suppress
 import pytest
 from websockets.exceptions import ConnectionClosedError
 
-from tests.bridge.peers import DEADLINE_S, Client, StalledClient, bridge, run
-from thymio_sim_ros.bridge import ServerSettings, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.bounded_json import MAX_STRUCTURE
-from thymio_sim_ros.bridge.switchboard import MAX_CALLS
+from tests.bridge.peers import DEADLINE_S, Client, StalledClient, bridge, masked_frame, run
+from thymio_sim_ros.bridge import ServerSettings
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.bounded_json import MAX_STRUCTURE
+from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.pending_requests import MAX_PENDING_CALLS
 
 PING = bytes([0x89, 0x80, 0, 0, 0, 0])
 CLIENT_FRAME = ms.ServiceRequest(7, 1, "cdr", b"")
-"""Of a service that does not exist: refused at once."""
-
-
-def masked(message: ms.ClientMessage) -> bytes:
-    """A short binary frame of a client."""
-    body = wire.encode_client(message)
-    assert isinstance(body, bytes)
-    assert len(body) < 126
-    return bytes([0x82, 0x80 | len(body), 0, 0, 0, 0]) + body
+"""A call of a service that does not exist: it is rejected immediately."""
 
 
 @asynccontextmanager
 async def flooder(port: int) -> AsyncIterator[StalledClient]:
-    """A client that sends bytes of its own making and reads nothing of the answers."""
+    """A client that sends given bytes and reads no answers."""
     client = StalledClient(port)
     await client.connect()
     try:
@@ -42,20 +34,20 @@ async def flooder(port: int) -> AsyncIterator[StalledClient]:
         client.abort()
 
 
-class Turns:
-    """Counts turns of the event loop."""
+class LoopIterations:
+    """Counts iterations of the event loop."""
 
     def __init__(self) -> None:
         self.count = 0
-        self._task = asyncio.create_task(self._lock())
+        self._task = asyncio.create_task(self._run())
 
-    async def _lock(self) -> None:
+    async def _run(self) -> None:
         while True:
             await asyncio.sleep(0)
             self.count += 1
 
     def stop(self) -> None:
-        """Count no more."""
+        """Stop counting."""
         self._task.cancel()
 
 
@@ -74,8 +66,8 @@ class SlowClock:
         return self._now_s
 
 
-def test_a_client_that_asks_little_does_not_queue_behind_those_that_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Clients that came and went delayed a quiet one by more than a second: it waited for the rests of them all."""
+def test_a_client_with_few_messages_does_not_wait_for_throttled_clients(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Clients that connected and disconnected once delayed another one by more than a second."""
 
     async def scenario() -> None:
         async with bridge() as server, server.client() as client:
@@ -88,14 +80,16 @@ def test_a_client_that_asks_little_does_not_queue_behind_those_that_rest(monkeyp
     run(scenario())
 
 
-@pytest.mark.parametrize(("frame", "count"), [(PING, 40_000), (masked(CLIENT_FRAME), 3000)], ids=["pings", "calls"])
-def test_a_flood_in_one_packet_is_handled_in_many_turns(frame: bytes, count: int) -> None:
+@pytest.mark.parametrize(
+    ("frame", "count"), [(PING, 40_000), (masked_frame(CLIENT_FRAME), 3000)], ids=["pings", "calls"]
+)
+def test_many_frames_in_one_packet_are_handled_in_many_iterations(frame: bytes, count: int) -> None:
     async def scenario() -> int:
         async with bridge() as server, server.client() as other, flooder(server.port) as client:
             await other.settle()
             flood = frame * count
             handled: list[int] = []
-            turns = Turns()
+            turns = LoopIterations()
 
             async def send() -> None:
                 await asyncio.get_running_loop().sock_sendall(client._socket, flood)
@@ -118,7 +112,7 @@ def test_a_flood_in_one_packet_is_handled_in_many_turns(frame: bytes, count: int
     assert run(scenario()) > 20
 
 
-def test_calls_that_are_refused_leave_the_others_room() -> None:
+def test_rejected_calls_do_not_delay_other_clients() -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client() as busy, server.client() as other:
             side = ms.ServiceSide("cdr", "t", "ros2msg", "")
@@ -129,7 +123,7 @@ def test_calls_that_are_refused_leave_the_others_room() -> None:
             await server.sink.until(lambda events: any(getattr(event, "client", 0) == 2 for event in events))
             await busy.settle()
             calls = [event for event in server.sink.events if isinstance(event, ev.ServiceCalled)]
-            assert len([call for call in calls if call.client == 1]) == MAX_CALLS
+            assert len([call for call in calls if call.client == 1]) == MAX_PENDING_CALLS
 
     run(scenario())
 
@@ -144,7 +138,7 @@ def test_calls_that_are_refused_leave_the_others_room() -> None:
     ],
     ids=["lists", "numbers", "brackets", "no JSON"],
 )
-def test_a_long_frame_of_nonsense_is_refused_unread(frame: str) -> None:
+def test_a_long_frame_with_much_structure_is_rejected_before_it_is_decoded(frame: str) -> None:
     async def scenario() -> str:
         async with bridge() as server, server.client() as client:
             await client.connection.send(frame)
@@ -155,8 +149,8 @@ def test_a_long_frame_of_nonsense_is_refused_unread(frame: str) -> None:
     )
 
 
-def test_a_playground_with_pictures_passes() -> None:
-    """What the page sends at most: a file of 3 MB in base64."""
+def test_a_playground_with_images_is_accepted() -> None:
+    """The largest message of the page: a file of 3 MB in base64."""
     wish = ms.Parameter("/simulator.playground", "data:application/octet-stream;base64," + "A" * 4_000_000)
 
     async def scenario() -> None:
@@ -168,7 +162,7 @@ def test_a_playground_with_pictures_passes() -> None:
     run(scenario())
 
 
-def test_more_clients_than_the_limit_are_refused_until_one_leaves() -> None:
+def test_more_clients_than_the_limit_are_rejected_until_one_disconnects() -> None:
     async def scenario() -> None:
         async with bridge(ServerSettings(max_clients=2)) as server:
             async with server.client() as first, server.client() as second:
@@ -184,7 +178,7 @@ def test_more_clients_than_the_limit_are_refused_until_one_leaves() -> None:
     run(scenario())
 
 
-def test_silent_connections_are_limited_too_and_make_room_when_they_leave() -> None:
+def test_silent_connections_are_limited_and_free_their_slots_when_they_close() -> None:
     async def scenario() -> None:
         async with bridge(ServerSettings(max_clients=2)) as server:
             loop = asyncio.get_running_loop()
@@ -204,12 +198,12 @@ def test_silent_connections_are_limited_too_and_make_room_when_they_leave() -> N
 
 
 async def greeting(client: Client) -> ms.Advertise:
-    """The channels a newcomer is told of."""
+    """The channels that a new client receives."""
     return await client.next(ms.Advertise)
 
 
-def test_newcomers_are_told_of_what_there_is_now() -> None:
-    """The greeting is kept between newcomers."""
+def test_new_clients_receive_the_current_channels() -> None:
+    """The encoded first messages are cached for later clients."""
 
     async def scenario() -> None:
         async with bridge() as server:

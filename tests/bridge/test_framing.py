@@ -6,8 +6,8 @@ import pytest
 from websockets.frames import Frame, Opcode
 
 from thymio_sim_ros.bridge.framing import binary_head, data_frame, framed
-from thymio_sim_ros.bridge.messages import MessageData
-from thymio_sim_ros.bridge.wire import encode_server
+from thymio_sim_ros.bridge.protocol.messages import MessageData
+from thymio_sim_ros.bridge.protocol.wire import encode_server
 
 SIZES = [0, 1, 125, 126, 127, 65535, 65536, 100_000]
 

@@ -1,4 +1,4 @@
-"""Clients that mean harm, and clients that come and go: nobody else notices, and nothing is left of them."""
+"""Malicious clients, and clients that connect and disconnect: others are not affected, and nothing is left."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from collections.abc import Iterator
 import pytest
 
 from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClient, bridge, run
-from thymio_sim_ros.bridge import ServerSettings, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import ServerSettings
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue
-from thymio_sim_ros.bridge.client_state import ClientState
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.client_state import ClientState
 from thymio_sim_ros.bridge.transport import SharedConnection, SharedTransport
 
 FRAMES = 10_000
@@ -51,7 +52,7 @@ def mutated(rng: random.Random) -> Iterator[str | bytes]:
 
 
 @pytest.mark.parametrize("seed", [5, 6])
-def test_mutated_frames_leave_the_server_standing_and_others_served(seed: int) -> None:
+def test_mutated_frames_do_not_affect_the_server_and_other_clients(seed: int) -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client() as fuzzer, server.client() as other:
             await other.subscribe(1)
@@ -94,7 +95,7 @@ def test_clients_that_come_and_go_leave_nothing_behind() -> None:
 
 
 async def visit(server: Bridge, number: int) -> None:
-    """Connect, ask for a bit of everything, and leave: every third without a word."""
+    """Connect, use each kind of message, and disconnect; every third client without a closing handshake."""
     if number % 3 == 2:
         guest = StalledClient(server.port)
         await guest.connect()
@@ -108,7 +109,7 @@ async def visit(server: Bridge, number: int) -> None:
 
 
 def census() -> Counter[type]:
-    """Living objects of what a connection costs."""
+    """Number of existing objects of each type that belongs to a connection."""
     gc.collect()
     kinds = (ClientState, ClientSendQueue, SharedConnection, SharedTransport, asyncio.Task, socket.socket)
     return Counter(type(thing) for thing in gc.get_objects() if type(thing) in kinds)
@@ -138,7 +139,7 @@ def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
     run(scenario())
 
 
-def test_one_large_answer_reaches_who_reads_it() -> None:
+def test_one_large_answer_reaches_a_client_that_reads() -> None:
     size = 20 << 20
 
     async def scenario() -> None:

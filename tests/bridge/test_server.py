@@ -14,10 +14,10 @@ from websockets.typing import Subprotocol
 from tests.bridge.certificates import make_certificate
 from tests.bridge.peers import CHANNEL, DEADLINE_S, Client, StalledClient, bridge, run
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerSettings, Tokens
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import StatusLevel
-from thymio_sim_ros.bridge.server import WRONG_TOKEN
+from thymio_sim_ros.bridge.handshake import WRONG_TOKEN
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.switchboard import events as ev
 
 LIMIT = 1 << 16
 KILOBYTE = bytes(1024)
@@ -40,7 +40,7 @@ def test_both_names_of_the_protocol_are_spoken(offered: tuple[str, ...], accepte
 
 
 @pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
-def test_a_client_comes_by_either_version_of_tls(tmp_path: Path, version: ssl.TLSVersion) -> None:
+def test_a_client_connects_with_either_version_of_tls(tmp_path: Path, version: ssl.TLSVersion) -> None:
     cert, key = make_certificate(tmp_path)
     tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     tls.load_cert_chain(cert, key)
@@ -56,7 +56,7 @@ def test_a_client_comes_by_either_version_of_tls(tmp_path: Path, version: ssl.TL
     assert run(scenario()).name == "test"
 
 
-def test_a_client_of_another_protocol_is_refused() -> None:
+def test_a_client_of_another_protocol_is_rejected() -> None:
     async def scenario() -> None:
         async with bridge() as server, connect(server.url):
             pass
@@ -65,7 +65,7 @@ def test_a_client_of_another_protocol_is_refused() -> None:
         run(scenario())
 
 
-def test_a_page_from_elsewhere_is_refused_and_told_why() -> None:
+def test_a_page_from_elsewhere_is_rejected_with_the_reason() -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client(origin="https://evil.example"):
             pass
@@ -76,7 +76,7 @@ def test_a_page_from_elsewhere_is_refused_and_told_why() -> None:
     assert b"allowed_origins" in caught.value.response.body
 
 
-def test_a_page_of_this_machine_is_welcome() -> None:
+def test_a_page_of_this_machine_is_accepted() -> None:
     async def scenario() -> ms.ServerInfo:
         async with bridge() as server, server.client(origin="http://localhost:8080") as client:
             return await client.next(ms.ServerInfo)
@@ -97,7 +97,7 @@ def test_messages_reach_every_subscriber_under_its_own_id() -> None:
     run(scenario())
 
 
-def test_new_and_vanished_channels_are_told_to_all() -> None:
+def test_new_and_removed_channels_are_sent_to_all_clients() -> None:
     async def scenario() -> None:
         added = ms.Channel(11, "/u", "cdr", "std_msgs/msg/Bool", "bool data", "ros2msg")
         async with bridge() as server, server.client() as one, server.client() as two:
@@ -163,7 +163,7 @@ def test_a_too_long_frame_ends_that_connection_only() -> None:
     run(scenario())
 
 
-def test_a_client_that_vanishes_is_forgotten() -> None:
+def test_a_client_that_disconnects_is_removed() -> None:
     async def scenario() -> None:
         async with bridge() as server:
             client = StalledClient(server.port)
@@ -179,7 +179,7 @@ def test_a_client_that_vanishes_is_forgotten() -> None:
     run(scenario())
 
 
-def test_messages_for_a_client_that_has_just_vanished_are_dropped_without_a_word(
+def test_messages_for_a_client_that_has_just_disconnected_are_dropped_silently(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     async def scenario() -> None:
@@ -238,7 +238,7 @@ def test_a_stalled_client_keeps_its_control_messages_and_gets_the_newest_data() 
     run(scenario())
 
 
-def test_a_slow_connection_is_told_so_once() -> None:
+def test_a_slow_client_receives_one_warning() -> None:
     async def scenario() -> list[str]:
         async with bridge(ServerSettings(buffer_limit=LIMIT)) as server:
             stalled = StalledClient(server.port)
@@ -261,7 +261,7 @@ def test_a_slow_connection_is_told_so_once() -> None:
     assert end == "end"
 
 
-def test_a_client_that_lets_even_control_messages_pile_up_is_cut_off() -> None:
+def test_a_client_with_too_many_buffered_control_messages_is_disconnected() -> None:
     async def scenario() -> None:
         async with bridge(ServerSettings(buffer_limit=LIMIT)) as server:
             stalled = StalledClient(server.port)
@@ -276,7 +276,7 @@ def test_a_client_that_lets_even_control_messages_pile_up_is_cut_off() -> None:
     run(scenario())
 
 
-def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -> None:
+def test_while_the_event_sink_is_full_a_busy_client_waits_and_others_are_served() -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client() as busy, server.client() as other:
             await other.subscribe(1)
@@ -296,7 +296,7 @@ def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -
     run(scenario())
 
 
-def test_a_client_that_waits_for_the_owner_does_not_hold_up_the_end() -> None:
+def test_a_client_that_waits_for_the_event_sink_does_not_delay_closing() -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client() as busy:
             await busy.send(ms.ClientAdvertise((ms.ClientChannel(1, "/a", "cdr", "std_msgs/Bool"),)))
@@ -311,7 +311,7 @@ def test_a_client_that_waits_for_the_owner_does_not_hold_up_the_end() -> None:
     run(scenario())
 
 
-def test_a_stalled_client_does_not_hold_up_the_end() -> None:
+def test_a_stalled_client_does_not_delay_closing() -> None:
     async def scenario() -> None:
         async with bridge(ServerSettings(buffer_limit=LIMIT)) as server:
             stalled = StalledClient(server.port)
@@ -341,7 +341,7 @@ FOREIGN = "https://evil.example"
         ("/?token=looktoken", None, None, {"access": "read_only"}),
     ],
 )
-def test_a_client_with_a_token_is_welcome(
+def test_a_client_with_a_token_is_accepted(
     query: str, headers: dict[str, str] | None, origin: str | None, metadata: dict[str, str]
 ) -> None:
     async def scenario() -> ms.ServerInfo:
@@ -357,7 +357,7 @@ def test_a_client_with_a_token_is_welcome(
 
 
 @pytest.mark.parametrize("query", ["", "/?token=wrongtoken", "/?token="])
-def test_a_program_without_a_valid_token_is_refused_in_the_handshake(query: str) -> None:
+def test_a_program_without_a_valid_token_is_rejected_in_the_handshake(query: str) -> None:
     async def scenario() -> InvalidStatus:
         async with bridge(ServerSettings(tokens=TOKENS)) as server:
             with pytest.raises(InvalidStatus) as caught:
@@ -371,26 +371,26 @@ def test_a_program_without_a_valid_token_is_refused_in_the_handshake(query: str)
 
 
 @pytest.mark.parametrize("query", ["", "/?token=wrongtoken"])
-def test_a_page_without_a_valid_token_is_told_so_and_gets_nothing_else(query: str) -> None:
+def test_a_page_without_a_valid_token_receives_only_the_reason(query: str) -> None:
     async def scenario() -> tuple[list[ms.Status], int]:
         async with (
             bridge(ServerSettings(tokens=TOKENS)) as server,
             server.client(query=query, origin="http://127.0.0.1:8080") as client,
         ):
-            heard = [await client.next(ms.Status)]
+            statuses = [await client.next(ms.Status)]
             with pytest.raises(ConnectionClosed) as caught:
                 await client.next(object)
             assert server.server.client_count == 0
             assert caught.value.rcvd is not None
-            return heard, caught.value.rcvd.code
+            return statuses, caught.value.rcvd.code
 
-    heard, code = run(scenario())
+    statuses, code = run(scenario())
     assert code == WRONG_TOKEN
-    (status,) = heard
+    (status,) = statuses
     assert (status.level, status.id) == (StatusLevel.ERROR, "access")
 
 
-def test_wrong_tokens_are_tried_so_often_only_and_logged_once(caplog: pytest.LogCaptureFixture) -> None:
+def test_wrong_tokens_are_limited_and_logged_once(caplog: pytest.LogCaptureFixture) -> None:
     async def scenario() -> list[int]:
         statuses = []
         async with bridge(ServerSettings(tokens=TOKENS)) as server:

@@ -1,4 +1,4 @@
-"""The server in a thread of its own."""
+"""The server in its own thread."""
 
 from __future__ import annotations
 
@@ -17,18 +17,19 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from tests.bridge.certificates import make_certificate, trusting
-from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread, wire
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import StatusLevel
+from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.switchboard import events as ev
 
 CHANNEL = ms.Channel(1, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
 DEADLINE_S = 20.0
 
 
 class Sink:
-    """Tells when somebody subscribes."""
+    """Sets an event when a client subscribes."""
 
     def __init__(self) -> None:
         self.subscribed = threading.Event()
@@ -38,7 +39,7 @@ class Sink:
         return False
 
     def post(self, event: ev.Event) -> None:
-        """Take an event."""
+        """Handle an event."""
         if isinstance(event, ev.ChannelSubscribed):
             self.subscribed.set()
 
@@ -70,7 +71,7 @@ def test_localhost_is_both_loopbacks_on_one_port() -> None:
 
 
 @pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
-def test_a_port_taken_on_one_loopback_is_refused_and_the_other_given_back() -> None:
+def test_a_port_taken_on_one_loopback_is_rejected_and_the_other_given_back() -> None:
     with socket.create_server(("::1", 0), family=socket.AF_INET6) as taken:
         port = taken.getsockname()[1]
         with pytest.raises(OSError, match=rf"cannot listen on \[::1\]:{port}: address already in use"):
@@ -92,7 +93,7 @@ def test_without_ipv6_the_other_loopback_is_enough(monkeypatch: pytest.MonkeyPat
 
 
 @pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
-def test_a_client_may_come_by_ipv6() -> None:
+def test_a_client_may_connect_by_ipv6() -> None:
     server, _ = start()
     with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         assert isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.ServerInfo)
@@ -100,7 +101,7 @@ def test_a_client_may_come_by_ipv6() -> None:
     server.close()
 
 
-def test_an_address_that_is_not_ours_is_refused_by_name() -> None:
+def test_an_address_of_another_machine_is_rejected_by_name() -> None:
     with pytest.raises(OSError, match=r"cannot listen on 192\.0\.2\.1:8765"):
         listen("192.0.2.1", 8765)
 
@@ -138,14 +139,14 @@ def test_data_and_other_commands_do_not_overtake_each_other() -> None:
             for _ in range(number % 3):
                 server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, str(number))))
             server.publish(1, number, b"x")
-        told: list[str] = []
-        while told.count("data 199") < 1:
+        received: list[str] = []
+        while received.count("data 199") < 1:
             message = wire.decode_server(client.recv(timeout=DEADLINE_S))
             if isinstance(message, ms.MessageData):
-                told.append(f"data {message.time_ns}")
+                received.append(f"data {message.time_ns}")
             elif isinstance(message, ms.Status):
-                told.append(message.message)
-        assert told == [word for n in range(200) for word in [str(n)] * (n % 3) + [f"data {n}"]]
+                received.append(message.message)
+        assert received == [word for n in range(200) for word in [str(n)] * (n % 3) + [f"data {n}"]]
     server.close()
 
 
@@ -166,16 +167,16 @@ def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         server.publish(1, 7, b"x")
-        server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "told")))
+        server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "sent")))
         while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
-        assert wire.decode_server(client.recv(timeout=DEADLINE_S)) == ms.Status(StatusLevel.INFO, "told")
+        assert wire.decode_server(client.recv(timeout=DEADLINE_S)) == ms.Status(StatusLevel.INFO, "sent")
         sink.may_go_on.set()
     server.close()
 
 
-def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
+def test_data_of_another_thread_arrives_with_tls(tmp_path: Path) -> None:
     cert, key = make_certificate(tmp_path)
     tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     tls.load_cert_chain(cert, key)
@@ -199,7 +200,7 @@ def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
             client.recv(timeout=DEADLINE_S)
 
 
-def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
+def test_a_command_that_cannot_be_encoded_harms_neither_its_sender_nor_later_ones(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     server, sink = start()
@@ -216,7 +217,7 @@ def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
     assert caplog.messages == ["internal error (please report): SendToClient failed"]
 
 
-def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
+def test_a_thread_that_sends_without_pauses_does_not_block_new_clients() -> None:
     server, _ = start()
     server.post(ev.AddChannels((CHANNEL,)))
     is_enough = threading.Event()
@@ -245,8 +246,8 @@ def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
 COUNTING = """
 import sys
 from websockets.sync.client import connect
-from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge import SUBPROTOCOLS
+from thymio_sim_ros.bridge.protocol import messages as ms, wire
 
 with connect(f"ws://127.0.0.1:{sys.argv[1]}", subprotocols=SUBPROTOCOLS, close_timeout=0) as client:
     client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
@@ -258,7 +259,7 @@ with connect(f"ws://127.0.0.1:{sys.argv[1]}", subprotocols=SUBPROTOCOLS, close_t
 """
 
 
-def test_a_client_that_reads_on_gets_a_fair_part_of_what_comes_too_fast() -> None:
+def test_a_client_that_keeps_reading_gets_a_fair_share_of_too_many_messages() -> None:
     count, most_per_arrival = 10_000, 100
     server, sink = start()
     server.post(ev.AddChannels((CHANNEL,)))
@@ -278,7 +279,7 @@ def test_a_client_that_reads_on_gets_a_fair_part_of_what_comes_too_fast() -> Non
     assert arrived, f"fewer than {count} of {number} messages arrived"
 
 
-def test_closing_ends_the_thread_and_says_goodbye_to_clients() -> None:
+def test_closing_ends_the_thread_and_closes_connections() -> None:
     before = set(threading.enumerate())
     server, _ = start()
     started = set(threading.enumerate()) - before

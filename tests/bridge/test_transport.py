@@ -15,7 +15,7 @@ from tests.bridge.peers import DEADLINE_S, run
 from thymio_sim_ros.bridge.transport import SharedTransport
 
 CHUNK = struct.Struct("<II992x")
-"""Who writes, its count, and padding."""
+"""The number of the writing thread, a counter, and padding."""
 
 
 class Ends:
@@ -26,7 +26,7 @@ class Ends:
         self.peer = peer
 
     def fill(self) -> int:
-        """Write until something waits; how many bytes were written."""
+        """Write until bytes are buffered; return the number of written bytes."""
         written = 0
         while not self.transport.get_write_buffer_size():
             self.transport.write(bytes(1000))
@@ -34,7 +34,7 @@ class Ends:
         return written
 
     async def read(self, size: int) -> bytes:
-        """So many bytes, or less at the end."""
+        """Read this number of bytes, or fewer at the end."""
         data = bytearray()
         async with asyncio.timeout(DEADLINE_S):
             while len(data) < size:
@@ -97,12 +97,12 @@ def test_messages_of_two_threads_arrive_whole_and_in_order() -> None:
             other.join()
             chunks = list(CHUNK.iter_unpack(data))
             for writer in (0, 1):
-                assert [number for who, number in chunks if who == writer] == list(range(count))
+                assert [number for thread, number in chunks if thread == writer] == list(range(count))
 
     run(scenario())
 
 
-def test_what_the_kernel_does_not_take_waits_and_counts() -> None:
+def test_bytes_that_the_kernel_does_not_accept_are_buffered_and_counted() -> None:
     async def scenario() -> None:
         async with ends() as pair:
             written = pair.fill()
@@ -116,7 +116,7 @@ def test_what_the_kernel_does_not_take_waits_and_counts() -> None:
     run(scenario())
 
 
-def test_an_offer_is_refused_while_more_than_its_limit_waits() -> None:
+def test_try_write_fails_while_more_than_the_limit_is_buffered() -> None:
     async def scenario() -> None:
         async with ends() as pair:
             written = pair.fill()
@@ -143,7 +143,7 @@ def test_all_that_was_written_arrives_before_the_end(end: Callable[[SharedTransp
     run(scenario())
 
 
-def test_another_thread_may_cut_a_connection_off() -> None:
+def test_another_thread_may_abort_a_connection() -> None:
     async def scenario() -> None:
         async with ends() as pair:
             written = pair.fill()
@@ -153,7 +153,7 @@ def test_another_thread_may_cut_a_connection_off() -> None:
     run(scenario())
 
 
-def test_writing_to_somebody_who_has_left_does_nothing() -> None:
+def test_writing_to_a_disconnected_client_has_no_effect() -> None:
     async def scenario() -> None:
         async with ends() as pair:
             pair.peer.close()

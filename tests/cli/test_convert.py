@@ -1,4 +1,4 @@
-"""thymio-sim convert: what is written, what is told, and how it ends."""
+"""thymio-sim convert: files, messages and exit codes."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_two_large_pictures_can_be_read_again(tmp_path: Path) -> None:
     assert reader.load(out).shapes == reader.load(path).shapes
     shapes += [{**shape, "name": f"q{i}"} for i, shape in enumerate(shapes * 2)]
     path.write_text(json.dumps({"format": 1, "title": "Big", "shapes": shapes, "robots": []}))
-    with pytest.raises(PlaygroundError, match=r"shapes\[\d\]\.image: found more than 24000000 bytes of pictures"):
+    with pytest.raises(PlaygroundError, match=r"shapes\[\d\]\.image: found more than 24000000 bytes of images"):
         reader.load(path)
 
 
@@ -82,11 +82,11 @@ def test_the_result_goes_into_a_file(maze: Path, capsys: pytest.CaptureFixture[s
     assert capsys.readouterr() == ("", "")
 
 
-def test_what_cannot_be_expressed_is_told_on_standard_error(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_cannot_be_converted_is_reported_on_stderr(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:
     maze.write_text(MAZE.format(FEEDER))
     assert main(["convert", str(maze)]) == 0
-    told = capsys.readouterr().err
-    assert told == (f"thymio-sim convert: {maze}: line 1: <feeder> left out: energy feeders are for e-pucks only\n")
+    reported = capsys.readouterr().err
+    assert reported == (f"thymio-sim convert: {maze}: line 1: <feeder> skipped: energy feeders are for e-pucks only\n")
 
 
 def test_strict_writes_nothing_then(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -32,7 +32,7 @@ def test_a_file_that_cannot_be_written_is_one_line(tmp_path, capsys):
 def test_what_is_no_namespace_is_refused(name, capsys):
     with pytest.raises(SystemExit, match="2"):
         main.main(["foxglove-layout", "--robot", name])
-    assert "is no namespace" in capsys.readouterr().err
+    assert "expected a namespace" in capsys.readouterr().err
 
 
 def test_the_hint_names_the_shipped_file_or_the_command():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import importlib.util
 import json
 import os
 import pathlib
@@ -18,10 +19,10 @@ import pytest
 from tests import disk
 from tests.processes import free_port
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
-from thymio_sim_ros.cli import main
-from thymio_sim_ros.cli.replay import replay
+from thymio_sim_ros.cli import main, suite
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.runlog import run_log
+from thymio_sim_ros.runlog.replay import replay
 from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
 
 
@@ -110,12 +111,12 @@ def test_help_has_an_example(capsys, command):
     assert "example:" in capsys.readouterr().out
 
 
-def test_without_ros_it_says_where_to_get_it(capsys, monkeypatch):
-    monkeypatch.setattr(main.importlib.util, "find_spec", lambda _name: None)
+def test_without_ros_the_error_says_how_to_install_it(capsys, monkeypatch):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     assert "runner" in refused(capsys, "--headless")
 
 
-def test_a_look_at_the_ports_lets_nobody_in_who_would_then_find_nobody(capsys, monkeypatch):
+def test_checking_the_ports_accepts_no_connection(capsys, monkeypatch):
     """A browser that waits for the page took the first answer of its port for the page."""
 
     class Socket(socket.socket):
@@ -123,7 +124,7 @@ def test_a_look_at_the_ports_lets_nobody_in_who_would_then_find_nobody(capsys, m
             pytest.fail("listens before there is a page")
 
     monkeypatch.setattr(socket, "socket", Socket)
-    monkeypatch.setattr(main.importlib.util, "find_spec", lambda _name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     ports = ("--port", str(free_port()), "--foxglove-port", str(free_port()))
     assert "ROS 2 is not installed" in refused(capsys, *ports)
 
@@ -242,7 +243,7 @@ def test_the_runner_lets_sensors_see_as_wanted(tmp_path):
     assert begun.options.proximity_model == "enki"
 
 
-def test_the_runner_stores_what_was_to_be_heard(capsys, tmp_path):
+def test_the_runner_stores_the_sound(capsys, tmp_path):
     program = tmp_path / "song.aesl"
     program.write_text("call sound.system(0)")
     sound = tmp_path / "sound.wav"
@@ -303,7 +304,7 @@ def test_a_full_disk_behind_the_output_is_one_line(arguments):
     assert (ended.returncode, ended.stderr) == (2, "thymio-sim: standard output: No space left on device\n")
 
 
-def test_the_runner_tells_programs_that_fail(capsys, tmp_path):
+def test_the_runner_reports_programs_that_fail(capsys, tmp_path):
     program = tmp_path / "faulty.aesl"
     program.write_text("var n\nonevent prox\n  n = 1 / n\n")
     arguments = ["--program", str(program), "--playground", "two_robots"]
@@ -317,20 +318,20 @@ def test_the_runner_tells_programs_that_fail(capsys, tmp_path):
     assert captured.err.splitlines() == [f"thymio-sim: {name}, at 0.10 s: {fault}" for name in ("red", "blue")]
 
 
-def test_the_runner_tells_a_program_that_fails_at_once(capsys, tmp_path):
+def test_the_runner_reports_a_program_that_fails_at_once(capsys, tmp_path):
     program = tmp_path / "faulty.aesl"
     program.write_text("var n\nn = 1 / n\n")
     assert main.main(["runner", "--seconds", "0", "--program", str(program)]) == 1
     assert "at 0.00 s: faulty.aesl: fault in init, line 2: division by zero" in capsys.readouterr().err
 
 
-def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path):
+def test_the_runner_reports_what_the_robot_could_not_do(capsys, tmp_path):
     program = tmp_path / "flash.aesl"
     program.write_text("onevent prox\ncall _system.settings.flash()\n")
     with disk.files_end_at(100):
         assert main.main(["runner", "--seconds", "0.5", "--program", str(program), "--settings", str(tmp_path)]) == 0
-    told = f"settings are not stored: {tmp_path / 'settings.json'}: {disk.TOLD}"
-    assert capsys.readouterr().err == f"thymio-sim: thymio, at 0.10 s: {told}\n"
+    reported = f"settings are not stored: {tmp_path / 'settings.json'}: {disk.FILE_TOO_LARGE}"
+    assert capsys.readouterr().err == f"thymio-sim: thymio, at 0.10 s: {reported}\n"
     assert list(tmp_path.iterdir()) == [program]
 
 
@@ -353,7 +354,7 @@ def test_each_robot_of_the_runner_gets_its_program_of_a_file(capsys, tmp_path, n
     assert captured.err == ""
 
 
-def test_what_does_not_fit_of_a_file_is_told_once(capsys, tmp_path):
+def test_mismatches_of_a_file_are_reported_once(capsys, tmp_path):
     program = tmp_path / "two.aesl"
     program.write_text(TWO_NODES.format("thymio-II", "e-puck0"))
     assert main.main(["runner", "--seconds", "0", "--playground", "two_robots", "--program", str(program)]) == 0
@@ -363,7 +364,7 @@ def test_what_does_not_fit_of_a_file_is_told_once(capsys, tmp_path):
 def test_the_suite_takes_a_file_with_a_node_for_each_robot(capsys, tmp_path, monkeypatch):
     program = tmp_path / "two.aesl"
     program.write_text(TWO_NODES.format("red", "blue"))
-    monkeypatch.setattr(main.importlib.util, "find_spec", lambda _name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     line = refused(capsys, "--headless", "--playground", "two_robots", "--program", str(program))
     assert "ROS 2 is not installed" in line
 
@@ -412,7 +413,7 @@ def test_where_tokens_come_from(monkeypatch, arguments, environment, full, read_
     monkeypatch.delenv(READ_ONLY_VARIABLE, raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    tokens = main._tokens(main._suite_parser().parse_args(arguments))
+    tokens = suite._tokens(suite._parser().parse_args(arguments))
     for found, expected in ((tokens.full, full), (tokens.read_only, read_only)):
         assert found == expected if expected is not None else len(found) >= 20
 

@@ -6,7 +6,7 @@ import pytest
 
 from aseba_vm.cli.main import main
 from thymio_sim_ros import resources
-from thymio_sim_ros.device.firmware.behavior_host import ENTRIES, MENU, built_in
+from thymio_sim_ros.device.behavior_host import ENTRIES, MENU, built_in
 
 BEHAVIOURS = resources.behaviours()
 

@@ -10,9 +10,10 @@ import pytest
 
 from tests.device.behaviour_oracle import ARROWS, ORACLES, STOP, Investigator, Senses, Shown
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
-from thymio_sim_ros.device.firmware.behavior_host import built_in
+from thymio_sim_ros.device.behavior_host import built_in
+from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, PlaySystemSound, SetLeds, ShowOnLeds, StopSound
 
 TICK_NS = 20_000_000
@@ -75,8 +76,8 @@ class Bench:
                     self.shown.sounds.append(number)
                 case StopSound():
                     self.shown.sounds.append(STOP)
-        (self.shown.tx,) = self.device.get_variable("prox.comm.tx")
-        (self.shown.threshold,) = self.device.get_variable("mic.threshold")
+        (self.shown.tx,) = self.device.variables.get("prox.comm.tx")
+        (self.shown.threshold,) = self.device.variables.get("mic.threshold")
 
 
 def feed(device: AsebaDevice, event: str, values: dict[str, tuple[int, ...]]) -> None:
@@ -84,7 +85,7 @@ def feed(device: AsebaDevice, event: str, values: dict[str, tuple[int, ...]]) ->
     number = 0xFFFE - target().local_event_number(event)
     sensor, binding = next((name, one) for name, one in bindings.sensors().items() if one.event == number)
     names = {address: name for name, (address, _size) in target().addresses.items()}
-    words = [values.get(names[slot.address], device.get_variable(names[slot.address])) for slot in binding.slots]
+    words = [values.get(names[slot.address], device.variables.get(names[slot.address])) for slot in binding.slots]
     device.feed(sensor, [word for part in words for word in part])
 
 
@@ -165,9 +166,9 @@ def test_investigator_keeps_its_levels_on_the_card(tmp_path: Path) -> None:
     both = frozenset(("backward", "forward"))
     bench.tick(Senses(g=(200, 300), buttons=both, touched=both))
     bench.tick(Senses(g=(200, 300)))
-    assert device.get_variable("black") == (400,)
+    assert device.variables.get("black") == (400,)
     bench.tick(Senses(g=(300, 300), buttons=both, touched=both))
     bench.tick(Senses(g=(300, 300)))
     assert (tmp_path / "u450.dat").read_bytes() == (450).to_bytes(2, "little") * 2
     Bench("investigator", device)
-    assert (device.get_variable("black"), device.get_variable("white")) == ((450,), (450,))
+    assert (device.variables.get("black"), device.variables.get("white")) == ((450,), (450,))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.device.device import AsebaDevice, DeviceStatus
+from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.programs.program import load_program
+from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.sim.commands import LED_GROUPS, EnableComm, MotorTargets, ReleaseLeds, SetLeds, ShowOnLeds
 
 BUDGET = 5000
@@ -48,10 +49,10 @@ def test_a_new_program_gives_the_lights_back_to_the_robot():
 
 def test_the_identity_of_the_robot_survives_a_reset():
     device = device_with("_id = 99")
-    device.reset()
-    assert device.get_variable("_id") == (1,)
-    assert device.get_variable("_productId") == (8,)
-    assert device.get_variable("_fwversion") == (14, 1)
+    device.run_control.reset()
+    assert device.variables.get("_id") == (1,)
+    assert device.variables.get("_productId") == (8,)
+    assert device.variables.get("_fwversion") == (14, 1)
 
 
 def test_targets_become_one_command_when_they_change():
@@ -69,10 +70,10 @@ def test_prox_comes_once_with_ground_and_horizontal_complete():
     )
     device.feed("ground", GROUND)
     device.run(BUDGET)
-    assert device.get_variable("n") == (0,)
+    assert device.variables.get("n") == (0,)
     device.feed("proximity", NEAR)
     device.run(BUDGET)
-    assert device.get_variable("seen") == (1, 4000, 800)
+    assert device.variables.get("seen") == (1, 4000, 800)
 
 
 def test_events_that_wait_coalesce_and_the_lowest_number_comes_first():
@@ -85,7 +86,7 @@ def test_events_that_wait_coalesce_and_the_lowest_number_comes_first():
         device.feed("proximity", NEAR)
     device.feed("buttons", CENTER)
     device.run(BUDGET)
-    assert device.get_variable("order") == (1, 2, 3)
+    assert device.variables.get("order") == (1, 2, 3)
 
 
 def test_a_button_raises_its_event_when_it_changes_only():
@@ -93,7 +94,7 @@ def test_a_button_raises_its_event_when_it_changes_only():
     for words in (NO_BUTTON, CENTER, CENTER, CENTER, NO_BUTTON, NO_BUTTON):
         device.feed("buttons", words)
         device.run(BUDGET)
-    assert device.get_variable("n") == (2,)
+    assert device.variables.get("n") == (2,)
 
 
 def test_a_button_that_is_held_while_a_program_is_loaded_raises_no_event_until_it_is_let_go():
@@ -104,18 +105,18 @@ def test_a_button_that_is_held_while_a_program_is_loaded_raises_no_event_until_i
     )
     device.feed("buttons", CENTER)
     device.run(BUDGET)
-    assert (device.get_variable("n"), device.get_variable("held")) == ((0,), (1,))
+    assert (device.variables.get("n"), device.variables.get("held")) == ((0,), (1,))
     device.feed("buttons", NO_BUTTON)
     device.run(BUDGET)
-    assert device.get_variable("n") == (1,)
+    assert device.variables.get("n") == (1,)
 
 
-def test_the_robot_s_own_lights_show_what_somebody_writes_to_its_variables():
+def test_indicators_show_values_written_to_variables_from_outside():
     device = device_with("")
     device.feed("temperature", (200,))
     device.advance(20_000_000)
     device.pop_commands()
-    device.set_variable("temperature", (300,))
+    device.variables.set("temperature", (300,))
     device.advance(40_000_000)
     assert ShowOnLeds("temperature", (32, 0)) in device.pop_commands()
 
@@ -129,27 +130,27 @@ def test_natives_of_the_lights_become_commands_in_order():
         SetLeds("ground", (1, 2)),
         SetLeds("top", (0, 32, 5)),
     ]
-    assert device.get_variable("leds.top") == (0, -1, 5)
+    assert device.variables.get("leds.top") == (0, -1, 5)
 
 
-def test_lights_that_are_set_to_the_same_again_are_told_once():
+def test_lights_set_to_the_same_levels_again_cause_one_command():
     device = device_with(
         "onevent prox\ncall leds.top(1, 2, 3)\ncall leds.sound(4)\nonevent motor\nleds.top = [0, 0, 0]\n"
         "onevent tap\ncall _leds.set(30, 9)"
     )
 
-    def told(sensor, words):
+    def reported(sensor, words):
         device.feed(sensor, words)
         device.run(BUDGET)
         return [command for command in device.pop_commands() if isinstance(command, SetLeds)]
 
     both = [SetLeds("top", (1, 2, 3)), SetLeds("microphone", (4,))]
-    assert told("proximity", NEAR) == both
-    assert told("proximity", NEAR) == []
-    assert told("motor", (0, 0, 0, 0)) == [SetLeds("top", (0, 0, 0))]
-    assert told("proximity", NEAR) == both[:1]
-    told("tap", (1,))
-    assert told("proximity", NEAR) == both
+    assert reported("proximity", NEAR) == both
+    assert reported("proximity", NEAR) == []
+    assert reported("motor", (0, 0, 0, 0)) == [SetLeds("top", (0, 0, 0))]
+    assert reported("proximity", NEAR) == both[:1]
+    reported("tap", (1,))
+    assert reported("proximity", NEAR) == both
 
 
 def test_the_same_reading_again_takes_back_what_the_program_wrote_over_it():
@@ -157,9 +158,9 @@ def test_the_same_reading_again_takes_back_what_the_program_wrote_over_it():
     device.feed("proximity", NEAR)
     device.feed("buttons", (0, 0, 0, 0, 0))
     device.run(BUDGET)
-    assert device.get_variable("prox.horizontal")[2] == 7
+    assert device.variables.get("prox.horizontal")[2] == 7
     device.feed("proximity", NEAR)
-    assert device.get_variable("prox.horizontal") == tuple(NEAR)
+    assert device.variables.get("prox.horizontal") == tuple(NEAR)
 
 
 def test_variables_of_the_lights_work_like_their_natives():
@@ -174,7 +175,7 @@ def test_timers_raise_their_events_in_simulated_time():
     for tick in range(6001):
         device.advance(tick * 10_000_000)
         device.run(BUDGET)
-    assert device.get_variable("n") == (600, 240)
+    assert device.variables.get("n") == (600, 240)
 
 
 def test_a_timer_set_from_outside_runs_from_the_next_run_on():
@@ -182,9 +183,9 @@ def test_a_timer_set_from_outside_runs_from_the_next_run_on():
     for now_ms, expected in ((0, 0), (10, 0), (109, 0), (110, 1)):
         device.advance(now_ms * 1_000_000)
         if now_ms == 10:
-            device.set_variable("timer.period", (100, 0))
+            device.variables.set("timer.period", (100, 0))
         device.run(BUDGET)
-        assert device.get_variable("n") == (expected,)
+        assert device.variables.get("n") == (expected,)
 
 
 def test_a_period_below_the_tick_loses_nothing():
@@ -192,7 +193,7 @@ def test_a_period_below_the_tick_loses_nothing():
     for tick in range(31):
         device.advance(tick * 10_000_000)
         device.run(BUDGET)
-    assert device.get_variable("n") == (100,)
+    assert device.variables.get("n") == (100,)
 
 
 def test_a_timer_set_by_a_sensor_s_event_counts_from_that_moment():
@@ -202,7 +203,7 @@ def test_a_timer_set_by_a_sensor_s_event_counts_from_that_moment():
         if now_ms == 100:
             device.feed("proximity", NEAR)
         device.run(BUDGET)
-        assert device.get_variable("n") == (expected,), now_ms
+        assert device.variables.get("n") == (expected,), now_ms
 
 
 def test_timer_events_coalesce_while_a_handler_runs():
@@ -217,7 +218,7 @@ def test_timer_events_coalesce_while_a_handler_runs():
     assert device.is_busy
     while device.is_busy:
         device.run(BUDGET)
-    assert device.get_variable("n") == (101,)
+    assert device.variables.get("n") == (101,)
 
 
 def test_emitted_events_are_taken_in_order():
@@ -240,7 +241,7 @@ def test_a_received_event_brings_source_and_arguments():
     assert not device.declares("three")
     device.receive_event("two", (7, -8), source=5)
     device.run(BUDGET)
-    assert device.get_variable("got") == (5, 7, -8)
+    assert device.variables.get("got") == (5, 7, -8)
     with pytest.raises(KeyError):
         device.receive_event("three", ())
 
@@ -250,7 +251,7 @@ def test_events_that_arrive_together_are_all_handled():
     for number in (1, 2, 3):
         device.receive_event("add", (number,))
     device.run(BUDGET)
-    assert device.get_variable("sum") == (123,)
+    assert device.variables.get("sum") == (123,)
 
 
 def test_a_handler_that_never_ends_is_ended_by_a_global_event():
@@ -261,9 +262,9 @@ def test_a_handler_that_never_ends_is_ended_by_a_global_event():
     device.run(BUDGET)
     device.receive_event("rescue", ())
     device.run(BUDGET)
-    assert device.get_variable("n") == (0,)
+    assert device.variables.get("n") == (0,)
     device.run(2 * 65535)
-    assert device.get_variable("n") == (1,)
+    assert device.variables.get("n") == (1,)
     assert not device.is_busy
 
 
@@ -272,17 +273,17 @@ def test_events_beyond_what_can_wait_are_lost_with_a_notice():
     for _ in range(150):
         device.receive_event("add", ())
     device.run(BUDGET)
-    assert device.get_variable("n") == (100,)
-    assert device.pop_notices() == ["more events arrive than the program can handle: add is lost"]
+    assert device.variables.get("n") == (100,)
+    assert device.notices.pop() == ["more events arrive than the program can handle: add is lost"]
 
 
-def test_a_machine_that_does_not_run_hears_no_events():
+def test_a_machine_that_does_not_run_ignores_events():
     device = device_with("var n = 0\nonevent add\nn++", [("add", 0)])
-    device.stop()
+    device.run_control.stop()
     device.receive_event("add", ())
-    device.resume()
+    device.run_control.resume()
     device.run(BUDGET)
-    assert device.get_variable("n") == (0,)
+    assert device.variables.get("n") == (0,)
 
 
 def test_a_program_that_writes_a_button_raises_no_event_of_it():
@@ -290,7 +291,7 @@ def test_a_program_that_writes_a_button_raises_no_event_of_it():
     for _ in range(3):
         device.feed("buttons", CENTER)
         device.run(BUDGET)
-    assert device.get_variable("n") == (1,)
+    assert device.variables.get("n") == (1,)
 
 
 def test_random_numbers_repeat_after_a_reset_and_differ_between_robots():
@@ -300,10 +301,10 @@ def test_random_numbers_repeat_after_a_reset_and_differ_between_robots():
         device = AsebaDevice(node_id=node_id)
         device.load(program)
         device.run(BUDGET)
-        numbers.append(device.get_variable("r"))
+        numbers.append(device.variables.get("r"))
     device.load(program)
     device.run(BUDGET)
-    assert numbers[0] == numbers[1] != numbers[2] == device.get_variable("r")
+    assert numbers[0] == numbers[1] != numbers[2] == device.variables.get("r")
 
 
 @pytest.mark.parametrize(
@@ -336,31 +337,33 @@ def test_a_fault_stops_machine_and_wheels_and_names_the_line():
     assert not device.is_busy
 
 
-@pytest.mark.parametrize("end", [AsebaDevice.stop, lambda device: device.run(BUDGET)], ids=["stopped", "failed"])
-def test_what_waits_when_a_program_ends_is_forgotten(end):
+@pytest.mark.parametrize(
+    "end", [lambda device: device.run_control.stop(), lambda device: device.run(BUDGET)], ids=["stopped", "failed"]
+)
+def test_pending_events_are_dropped_when_a_program_ends(end):
     device = device_with("var n = 0\nvar zero = 0\nonevent button.center\nn = 1 / zero\nonevent prox\nn = 7")
     device.feed("buttons", CENTER)
     device.feed("proximity", NEAR)
     end(device)
-    device.resume()
+    device.run_control.resume()
     device.run(BUDGET)
-    assert (device.status.state, device.get_variable("n")) == ("running", (0,))
+    assert (device.status.state, device.variables.get("n")) == ("running", (0,))
 
 
-def test_who_is_paused_hears_events_between_handlers_only():
+def test_a_paused_machine_accepts_events_between_handlers_only():
     device = device_with("var n = 0\nvar m = 0\nonevent prox\nm = 1\nm = 2\nonevent add\nn++", [("add", 0)])
-    device.pause()
+    device.run_control.pause()
     for within, heard in ((False, 1), (True, 1), (False, 2)):
         if within:
             device.feed("proximity", NEAR)
-            device.step()
+            device.run_control.step()
             assert device.status.event == "prox"
         device.receive_event("add", ())
-        device.resume()
+        device.run_control.resume()
         device.run(BUDGET)
-        assert device.get_variable("n") == (heard,)
-        device.pause()
-    assert device.get_variable("m") == (2,)
+        assert device.variables.get("n") == (heard,)
+        device.run_control.pause()
+    assert device.variables.get("m") == (2,)
 
 
 def test_a_long_handler_goes_on_in_the_next_turn():
@@ -368,56 +371,56 @@ def test_a_long_handler_goes_on_in_the_next_turn():
     device.feed("proximity", NEAR)
     device.run(1000)
     assert device.is_busy
-    assert 0 < device.get_variable("n")[0] < 2000
+    assert 0 < device.variables.get("n")[0] < 2000
     turns = 0
     while device.is_busy:
         device.run(1000)
         turns += 1
-    assert device.get_variable("n") == (2000,)
+    assert device.variables.get("n") == (2000,)
     assert turns > 10
 
 
 def test_pause_step_and_resume():
     device = device_with("var n = 0\nonevent prox\nn = 1\nn = 2")
-    device.pause()
+    device.run_control.pause()
     assert device.status.state == "paused"
     device.feed("proximity", NEAR)
     device.run(BUDGET)
-    assert device.get_variable("n") == (0,)
+    assert device.variables.get("n") == (0,)
     for _ in range(2):
-        device.step()
-    assert device.get_variable("n") == (1,)
+        device.run_control.step()
+    assert device.variables.get("n") == (1,)
     assert device.status == DeviceStatus("paused", "prox", 4)
-    device.resume()
+    device.run_control.resume()
     device.run(BUDGET)
-    assert device.get_variable("n") == (2,)
+    assert device.variables.get("n") == (2,)
     assert device.status.state == "running"
 
 
 def test_stop_halts_and_reset_begins_anew():
     device = device_with("var n = 5\nmotor.left.target = 100\nonevent prox\nn = n + 1")
-    device.stop()
+    device.run_control.stop()
     assert device.pop_commands() == [MotorTargets(0, 0)]
     assert device.status.state == "stopped"
-    device.set_variable("n", (40,))
-    device.reset()
-    device.resume()
+    device.variables.set("n", (40,))
+    device.run_control.reset()
+    device.run_control.resume()
     device.run(BUDGET)
-    assert device.get_variable("n") == (5,)
+    assert device.variables.get("n") == (5,)
     assert MotorTargets(100, 0) in device.pop_commands()
 
 
 def test_variables_are_read_and_written_whole():
     device = device_with("var a[3] = [1, 2, 3]")
-    assert device.get_variable("a") == (1, 2, 3)
-    device.set_variable("a", (-32768, 0, 32767))
-    assert device.get_variable("a") == (-32768, 0, 32767)
+    assert device.variables.get("a") == (1, 2, 3)
+    device.variables.set("a", (-32768, 0, 32767))
+    assert device.variables.get("a") == (-32768, 0, 32767)
     with pytest.raises(ValueError, match="2 words found, expected 3"):
-        device.set_variable("a", (1, 2))
+        device.variables.set("a", (1, 2))
     with pytest.raises(ValueError, match="40000"):
-        device.set_variable("a", (1, 2, 40000))
+        device.variables.set("a", (1, 2, 40000))
     with pytest.raises(KeyError):
-        device.get_variable("b")
+        device.variables.get("b")
 
 
 def test_words_of_the_wrong_number_are_refused():
@@ -430,8 +433,8 @@ def test_without_a_card_files_cannot_be_opened_and_sounds_not_played():
     for _ in range(2):
         device.feed("proximity", NEAR)
         device.run(BUDGET)
-    assert device.pop_notices() == ["no card: p1.wav"]
-    assert device.get_variable("status") == (-1,)
+    assert device.notices.pop() == ["no card: p1.wav"]
+    assert device.variables.get("status") == (-1,)
 
 
 def test_a_device_is_due_for_events_and_for_the_robots_own_rules():
@@ -464,10 +467,10 @@ def test_a_robot_that_switches_itself_off_is_dark_silent_and_deaf_to_its_variabl
     device.feed("temperature", (300,))
     device.advance(1_000_000_000)
     assert device.pop_commands() == []
-    device.set_variable("motor.left.target", (300,))
-    device.set_variable("leds.top", (0, 32, 0))
+    device.variables.set("motor.left.target", (300,))
+    device.variables.set("leds.top", (0, 32, 0))
     assert device.pop_commands() == []
-    device.resume()
+    device.run_control.resume()
     device.run(BUDGET)
-    device.set_variable("leds.top", (0, 32, 0))
+    device.variables.set("leds.top", (0, 32, 0))
     assert SetLeds("top", (0, 32, 0)) in device.pop_commands()

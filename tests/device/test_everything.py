@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
@@ -49,14 +50,14 @@ SENSES = {
     "_integrator": [-483, 484], "acc": [-3, 4, 23], "temperature": [234], "rc5.address": [17], "rc5.command": [42],
     "mic.intensity": [60], "mic._mean": [7], "acc._tap": [1],
 }  # fmt: skip
-"""What each variable of a sensor is given."""
+"""What each variable of a sensor of the Thymio II is given; the variables of other sensors stay 0."""
 
 
 def sensed(device: AsebaDevice) -> None:
     """Every sensor tells its words once, proximity last."""
     places = {address: name for name, (address, _) in target().addresses.items()}
     for sensor, binding in sorted(bindings.sensors().items(), key=lambda item: item[0] == "proximity"):
-        words = [word for slot in binding.slots for word in SENSES[places[slot.address]]]
+        words = [word for slot in binding.slots for word in SENSES.get(places[slot.address], ())]
         device.feed(sensor, [*words, *[0] * (binding.size - len(words))])
 
 
@@ -72,7 +73,7 @@ def device(tmp_path: Path) -> AsebaDevice:
     assert device.services.card is not None
     device.services.card.write_sound("p1", b"\x80\x90" * 100)
     device.services.card.write_sound("r1", bytes([128]) * 7812)
-    events = "".join(f'<event size="2" name="{name}"/>' for name in ("told", "off", "again"))
+    events = "".join(f'<event size="2" name="{name}"/>' for name in ("received", "off", "again"))
     code = SOURCE.replace("&", "&amp;").replace("<", "&lt;")
     device.load(load_program(f'<network>{events}<node name="thymio-II">{code}</node></network>', "everything.aesl"))
     device.pop_commands()
@@ -100,19 +101,20 @@ def test_the_program_names_every_native_and_every_variable() -> None:
 
 def test_every_variable_of_a_sensor_is_given_something() -> None:
     bound = {slot.address for binding in bindings.sensors().values() for slot in binding.slots}
-    assert {target().addresses[name][0] for name in SENSES} == bound
+    robot = {address for address in bound if address < THYMIO_II.variables_end}
+    assert {target().addresses[name][0] for name in SENSES} == robot
 
 
 def test_every_native_and_variable_gives_what_the_program_expects(device: AsebaDevice) -> None:
     sensed(device)
-    device.receive_event("told", (8, 9), source=3)
+    device.receive_event("received", (8, 9), source=3)
     run(device)
     assert device.status.state == "running"
-    assert {name: device.get_variable(name) for name, _ in expectations()} == dict(expectations())
-    assert device.pop_notices() == []
+    assert {name: device.variables.get(name) for name, _ in expectations()} == dict(expectations())
+    assert device.notices.pop() == []
 
 
-def test_every_native_that_reaches_an_actuator_tells_it(device: AsebaDevice) -> None:
+def test_every_native_function_of_an_actuator_causes_its_command(device: AsebaDevice) -> None:
     assert device.pop_commands() == [
         SetVolume(0),
         SetVolume(2),
@@ -147,8 +149,8 @@ def test_files_of_the_card_and_the_flash_hold_what_was_written(device: AsebaDevi
 
 def test_the_radio_has_the_number_and_network_it_was_given(device: AsebaDevice) -> None:
     assert (device.node_id, device.services.network) == (9, (1, 77))
-    device.reset()
-    assert device.get_variable("_id") == (9,)
+    device.run_control.reset()
+    assert device.variables.get("_id") == (9,)
 
 
 def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(device: AsebaDevice) -> None:
@@ -161,11 +163,11 @@ def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(devic
     assert device.status.state == "off"
     sensed(device)
     device.advance(1_000_000_000)
-    device.pause()
-    device.step()
+    device.run_control.pause()
+    device.run_control.step()
     assert run(device) == []
-    assert device.get_variable("far") == (0,) * 7
-    device.resume()
+    assert device.variables.get("far") == (0,) * 7
+    device.run_control.resume()
     assert device.status.state == "running"
     commands = run(device)
     assert StopSound() in commands
@@ -182,5 +184,5 @@ def test_a_restart_begins_anew_and_keeps_what_was_flashed(device: AsebaDevice) -
     assert commands[0] != commands[-1]
     assert SetWave(TRIANGLE) in commands
     assert device.services.settings[0] == 2
-    assert device.get_variable("far") == (0,) * 7
+    assert device.variables.get("far") == (0,) * 7
     assert device.status.state == "running"

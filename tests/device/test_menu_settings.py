@@ -6,7 +6,7 @@ import pytest
 
 from tests.device.behaviour_oracle import Pulse
 from tests.device.handheld import HandheldRobot
-from thymio_sim_ros.device.firmware.behavior_host import MENU
+from thymio_sim_ros.device.behavior_host import MENU
 
 VOLUME, MOTORS, PAIRING = (32, 15, 0), (15, 32, 0), (15, 0, 32)
 ALL = (32,) * 8
@@ -103,8 +103,8 @@ def test_what_is_set_survives_a_switch_off_and_on():
     robot = inside(0)
     robot.touch("backward")
     robot.touch("center")
-    robot.device.switch_off()
-    robot.device.resume()
+    robot.device.run_control.switch_off()
+    robot.device.run_control.resume()
     assert word(robot, 0) == 1
 
 

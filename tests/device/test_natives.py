@@ -47,7 +47,7 @@ def run(device: AsebaDevice) -> list[Command]:
     return device.pop_commands()
 
 
-def told(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[str] = ()) -> list[Command]:
+def reported(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[str] = ()) -> list[Command]:
     return run(start(source, options, sounds=sounds))
 
 
@@ -55,7 +55,7 @@ def variables(source: str, options: DeviceOptions, *names: str) -> list[tuple[in
     """What these variables hold after the program."""
     device = start(source, options)
     run(device)
-    return [device.get_variable(name) for name in names]
+    return [device.variables.get(name) for name in names]
 
 
 def test_without_a_card_files_answer_what_a_robot_without_one_answers() -> None:
@@ -88,7 +88,7 @@ def test_a_program_that_begins_anew_finds_no_open_file(options: DeviceOptions) -
     run(device)
     device.load(load_program("var n = 9\ncall sd.write([1], n)", "test"))
     run(device)
-    assert device.get_variable("n") == (0,)
+    assert device.variables.get("n") == (0,)
 
 
 @pytest.mark.parametrize(
@@ -110,13 +110,13 @@ def test_a_program_that_begins_anew_finds_no_open_file(options: DeviceOptions) -
 def test_sounds_come_from_the_robot_or_from_the_card(
     options: DeviceOptions, call: str, expected: list[Command]
 ) -> None:
-    assert told(f"call {call}", options, sounds=("p1", "r3", "s12", "s0")) == expected
+    assert reported(f"call {call}", options, sounds=("p1", "r3", "s12", "s0")) == expected
 
 
-def test_a_sound_that_is_missing_is_said(options: DeviceOptions) -> None:
+def test_a_missing_sound_is_reported(options: DeviceOptions) -> None:
     device = start("call sound.play(2)", options)
     run(device)
-    assert device.pop_notices() == ["there is no p2.wav on the card"]
+    assert device.notices.pop() == ["there is no p2.wav on the card"]
 
 
 def test_a_wave_out_of_range_is_a_fault_of_the_program() -> None:
@@ -136,7 +136,7 @@ def test_an_address_out_of_settings_is_a_fault_of_the_program(call: str) -> None
 
 def test_the_volume_and_the_motors_obey_the_settings_at_once() -> None:
     source = "call _system.settings.write(0, 4)\ncall _system.settings.write(8, 300)\nmotor.left.target = 256"
-    assert told(source) == [SetVolume(4), SetVolume(4), MotorTargets(300, 0)]
+    assert reported(source) == [SetVolume(4), SetVolume(4), MotorTargets(300, 0)]
 
 
 def test_a_new_calibration_moves_wheels_that_turn_already() -> None:
@@ -146,31 +146,33 @@ def test_a_new_calibration_moves_wheels_that_turn_already() -> None:
     assert MotorTargets(300, 0) in run(device)
 
 
-def test_settings_survive_a_new_program_and_tell_the_volume() -> None:
+def test_settings_survive_a_new_program_and_set_the_volume() -> None:
     device = start("call _system.settings.write(0, 4)")
     run(device)
     device.load(load_program("", "test"))
     assert SetVolume(4) in device.pop_commands()
 
 
-def test_a_record_holds_what_the_microphone_told_meanwhile(options: DeviceOptions) -> None:
+def test_a_recording_contains_the_intensity_of_the_microphone(options: DeviceOptions) -> None:
     source = "var t = -1\ncall sound.record(5)\nonevent prox\ncall sound.record(-1)\ncall sound.duration(5, t)"
     device = start(source, options)
     device.advance(0)
     run(device)
     for tick in range(1, 201):
-        device.set_variable("mic.intensity", (100,))
+        device.variables.set("mic.intensity", (100,))
         device.advance(tick * 10_000_000)
     device.feed("proximity", (0,) * 7)
     run(device)
-    assert device.get_variable("t") == (19,)
+    assert device.variables.get("t") == (19,)
     assert device.services.card is not None
     samples, complaint = device.services.card.read_sound("r5") or (b"", "missing")
     assert (len(samples), complaint) == (2_000_000_000 // BLOCK_NS * 128, "")
     assert (min(samples), max(samples)) == (78, 178)
 
 
-@pytest.mark.parametrize("end", [lambda device: device.load(load_program("", "none")), AsebaDevice.switch_off])
+@pytest.mark.parametrize(
+    "end", [lambda device: device.load(load_program("", "none")), lambda device: device.run_control.switch_off()]
+)
 def test_a_record_is_stored_when_the_program_ends(options: DeviceOptions, end: Callable[[AsebaDevice], None]) -> None:
     device = start("call sound.record(1)", options)
     run(device)
@@ -187,20 +189,20 @@ def test_a_node_has_a_positive_number(number: int) -> None:
     assert device.node_id == 1
 
 
-def test_the_end_of_a_sound_is_heard_by_a_program_that_uses_sound() -> None:
+def test_a_program_that_uses_sound_gets_the_event_of_its_end() -> None:
     source = "var n = 0\nonevent sound.finished\nn++\nonevent prox\ncall sound.system(1)"
     device = start(source)
     for feeds, heard in (("sound_finished", 0), ("proximity", 0), ("sound_finished", 1)):
         device.feed(feeds, (0,) * 7 if feeds == "proximity" else ())
         run(device)
-        assert device.get_variable("n") == (heard,)
+        assert device.variables.get("n") == (heard,)
 
 
 def test_a_restart_in_the_middle_of_a_handler_ends_it() -> None:
     device = start("var n\nvar m = 0\nonevent prox\ncall _system.reboot()\nm = 1\nmotor.left.target = 100")
     device.feed("proximity", (0,) * 7)
     run(device)
-    assert (device.get_variable("m"), device.get_variable("motor.left.target")) == ((0,), (0,))
+    assert (device.variables.get("m"), device.variables.get("motor.left.target")) == ((0,), (0,))
     assert device.status.state == "running"
 
 
@@ -209,7 +211,7 @@ def test_a_program_that_restarts_without_end_leaves_room_for_others() -> None:
     for _ in range(3):
         device.run(1000)
         assert device.is_busy
-        assert device.get_variable("n") == (0,)
+        assert device.variables.get("n") == (0,)
 
 
 def test_events_of_the_playground_cut_off_a_long_handler() -> None:
@@ -220,16 +222,16 @@ def test_events_of_the_playground_cut_off_a_long_handler() -> None:
     device.feed("proximity", (0,) * 7)
     device.run(5000)
     assert device.is_busy
-    done = device.get_variable("long")[0]
+    done = device.variables.get("long")[0]
     assert 50 < done < 500
     device.run(5000)
-    assert done < device.get_variable("long")[0] < 1000
+    assert done < device.variables.get("long")[0] < 1000
     device.feed("motor", (0, 0, 0, 0))
     device.feed("motor", (0, 0, 0, 0))
     run(device)
-    assert device.get_variable("n") == (2,)
-    assert device.get_variable("long")[0] < 1000
-    assert device.pop_notices() == ["motor cuts off prox, which takes more than 1000 instructions"]
+    assert device.variables.get("n") == (2,)
+    assert device.variables.get("long")[0] < 1000
+    assert device.notices.pop() == ["motor cuts off prox, which takes more than 1000 instructions"]
 
 
 def test_in_the_playground_a_program_has_its_turn_before_an_event_cuts_it_off() -> None:
@@ -238,8 +240,8 @@ def test_in_the_playground_a_program_has_its_turn_before_an_event_cuts_it_off() 
     device = start(source, DeviceOptions(events="playground"))
     device.receive_event("hello", ())
     run(device)
-    assert (device.get_variable("ready"), device.get_variable("heard")) == ((1,), (1,))
-    assert device.pop_notices() == []
+    assert (device.variables.get("ready"), device.variables.get("heard")) == ((1,), (1,))
+    assert device.notices.pop() == []
 
 
 def test_no_native_of_the_robot_is_left_without_a_function() -> None:
@@ -264,7 +266,7 @@ def test_a_native_takes_any_words_and_the_world_takes_what_comes_of_it(
     device.load(load_program(f"{declared}onevent prox\ncall {name}({', '.join(names)})", "test"))
     run(device)
     for variable, size in zip(names, sizes, strict=True):
-        device.set_variable(variable, data.draw(st.lists(WORDS, min_size=size, max_size=size)))
+        device.variables.set(variable, data.draw(st.lists(WORDS, min_size=size, max_size=size)))
     device.feed("proximity", (0,) * 7)
     world = World(make())
     for command in run(device):
@@ -274,7 +276,7 @@ def test_a_native_takes_any_words_and_the_world_takes_what_comes_of_it(
 
 
 @pytest.mark.parametrize(("events", "heard"), [("firmware", 50), ("playground", 20)])
-def test_buttons_are_heard_as_often_as_the_policy_says(events: str, heard: int) -> None:
+def test_the_policy_sets_the_rate_of_button_events(events: str, heard: int) -> None:
     device = AsebaDevice(options=DeviceOptions(events=events))
     device.load(load_program("var n = 0\nonevent buttons\nn++", "test"))
     for tick in range(100):
@@ -282,4 +284,4 @@ def test_buttons_are_heard_as_often_as_the_policy_says(events: str, heard: int) 
             device.feed("buttons", (0,) * 5)
         device.advance(tick * 10_000_000)
         run(device)
-    assert device.get_variable("n") == (heard,)
+    assert device.variables.get("n") == (heard,)

@@ -34,26 +34,26 @@ def outputs() -> OutputsUnderTest:
     return OutputsUnderTest()
 
 
-def test_a_variable_is_told_when_it_changed(outputs: OutputsUnderTest) -> None:
+def test_a_changed_variable_causes_a_command(outputs: OutputsUnderTest) -> None:
     outputs.write("motor.left.target", 100)
     assert outputs.pop_changes() == [MotorTargets(100, 0)]
     assert outputs.pop_changes() == []
 
 
-def test_a_native_s_variable_is_not_told_a_second_time(outputs: OutputsUnderTest) -> None:
+def test_a_variable_set_by_a_native_function_causes_no_second_command(outputs: OutputsUnderTest) -> None:
     outputs.send(RED, {"leds.top": (32, 0, 0)})
     assert (outputs.pop(0), outputs.pop_changes()) == ([RED], [])
     outputs.write("leds.top", 0, 32, 0)
     assert outputs.pop_changes() == [GREEN]
 
 
-def test_lights_that_are_set_to_what_they_are_are_told_once(outputs: OutputsUnderTest) -> None:
+def test_lights_set_to_their_levels_cause_one_command(outputs: OutputsUnderTest) -> None:
     for command in (RED, RED, GREEN, GREEN, RED):
         outputs.send(command)
     assert outputs.pop(0) == [RED, GREEN, RED]
 
 
-def test_and_again_after_a_while_since_somebody_else_may_have_set_them(outputs: OutputsUnderTest) -> None:
+def test_repeated_lights_are_sent_again_after_a_while(outputs: OutputsUnderTest) -> None:
     commands = []
     for tick in range(100):
         outputs.send(RED)
@@ -90,7 +90,7 @@ def test_a_single_light_makes_its_group_news_again(outputs: OutputsUnderTest) ->
     assert outputs.pop(0) == [RED, SetLed(3, 7), RED]
 
 
-def test_a_new_correction_tells_the_same_targets_again(outputs: OutputsUnderTest) -> None:
+def test_a_new_calibration_sends_the_same_targets_again(outputs: OutputsUnderTest) -> None:
     outputs.write("motor.left.target", 256)
     outputs.pop_changes()
     outputs.settings[8] = 300
@@ -112,7 +112,7 @@ def test_sound_is_used_from_its_first_command_on(outputs: OutputsUnderTest) -> N
     assert not outputs.has_used_sound
 
 
-def test_a_reset_tells_every_actuator(outputs: OutputsUnderTest) -> None:
+def test_a_reset_sends_commands_to_every_actuator(outputs: OutputsUnderTest) -> None:
     outputs.reset(outputs.machine)
     commands = outputs.pop(0)
     assert len(commands) == len(set(commands))

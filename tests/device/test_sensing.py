@@ -8,7 +8,7 @@ from unittest.mock import ANY
 
 import pytest
 
-from thymio_sim_ros.device.layout import target
+from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
@@ -26,7 +26,7 @@ from thymio_sim_ros.sim.commands import (
 )
 from thymio_sim_ros.sim.playground import reader as playground
 
-EVENTS = [event.name for event in target().local_events]
+EVENTS = [event.name for event in THYMIO_II.local_events]
 
 
 def pair(gap_m=0.2, names=("anna", "bert")):
@@ -64,7 +64,7 @@ def test_every_event_comes_as_often_as_on_the_robot():
             for button in ("backward", "left", "center", "forward", "right"):
                 runner.post("anna", PressButton(button, pressed))
             runner.run(0.5)
-    counts = dict(zip(EVENTS, runner.devices["anna"].get_variable("n"), strict=True))
+    counts = dict(zip(EVENTS, runner.devices["anna"].variables.get("n"), strict=True))
     buttons = {name: 20 for name in EVENTS if name.startswith("button.")}
     assert counts == {
         **buttons,
@@ -89,12 +89,12 @@ def test_events_of_one_moment_come_in_the_order_of_their_numbers():
     handlers = "\n".join(f"onevent {name}\nif n < 8 then\norder[n] = {EVENTS.index(name)}\nn++\nend" for name in names)
     runner, device = alone(f"var order[8]\nvar n = 8\nmic.threshold = 10\n{handlers}")
     runner.run(0.99)
-    device.set_variable("n", (0,))
+    device.variables.set("n", (0,))
     for command in (Tap(), RemoteKey(1, 2), SetNoiseLevel(100)):
         runner.post("anna", command)
     runner.run(0.01)
     assert runner.now_ns == 1_000_000_000
-    words = device.get_variable("order")[: device.get_variable("n")[0]]
+    words = device.variables.get("order")[: device.variables.get("n")[0]]
     assert [EVENTS[number] for number in words] == ["buttons", "prox", "tap", "acc", "mic", "rc5", "motor"]
 
 
@@ -103,8 +103,8 @@ def test_mic_needs_a_threshold_and_more_than_it(threshold, events):
     runner, device = alone(counting(["mic"]).format(f"mic.threshold = {threshold}"))
     runner.post("anna", SetNoiseLevel(100))
     runner.run(1.0)
-    assert device.get_variable("n") == (events,)
-    assert device.get_variable("mic.intensity") == (100,)
+    assert device.variables.get("n") == (events,)
+    assert device.variables.get("mic.intensity") == (100,)
 
 
 def test_a_clap_is_one_or_two_events():
@@ -112,17 +112,17 @@ def test_a_clap_is_one_or_two_events():
     runner.run(1.0)
     runner.post("anna", Clap(255))
     runner.run(1.0)
-    assert device.get_variable("n")[0] in (1, 2)
+    assert device.variables.get("n")[0] in (1, 2)
 
 
 def test_a_tap_stays_until_the_program_clears_it():
     runner, device = alone("var n = 0\nonevent timer0\nacc._tap = 0\nonevent tap\nn++")
     runner.post("anna", Tap())
     runner.run(0.5)
-    assert (device.get_variable("acc._tap"), device.get_variable("n")) == ((1,), (1,))
-    device.set_variable("acc._tap", (0,))
+    assert (device.variables.get("acc._tap"), device.variables.get("n")) == ((1,), (1,))
+    device.variables.set("acc._tap", (0,))
     runner.run(1.0)
-    assert device.get_variable("acc._tap") == (0,)
+    assert device.variables.get("acc._tap") == (0,)
 
 
 WRITTEN = {
@@ -170,7 +170,7 @@ def test_a_program_reads_every_variable_that_is_there_to_be_read():
         "acc._tap": [1],
         "sd.present": [0],
     }
-    names = [name for name in target().addresses if name not in WRITTEN]
+    names = [name for name in THYMIO_II.addresses if name not in WRITTEN]
     assert names == list(expected)
     copies, place = [], 0
     for name, words in expected.items():
@@ -187,10 +187,10 @@ def test_a_program_reads_every_variable_that_is_there_to_be_read():
         runner.post("anna", command)
     runner.run(1.45)
     anna = runner.devices["anna"]
-    anna.set_variable("motor.left.target", (100,))
-    anna.set_variable("motor.right.target", (-100,))
+    anna.variables.set("motor.left.target", (100,))
+    anna.variables.set("motor.right.target", (-100,))
     runner.run(0.15)
-    words = list(anna.get_variable("seen"))
+    words = list(anna.variables.get("seen"))
     seen = {}
     for name, value in expected.items():
         seen[name], words = words[: len(value)], words[len(value) :]
@@ -203,13 +203,13 @@ def test_what_stays_the_same_is_read_again_after_a_reset():
     runner, device = alone("", noise=False)
     runner.post("anna", SetNoiseLevel(50))
     runner.run(0.5)
-    device.reset()
-    device.resume()
-    assert device.get_variable("_vbat") == (0, 0)
+    device.run_control.reset()
+    device.run_control.resume()
+    assert device.variables.get("_vbat") == (0, 0)
     runner.run(1.1)
-    assert device.get_variable("_vbat") == (796, 796)
-    assert device.get_variable("mic.intensity") == (50,)
-    assert device.get_variable("buttons._mean") == (2000,) * 5
+    assert device.variables.get("_vbat") == (796, 796)
+    assert device.variables.get("mic.intensity") == (50,)
+    assert device.variables.get("buttons._mean") == (2000,) * 5
 
 
 def test_the_lights_of_the_battery_move_while_a_charger_is_connected():
@@ -226,8 +226,8 @@ def test_the_lights_of_the_battery_move_while_a_charger_is_connected():
     runner.post("anna", ConnectCharger(True))
     runner.run(0.1)
     assert len(shown(2.0)) == 4
-    device.reset()
-    device.resume()
+    device.run_control.reset()
+    device.run_control.resume()
     runner.run(1.1)
     assert len(shown(2.0)) == 4
     runner.post("anna", ConnectCharger(False))
@@ -254,36 +254,36 @@ def test_two_robots_talk_by_infrared():
     runner = Runner(pair(), load_program(TALKER, "test"))
     runner.run(1.0)
     anna, bert = runner.devices.values()
-    assert (anna.get_variable("prox.comm.rx"), bert.get_variable("prox.comm.rx")) == ((200,), (100,))
-    assert (anna.get_variable("n"), bert.get_variable("n")) == ((10,), (10,))
-    assert anna.get_variable("prox.comm.rx._payloads")[2] == 200
-    assert anna.get_variable("prox.comm.rx._intensities")[2] > 2000
-    assert anna.get_variable("prox.comm.rx._intensities")[5:] == (0, 0)
+    assert (anna.variables.get("prox.comm.rx"), bert.variables.get("prox.comm.rx")) == ((200,), (100,))
+    assert (anna.variables.get("n"), bert.variables.get("n")) == ((10,), (10,))
+    assert anna.variables.get("prox.comm.rx._payloads")[2] == 200
+    assert anna.variables.get("prox.comm.rx._intensities")[2] > 2000
+    assert anna.variables.get("prox.comm.rx._intensities")[5:] == (0, 0)
 
 
 def test_out_of_range_nothing_changes_any_more():
     runner = Runner(pair(gap_m=1.0), load_program(TALKER, "test"))
     runner.run(1.0)
-    assert runner.devices["anna"].get_variable("n") == (0,)
+    assert runner.devices["anna"].variables.get("n") == (0,)
 
 
-def test_a_negative_value_is_heard_by_nobody():
+def test_a_negative_value_is_not_received():
     runner = Runner(pair(), load_program(TALKER.replace("100 *", "-1 *"), "test"))
     runner.run(1.0)
-    assert runner.devices["anna"].get_variable("n") == (0,)
+    assert runner.devices["anna"].variables.get("n") == (0,)
 
 
 def test_intensities_that_a_program_clears_stay_so_until_the_next_frame():
     source = TALKER + "\nonevent button.center\ncall math.fill(prox.comm.rx._intensities, 0)"
     runner = Runner(pair(), {"anna": load_program(source, "test"), "bert": load_program(TALKER, "test")})
     runner.run(1.0)
-    runner.devices["bert"].set_variable("prox.comm.tx", (-1,))
+    runner.devices["bert"].variables.set("prox.comm.tx", (-1,))
     runner.run(0.2)
     runner.press("anna", "center")
     runner.run(1.0)
     anna = runner.devices["anna"]
-    assert anna.get_variable("prox.comm.rx._intensities") == (0,) * 7
-    assert anna.get_variable("prox.comm.rx") == (200,)
+    assert anna.variables.get("prox.comm.rx._intensities") == (0,) * 7
+    assert anna.variables.get("prox.comm.rx") == (200,)
 
 
 def test_switching_off_zeroes_what_was_sent_and_received():
@@ -293,31 +293,31 @@ def test_switching_off_zeroes_what_was_sent_and_received():
     runner.press("anna", "center")
     runner.run(0.1)
     anna, bert = runner.devices.values()
-    heard = bert.get_variable("n")
-    assert (anna.get_variable("prox.comm.rx"), anna.get_variable("prox.comm.tx")) == ((0,), (0,))
+    heard = bert.variables.get("n")
+    assert (anna.variables.get("prox.comm.rx"), anna.variables.get("prox.comm.tx")) == ((0,), (0,))
     runner.run(1.0)
-    assert bert.get_variable("n") == heard
-    assert anna.get_variable("prox.comm.rx") == (0,)
+    assert bert.variables.get("n") == heard
+    assert anna.variables.get("prox.comm.rx") == (0,)
 
 
 def test_a_value_set_while_off_is_sent_once_it_is_switched_on():
     source = "prox.comm.tx = 7\nonevent button.center\ncall prox.comm.enable(1)"
     runner = Runner(pair(), {"anna": load_program(source, "test"), "bert": load_program(TALKER, "test")})
     runner.run(0.5)
-    assert runner.devices["bert"].get_variable("n") == (0,)
+    assert runner.devices["bert"].variables.get("n") == (0,)
     runner.press("anna", "center")
     runner.run(0.5)
-    assert runner.devices["bert"].get_variable("prox.comm.rx") == (7,)
+    assert runner.devices["bert"].variables.get("prox.comm.rx") == (7,)
 
 
 def test_a_reset_switches_communication_off():
     runner = Runner(pair(), load_program(TALKER, "test"))
     runner.run(1.0)
-    runner.devices["anna"].reset()
+    runner.devices["anna"].run_control.reset()
     runner.run(0.2)
-    heard = runner.devices["bert"].get_variable("n")
+    heard = runner.devices["bert"].variables.get("n")
     runner.run(1.0)
-    assert runner.devices["bert"].get_variable("n") == heard
+    assert runner.devices["bert"].variables.get("n") == heard
 
 
 def test_the_same_seed_and_commands_give_the_same_variables():
@@ -330,7 +330,7 @@ def test_the_same_seed_and_commands_give_the_same_variables():
                 runner.post("anna", Clap(step))
             runner.step()
             device = runner.devices["anna"]
-            seen.append([device.get_variable(name) for name in ("acc", "mic.intensity", "prox.comm.rx._intensities")])
+            seen.append([device.variables.get(name) for name in ("acc", "mic.intensity", "prox.comm.rx._intensities")])
         return seen
 
     assert play() == play()
@@ -339,4 +339,4 @@ def test_the_same_seed_and_commands_give_the_same_variables():
 def test_in_the_shipped_world_of_two_robots_they_hear_each_other_at_once():
     runner = Runner(load_playground("two_robots")[1], load_program(TALKER, "test"))
     runner.run(1.0)
-    assert [device.get_variable("n") for device in runner.devices.values()] == [(10,), (10,)]
+    assert [device.variables.get("n") for device in runner.devices.values()] == [(10,), (10,)]

@@ -50,7 +50,7 @@ class Status:
     """The last status of a robot's machine."""
 
     def __init__(self, ros, robot=""):
-        self.messages = ros.collect(DiagnosticStatus, f"{robot}/_aseba/status", latched=True)
+        self.messages = ros.collect(DiagnosticStatus, f"{robot}/_aseba/status", transient_local=True)
 
     def __getitem__(self, key):
         if not self.messages:

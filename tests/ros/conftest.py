@@ -11,7 +11,7 @@ collect_ignore_glob = [] if importlib.util.find_spec("rclpy") else ["test_*.py"]
 
 @pytest.fixture(autouse=True)
 def _alone(ros_domain):
-    """Tests with contexts or processes of their own, too, are in a domain where nobody else speaks."""
+    """Tests with contexts or processes of their own, too, run in a domain of their own."""
 
 
 @pytest.fixture

@@ -21,15 +21,15 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     models = {"motor_model": "firmware", "proximity_model": "cone"}
     suite = SuiteConfig(playground="base", program="none", device=device, **models, web=False, foxglove=False)
     simulator, runtime = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
-    assert simulator.params.motor_model == "firmware"
-    assert simulator.params.proximity_model == "cone"
-    assert runtime.params.options == device
+    assert simulator.params.values.motor_model == "firmware"
+    assert simulator.params.values.proximity_model == "cone"
+    assert runtime.values.params.options == device
     (robot,) = runtime.robots
     assert robot.device.layout == "playground"
-    assert robot.device.get_variable("sd.present") == (1,)
+    assert robot.device.variables.get("sd.present") == (1,)
 
 
-def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_may(ros):
+def test_a_page_opened_from_elsewhere_reaches_the_bridge_if_its_origin_is_allowed(ros):
     here, elsewhere = "127.0.0.1", "127.0.0.2"
     for address, hosts in (("localhost", [here]), ("0.0.0.0", [here, elsewhere])):
         ports = {"port": 0, "foxglove_port": free_port()}
@@ -48,7 +48,7 @@ def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_m
                 pass
 
 
-def test_in_the_network_the_bridge_makes_tokens_and_the_page_knows_them(ros, monkeypatch):
+def test_in_the_network_the_bridge_creates_tokens_that_the_page_gets(ros, monkeypatch):
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     suite = SuiteConfig(playground="base", program="none", address="0.0.0.0", port=0, foxglove_port=free_port())
     _, _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))

@@ -45,7 +45,7 @@ def test_each_part_gets_its_port(given, namespace):
 
 
 @pytest.mark.parametrize("namespace", [(), ("-r", "__ns:=/lab1")])
-def test_a_parameter_that_names_its_node_reaches_that_node_alone_and_wins(given, namespace):
+def test_a_parameter_with_a_node_name_reaches_only_that_node_and_has_priority(given, namespace):
     found, _ = given("-p", "foxglove_bridge:port:=9003", "-p", "port:=9001", "-p", "foxglove_port:=9002", *namespace)
     assert found[BRIDGE] == {"port": 9003}
     assert found[PAGE] == {"port": 9001, "foxglove_port": 9002}
@@ -99,7 +99,7 @@ def test_simulated_time_is_not_for_the_simulator(given):
         ("simulato:seed:=1", "parameter seed: the suite has no node simulato (did you mean simulator?)"),
     ],
 )
-def test_what_no_node_has_is_told_with_the_nearest_that_one_has(given, rule, warning):
+def test_an_unknown_parameter_causes_a_warning_with_the_nearest_name(given, rule, warning):
     found, warnings = given("-p", rule)
     assert (found, warnings) == ({node: {} for node in NODES}, [warning])
 
@@ -113,7 +113,7 @@ def test_other_arguments_stay_as_they_are(given):
         assert arguments[-3:-1] == ["--ros-args", "--params-file"]
 
 
-def test_no_two_nodes_have_a_parameter_of_one_name_but_the_ones_that_are_told_apart():
+def test_parameters_with_one_name_in_several_nodes_have_a_rule():
     names = {node: set(parameters.by_name(values)) for node, values in defaults(SuiteConfig()).items()}
     shared = set().union(*(names[one] & names[other] for one, other in itertools.combinations(names, 2)))
     assert shared <= SHARED

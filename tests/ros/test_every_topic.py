@@ -35,7 +35,7 @@ from std_msgs.msg import (
 from thymio_sim_ros.ros import generate_ros_docs
 from thymio_sim_ros.ros.interface import command_topics, qos, sensor_topics
 from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
-from thymio_sim_ros.ros.simulator import robot_endpoints, world_endpoints, world_services
+from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_topics
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
 from thymio_sim_ros.sim.commands import LED_GROUPS
@@ -176,7 +176,7 @@ def test_there_is_a_message_for_every_topic():
 
 
 @pytest.mark.parametrize("topic", SENT)
-def test_what_a_robot_listens_to(ros, simulation, monkeypatch, topic):
+def test_a_robot_subscribes_to_every_input(ros, simulation, monkeypatch, topic):
     sim = simulation(playground=PAIR)
     posted = []
     monkeypatch.setattr(sim.world, "post", lambda robot, command: posted.append((robot, command)))
@@ -201,9 +201,9 @@ def test_velocities_end_after_their_timeout_on_all_topics(ros, simulation, topic
     sim.until(lambda: robot.twist.linear_m_s == pytest.approx(0.0), seconds=0.5)
 
 
-@pytest.mark.parametrize("topic", world_endpoints.TOPICS)
+@pytest.mark.parametrize("topic", world_topics.TOPICS)
 def test_what_is_published_of_the_world(ros, simulation, topic):
-    one = world_endpoints.TOPICS[topic]
+    one = world_topics.TOPICS[topic]
     sim = simulation(playground=PAIR, publish_map=True)
     name = topic if topic.startswith("/") else f"/{topic.replace('~', 'simulator')}"
     (info,) = ros.node.get_publishers_info_by_topic(name)

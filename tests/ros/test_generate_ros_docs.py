@@ -1,4 +1,4 @@
-"""docs/ros.md says what the nodes declare, and they declare all that it needs."""
+"""docs/ros.md lists the declarations of the nodes, and they are complete."""
 
 from __future__ import annotations
 

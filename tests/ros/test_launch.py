@@ -18,7 +18,7 @@ pytest.importorskip("rclpy")
 
 from tests.processes import Process, free_port, wait_for_port
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE
-from thymio_sim_ros.device.events import POLICIES
+from thymio_sim_ros.device.event_queue import POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.simulator import parameters as simulator_params
@@ -162,7 +162,7 @@ def test_every_argument_has_a_text_and_is_used(description: Call) -> None:
     assert [name for (name,) in (argument.args for argument in arguments) if f'value["{name}"]' not in source] == []
 
 
-def test_an_argument_that_is_one_of_few_words_lists_those_of_its_parameter(description: Call) -> None:
+def test_an_argument_with_choices_has_those_of_its_parameter(description: Call) -> None:
     listed = {item.args[0]: item.kwargs["choices"] for item in _actions(description, "DeclareLaunchArgument")}
     parameters = {item.name: item for item in params.declared(simulator_params.SimulatorParams())}
     for name in ("motor_model", "proximity_model"):
@@ -172,7 +172,7 @@ def test_an_argument_that_is_one_of_few_words_lists_those_of_its_parameter(descr
     assert listed["playground"] is None
 
 
-def test_the_pages_tell_how_long_a_velocity_holds(description: Call) -> None:
+def test_the_pages_say_how_long_a_velocity_command_lasts(description: Call) -> None:
     defaults = {item.args[0]: item.kwargs["default_value"] for item in _actions(description, "DeclareLaunchArgument")}
     assert float(defaults["cmd_vel_timeout"]) == simulator_params.SimulatorParams().cmd_vel_timeout == 0.0
     for page in ("README.md", "docs/ros.md"):
@@ -181,10 +181,10 @@ def test_the_pages_tell_how_long_a_velocity_holds(description: Call) -> None:
         assert "until the next one" in text, page
 
 
-def test_a_file_of_parameters_comes_last_and_must_be_there(description: Call, tmp_path: Path) -> None:
+def test_a_file_of_parameters_is_last_and_must_exist(description: Call, tmp_path: Path) -> None:
     assert all(len(node["parameters"]) == 1 for node in _ours(description))
     file = tmp_path / "mine.yaml"
-    with pytest.raises(RuntimeError, match=r"params_file: '.*mine\.yaml' found, expected a YAML file"):
+    with pytest.raises(RuntimeError, match=r"params_file: found '.*mine\.yaml', expected a YAML file"):
         _ours(description, params_file=str(file))
     file.touch()
     assert all(node["parameters"][1:] == [str(file)] for node in _ours(description, params_file=str(file)))
@@ -222,7 +222,7 @@ def test_the_nodes_run_with_a_namespace_names_and_a_file_of_parameters(ros, desc
             one.end()
 
 
-def test_rviz_is_started_with_the_shipped_configuration_if_wanted(description: Call) -> None:
+def test_rviz_is_started_on_demand_with_the_shipped_configuration(description: Call) -> None:
     (rviz,) = [node for node in _actions(description, "Node") if node.kwargs["package"] == "rviz2"]
     option, path = rviz.kwargs["arguments"]
     share, *names = path.args[0]
@@ -241,7 +241,7 @@ def test_rviz_is_started_with_the_shipped_configuration_if_wanted(description: C
 
 
 @pytest.mark.parametrize(("code", "is_end"), [(0, False), (1, False), (-11, False), (2, True)])
-def test_a_node_that_refuses_what_it_was_given_ends_all_others(description: Call, code: int, is_end: bool) -> None:
+def test_a_node_that_rejects_its_arguments_ends_all_others(description: Call, code: int, is_end: bool) -> None:
     for node in _ours(description):
         assert bool(node["on_exit"](SimpleNamespace(returncode=code, process_name="simulator-1"), None)) == is_end
 
@@ -263,9 +263,9 @@ def test_bridge_and_page_get_the_same_tokens_by_their_environment(description: C
     ("address", "require_token"),
     [("localhost", "true"), ("127.0.0.1", "true"), ("::1", "true"), ("0.0.0.0", "false")],
 )
-def test_no_tokens_are_made_where_none_is_needed(description: Call, address: str, require_token: str) -> None:
+def test_no_tokens_are_created_if_none_is_needed(description: Call, address: str, require_token: str) -> None:
     assert _tokens(description, address, require_token, {}) == {}
 
 
-def test_a_node_that_died_is_started_again_if_wanted(description: Call) -> None:
+def test_a_node_that_exits_is_restarted_on_demand(description: Call) -> None:
     assert {node["respawn"].args for node in _ours(description)} == {("respawn",)}

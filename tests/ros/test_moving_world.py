@@ -11,8 +11,8 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
-from thymio_sim_ros.cli.replay import replay
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
+from thymio_sim_ros.runlog.replay import replay
 from thymio_sim_ros.sim.commands import MoveObject
 from thymio_sim_ros.sim.playground.reader import RobotStart
 
@@ -39,10 +39,10 @@ def shown(message):
     return {marker.ns: marker.pose.position.x for marker in message.markers[1:]}
 
 
-def test_things_that_move_have_markers_of_their_own(ros, simulation):
+def test_moving_objects_have_their_own_markers(ros, simulation):
     sim = simulation(playground=PUSHING, noise=False)
-    fixed = ros.collect(MarkerArray, "/_markers", latched=True)
-    objects = ros.collect(MarkerArray, "/_markers/objects", latched=True)
+    fixed = ros.collect(MarkerArray, "/_markers", transient_local=True)
+    objects = ros.collect(MarkerArray, "/_markers/objects", transient_local=True)
     ros.until(lambda: fixed and objects)
     assert "solid/can" not in shown(fixed[-1])
     assert shown(objects[-1]) == {"solid/can": 0.15}
@@ -50,21 +50,21 @@ def test_things_that_move_have_markers_of_their_own(ros, simulation):
     sim.until(lambda: shown(objects[-1])["solid/can"] > 0.25)
     sim.world.post("can", MoveObject(5.0, 0.0, 0.0))
     sim.until(lambda: shown(objects[-1]) == {})
-    sim.simulator.reset()
+    sim.simulator.runner.reset()
     ros.until(lambda: shown(objects[-1]) == {"solid/can": 0.15})
 
 
-def test_things_that_rest_are_not_told_again(ros, simulation):
+def test_resting_objects_are_not_published_again(ros, simulation):
     sim = simulation(playground=PUSHING)
-    objects = ros.collect(MarkerArray, "/_markers/objects", latched=True)
+    objects = ros.collect(MarkerArray, "/_markers/objects", transient_local=True)
     ros.until(lambda: objects)
     sim.step(1.0)
     assert len(objects) == 1
 
 
-def test_a_robot_that_comes_has_topics_until_it_goes(ros, simulation):
+def test_an_added_robot_has_topics_until_it_is_removed(ros, simulation):
     sim = simulation(playground=PUSHING)
-    states = ros.collect(String, "/simulator/_state", latched=True)
+    states = ros.collect(String, "/simulator/_state", transient_local=True)
     old = ros.collect(Odometry, "/_ground_truth/odom")
     sim.until(lambda: old)
     sim.world.spawn(RobotStart("late", -0.5, 0.0, 1.0))
@@ -86,13 +86,13 @@ def test_a_robot_that_comes_has_topics_until_it_goes(ros, simulation):
     assert "/_ground_truth/odom" in names
 
 
-def test_the_frames_of_a_robot_that_comes_are_latched(simulation, monkeypatch):
+def test_the_static_frames_of_an_added_robot_are_published(simulation, monkeypatch):
     sim = simulation(playground=PUSHING)
-    told = []
-    monkeypatch.setattr(sim.simulator._transforms, "set_robots", told.append)
+    reported = []
+    monkeypatch.setattr(sim.simulator.endpoints._transforms, "set_robots", reported.append)
     sim.world.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.02)
-    assert [[names.frame("base_link") for names in robots] for robots in told] == [["base_link", "late/base_link"]]
+    assert [[names.frame("base_link") for names in robots] for robots in reported] == [["base_link", "late/base_link"]]
 
 
 def test_reset_brings_back_the_robots_of_the_playground(ros, simulation):
@@ -101,13 +101,13 @@ def test_reset_brings_back_the_robots_of_the_playground(ros, simulation):
     sim.world.remove("thymio")
     sim.world.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.1)
-    sim.simulator.reset()
+    sim.simulator.runner.reset()
     odometry.clear()
     sim.until(lambda: odometry)
-    assert [names.name for names in sim.simulator._robot_endpoints.names] == [""]
+    assert [names.name for names in sim.simulator.endpoints.robots.names.values()] == [""]
 
 
-def test_a_place_that_is_not_free_is_refused_and_the_node_goes_on(ros, simulation):
+def test_an_occupied_place_is_rejected_and_the_node_continues(ros, simulation):
     sim = simulation(playground=PUSHING)
     publisher = ros.publisher(PoseWithCovarianceStamped, "/initialpose")
 
@@ -126,7 +126,7 @@ def test_a_log_of_the_node_replays(ros, simulation, tmp_path):
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.1)
     sim.world.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.3)
-    sim.simulator.reset()
+    sim.simulator.runner.reset()
     sim.step(0.3)
     sim.simulator.close()
     found = replay(path)

@@ -15,8 +15,8 @@ from std_srvs.srv import SetBool, Trigger
 from tests.bridge.studio import Studio
 from tests.processes import Process, free_port
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import CDR
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import CDR
 from thymio_sim_ros.ros.interface.names import GLOBAL
 
 pytestmark = pytest.mark.process

@@ -123,7 +123,7 @@ def test_robots_of_runtimes_in_different_processes_hear_each_other(ros, process,
 
     def is_answered():
         publisher.publish(Int16MultiArray(layout=convert_readings.layout([("ping", 1)]), data=[41]))
-        return anna.device.get_variable("got") == (42 + 1,)
+        return anna.device.variables.get("got") == (42 + 1,)
 
     ros.until(is_answered, START_S, what="the answer of the other process")
 
@@ -147,7 +147,7 @@ def test_each_executable_ends_with_0(ros, process, module, name):
 
 
 @pytest.mark.parametrize(
-    ("module", "parameter", "told"),
+    ("module", "parameter", "reported"),
     [
         ("simulator.node", "playground:=nowhere", "nowhere"),
         ("simulator.node", "real_time_factor:=5000.0", "real_time_factor"),
@@ -156,8 +156,8 @@ def test_each_executable_ends_with_0(ros, process, module, name):
         ("foxglove.node", "port:=-1", "port"),
     ],
 )
-def test_a_bad_parameter_is_one_line_and_exit_code_2(process, module, parameter, told):
+def test_a_bad_parameter_is_one_line_and_exit_code_2(process, module, parameter, reported):
     node = process(f"thymio_sim_ros.ros.{module}", "--ros-args", "-p", parameter)
     assert node.wait() == 2, node.output
     (line,) = node.output.splitlines()
-    assert told in line
+    assert reported in line

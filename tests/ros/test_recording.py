@@ -13,7 +13,7 @@ from std_msgs.msg import Int16MultiArray
 from thymio_sim_ros.ros.compat import tf2_messages
 
 PROGRAM = "var n = 0\ntimer.period[0] = 100\nonevent timer0\nn = n + 1"
-# One of each kind: latched, of sensors, of the clock, of transforms, of the runtime; nobody commands anything.
+# One topic of each kind: transient local, sensor, clock, transforms, runtime. No command is sent.
 SPEAKS = {
     "/_aseba/status", "/clock", "/diagnostics", "/imu", "/_markers", "/_markers/objects", "/odom", "/proximity/center",
     "/_proximity/laser", "/_raw/proximity", "/robot_description", "/simulator/_state", "/tf", "/tf_static",
@@ -30,9 +30,9 @@ def message_class(kind):
 def offered(node, topic):
     """The QoS that `ros2 bag record` chooses: what all publishers offer."""
     policies = {info.qos_profile.durability for info in node.get_publishers_info_by_topic(topic)}
-    is_latched = policies == {DurabilityPolicy.TRANSIENT_LOCAL}
+    is_transient_local = policies == {DurabilityPolicy.TRANSIENT_LOCAL}
     return QoSProfile(
-        depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE
+        depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL if is_transient_local else DurabilityPolicy.VOLATILE
     )
 
 
@@ -83,6 +83,6 @@ def test_a_program_runs_on_recorded_readings(ros, simulation, runtime):
     ros.end(sim.simulator)
     ros.simulation = None
     runtime("var kept[7]\nonevent prox\nkept = prox.horizontal", watch=["kept"])
-    told = ros.collect(Int16MultiArray, "/aseba/variables/kept", latched=True)
+    reported = ros.collect(Int16MultiArray, "/aseba/variables/kept", transient_local=True)
     ros.publisher(Int16MultiArray, "/_raw/proximity").publish(bytes(recorded[-1]))
-    ros.until(lambda: told and list(told[-1].data) == seen)
+    ros.until(lambda: reported and list(reported[-1].data) == seen)

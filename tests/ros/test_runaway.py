@@ -28,18 +28,18 @@ def threaded(ros):
     stop, threads = threading.Event(), []
 
     def make(**parameters):
-        life = AsebaRuntime(ros.context, RuntimeParams(follow_simulator=False, **parameters))
-        thread = threading.Thread(target=run_node, args=(life, ros.context, stop.is_set))
-        threads.append((life, thread))
+        runnable = AsebaRuntime(ros.context, RuntimeParams(follow_simulator=False, **parameters))
+        thread = threading.Thread(target=run_node, args=(runnable, ros.context, stop.is_set))
+        threads.append((runnable, thread))
         thread.start()
-        return life
+        return runnable
 
     yield make
     stop.set()
-    for life, thread in threads:
+    for runnable, thread in threads:
         thread.join(ANSWER_S)
         assert not thread.is_alive()
-        life.close()
+        runnable.close()
 
 
 def test_there_are_twenty_programs():
@@ -65,10 +65,10 @@ def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
     assert all(path.name.startswith(("u", "r")) for path in (tmp_path / "card").rglob("*") if path.is_file())
 
 
-def test_what_is_too_fast_is_said_and_clears(ros, threaded):
+def test_an_overload_is_reported_until_it_ends(ros, threaded):
     threaded(source=FLOOD)
     status = Status(ros)
-    diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     ros.until(lambda: diagnostics and diagnostics[-1].level == DiagnosticStatus.WARN)
     assert "call leds.top" in status["overload"]
     assert "slowed down" in diagnostics[-1].message
@@ -79,30 +79,30 @@ def test_what_is_too_fast_is_said_and_clears(ros, threaded):
 
 
 def test_robots_share_the_node_in_turn(ros, threaded):
-    life = threaded(robots=["anna", "bert", "carl", "dora"], source="var i\nvar k = 0\nwhile k == 0 do\ni++\nend")
+    runnable = threaded(robots=["anna", "bert", "carl", "dora"], source="var i\nvar k = 0\nwhile k == 0 do\ni++\nend")
 
     def counts():
-        return [get_variables(ros, "i", robot=f"/{endpoints.names.name}")[0][0] for endpoints in life.robots]
+        return [get_variables(ros, "i", robot=f"/{endpoints.names.name}")[0][0] for endpoints in runnable.robots]
 
     first = counts()
     ros.until(lambda: all(now != before for now, before in zip(counts(), first, strict=True)))
 
 
 def test_a_slice_ends_whatever_waits_and_the_rest_goes_on_in_order(ros):
-    life = ros.live(AsebaRuntime(ros.context, RuntimeParams(robots=[f"r{n}" for n in range(8)])))
+    runnable = ros.live(AsebaRuntime(ros.context, RuntimeParams(robots=[f"r{n}" for n in range(8)])))
     taken = []
 
     def run_slice(endpoints):
         taken.append(endpoints)
         time.sleep(SLICE_S)
 
-    for endpoints in life.robots:
+    for endpoints in runnable.robots:
         endpoints.run_slice = partial(run_slice, endpoints)
-    with life._bus.slice():
-        life._bus.run_until_idle(*life.robots)
-    assert taken == life.robots[: len(taken)]
-    assert len(taken) < len(life.robots)
-    assert life._bus.has_ready_robots
-    life._bus.run_until_idle()  # in lock-step there are no slices
-    assert taken == life.robots
-    assert not life._bus.has_ready_robots
+    with runnable.robots.bus.slice():
+        runnable.robots.bus.run_until_idle(*runnable.robots)
+    assert taken == list(runnable.robots[: len(taken)])
+    assert len(taken) < len(runnable.robots)
+    assert runnable.robots.bus.has_ready_robots
+    runnable.robots.bus.run_until_idle()  # in lock-step there are no slices
+    assert taken == list(runnable.robots)
+    assert not runnable.robots.bus.has_ready_robots

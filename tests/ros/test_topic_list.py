@@ -61,7 +61,7 @@ def test_a_student_meets_at_most_forty_topics(topics):
     assert len(shown) <= MOST, sorted(shown)
 
 
-def test_all_topics_are_there_before_anybody_listens(topics):
+def test_all_topics_exist_before_there_are_subscribers(topics):
     assert len(topics) > 100
 
 

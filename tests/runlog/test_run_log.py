@@ -51,14 +51,14 @@ class FullWhen(io.StringIO):
 
 
 @pytest.mark.parametrize("method", ["flush", "close"])
-def test_a_disk_that_turns_out_to_be_full_later_is_told_once_and_the_world_goes_on(method: str) -> None:
-    told: list[OSError] = []
-    log = RunLog(FullWhen(method), on_error=told.append)
+def test_a_disk_that_becomes_full_is_reported_once_and_the_world_continues(method: str) -> None:
+    reported: list[OSError] = []
+    log = RunLog(FullWhen(method), on_error=reported.append)
     world = World(make([FLOOR]))
     log.begin("small", world)
     run(world, 2.5)
     log.close()
-    assert [error.errno for error in told] == [28]
+    assert [error.errno for error in reported] == [28]
     assert world.now_ns == 2_500_000_000
 
 
@@ -93,7 +93,7 @@ def written(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_log_tells_everything_in_order(written: Path) -> None:
+def test_a_log_contains_everything_in_order(written: Path) -> None:
     lines = [line for _, line in read(written)]
     start = lines[0]
     assert isinstance(start, WorldStarted)
@@ -118,18 +118,18 @@ def test_every_line_is_json_and_names_the_format_first(written: Path) -> None:
 
 
 def test_a_full_disk_ends_the_log_and_not_the_world() -> None:
-    told: list[OSError] = []
-    log = RunLog(Full(3), on_error=told.append)
+    reported: list[OSError] = []
+    log = RunLog(Full(3), on_error=reported.append)
     world = World(make([FLOOR]))
     log.begin("small", world)
     for _ in range(5):
         send(world, MotorTargets(1, 1))
     run(world, 2.0)
     log.close()
-    assert [error.strerror for error in told] == ["No space left on device"]
+    assert [error.strerror for error in reported] == ["No space left on device"]
 
 
-def test_without_anybody_to_tell_a_full_disk_is_an_error() -> None:
+def test_without_a_callback_a_full_disk_is_an_error() -> None:
     with pytest.raises(OSError, match="No space left"):
         RunLog(Full(0))
 

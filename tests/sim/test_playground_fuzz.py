@@ -37,8 +37,8 @@ def loaded(data: str | bytes) -> Playground | None:
     try:
         return reader.loads(data, "fuzz.json")
     except PlaygroundError as error:
-        told = (error.path == "fuzz.json", bool(error.found), bool(error.expected))
-    assert told == (True, True, True)
+        reported = (error.path == "fuzz.json", bool(error.found), bool(error.expected))
+    assert reported == (True, True, True)
     return None
 
 

@@ -63,7 +63,7 @@ def test_a_box_is_one_solid_at_its_pose() -> None:
     assert (solid.pose, solid.outline, solid.height_m) == (Pose(1.0, 2.0, 0.5), Box(0.3, 0.2), 0.1)
 
 
-def test_a_picture_keeps_its_proportions_unless_told() -> None:
+def test_an_image_keeps_its_proportions_unless_told() -> None:
     wide = png_uri([[WHITE, BLACK, WHITE]])
     prints = [built("picture", image=wide).paints[0], built("picture", image=wide, size_y_m=0.1).paints[0]]
     assert [(one.size_x_m, round(one.size_y_m, 6)) for one in prints if isinstance(one, Print)] == [

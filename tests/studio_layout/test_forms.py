@@ -29,7 +29,7 @@ def leaves(node: Any, configs: dict[str, Any]) -> list[str]:
 
 
 @pytest.mark.parametrize("app", APPS)
-def test_the_shipped_file_is_what_the_description_says(app: str) -> None:
+def test_the_shipped_file_equals_the_description(app: str) -> None:
     hint = f"run: thymio-sim foxglove-layout --app {app} -o {SHIPPED[app]}"
     assert SHIPPED[app].read_text(encoding="utf-8") == render(app), hint
 
@@ -41,7 +41,7 @@ def test_in_lichtblicks_file_every_panel_has_one_place_and_one_configuration() -
     assert len(set(placed)) == len(placed)
 
 
-def test_lichtblicks_file_calls_the_panels_as_lichtblick_does() -> None:
+def test_lichtblicks_file_uses_lichtblicks_names_of_panels() -> None:
     kinds = {panel.partition("!")[0] for panel in json.loads(render("lichtblick"))["configById"]}
     assert kinds == {
         "3D", "CallService", "DiagnosticSummary", "Indicator", "Parameters", "Plot", "Publish", "RawMessages", "RosOut",
@@ -49,7 +49,7 @@ def test_lichtblicks_file_calls_the_panels_as_lichtblick_does() -> None:
     }  # fmt: skip
 
 
-def test_foxgloves_file_calls_the_panels_as_foxglove_does() -> None:
+def test_foxgloves_file_uses_foxgloves_names_of_panels() -> None:
     layout = json.loads(render("foxglove"))
     assert layout["version"] == 1
     assert {panel["panelType"] for panel in panels(layout["content"])} == {
@@ -58,7 +58,7 @@ def test_foxgloves_file_calls_the_panels_as_foxglove_does() -> None:
     }  # fmt: skip
 
 
-def test_both_files_hold_the_same_panels() -> None:
+def test_both_files_have_the_same_panels() -> None:
     expected = [panel.title for panel in panels_of(describe())]
     old, new = json.loads(render("lichtblick")), json.loads(render("foxglove"))
     configs = old["configById"]

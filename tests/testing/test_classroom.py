@@ -112,7 +112,9 @@ def test_files_beside_the_test_are_found_first(tmp_path: Path) -> None:
         ("explorr", ResourceError, "did you mean 'explorer'"),
     ],
 )
-def test_a_bad_program_says_what_is_wrong(program: str | Path, error: type[Exception], text: str) -> None:
+def test_the_error_of_an_invalid_program_says_what_is_wrong(
+    program: str | Path, error: type[Exception], text: str
+) -> None:
     with pytest.raises(error, match=text):
         Classroom(programs=program)
 
@@ -126,7 +128,7 @@ def test_an_unknown_robot_is_named_with_those_there_are() -> None:
         Classroom("two_robots", {"x": DRIVE})
 
 
-def test_waiting_in_vain_tells_where_robots_are_and_which_line_failed() -> None:
+def test_a_time_out_reports_poses_and_the_failed_line() -> None:
     room = Classroom(
         programs="var a = 0\nmotor.left.target = 100\nonevent timer0\na = 1 / a\nonevent buttons\na = 1 / a"
     )

@@ -14,12 +14,12 @@ def has_come() -> bool:
     return bool(COUNT)
 
 
-def test_a_function_is_told_by_its_name() -> None:
+def test_a_function_is_described_by_its_name() -> None:
     assert describe_condition(has_come) == "has_come"
     assert describe_condition(COUNT.__len__).startswith("<")
 
 
-def test_a_lambda_is_told_as_it_is_written() -> None:
+def test_a_lambda_is_described_by_its_source() -> None:
     assert describe_condition(lambda: COUNT[0] > 5) == "COUNT[0] > 5"
     text = describe_condition(
         lambda: (
@@ -29,16 +29,16 @@ def test_a_lambda_is_told_as_it_is_written() -> None:
     assert text == "sum(COUNT) > 4"
 
 
-def test_of_a_lambda_inside_a_statement_its_own_part_is_told() -> None:
+def test_a_lambda_inside_a_statement_is_described_by_its_part_of_the_source() -> None:
     for told_text in [describe_condition(lambda: COUNT == []) for _ in range(1)]:
         assert told_text == "COUNT == []"
     with_block = describe_condition((lambda: COUNT[0]))  # noqa: UP034  (brackets of its own)
     assert with_block == "COUNT[0]"
 
 
-def test_a_lambda_without_a_source_is_told_by_its_line() -> None:
+def test_a_lambda_without_a_source_is_described_by_its_line() -> None:
     assert describe_condition(eval("lambda: 1")) == "the lambda of line 1"
 
 
-def test_anything_else_is_told_as_it_prints() -> None:
+def test_other_conditions_are_described_by_their_repr() -> None:
     assert describe_condition(partial(int, "1")) == "functools.partial(<class 'int'>, '1')"

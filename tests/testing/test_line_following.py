@@ -81,7 +81,7 @@ def test_a_reset_starts_the_laps_again() -> None:
     room.until(check, 60.0)
 
 
-def test_laps_before_a_reset_do_not_count_though_nobody_asked_for_long() -> None:
+def test_laps_before_a_reset_do_not_count() -> None:
     room = Classroom("line", "line_follower")
     (thymio,) = room
     check = followed_line(thymio)

@@ -41,7 +41,7 @@ def test_what_is_touched_when_the_past_is_forgotten_is_touched_anew() -> None:
     assert [touch.other for touch in thymio.touches] == ["east wall"]
 
 
-def test_moments_are_told_from_a_time_on_and_forgotten() -> None:
+def test_moments_are_returned_from_a_time_on_and_cleared() -> None:
     (thymio,) = Classroom("base")
     thymio.run(0.1)
     thymio.record.add_event("ping", [1, 2], 150_000_000)

@@ -59,7 +59,7 @@ def test_variables_are_read_and_written_by_name() -> None:
     assert thymio.variables["list"] == (4, 5, 6)
 
 
-def test_an_unknown_variable_is_told_with_its_neighbours() -> None:
+def test_an_unknown_variable_is_reported_with_similar_names() -> None:
     thymio = alone(SENSES)
     with pytest.raises(KeyError, match="no variable 'hear'; did you mean heard"):
         thymio["hear"]
@@ -133,7 +133,7 @@ def test_it_can_be_put_somewhere() -> None:
     assert (thymio.pose.x_m, thymio.pose.y_m, thymio.pose.yaw_rad) == pytest.approx((0.2, -0.1, math.pi / 2))
 
 
-def test_lights_are_told_by_group() -> None:
+def test_lights_are_given_by_group() -> None:
     thymio = alone("call leds.top(32, 0, 16)")
     thymio.run(0.1)
     assert thymio.level("top") == thymio.leds["top"] == (32, 0, 16)
@@ -141,6 +141,6 @@ def test_lights_are_told_by_group() -> None:
         thymio.level("roof")
 
 
-def test_its_machine_tells_how_it_is() -> None:
+def test_its_machine_has_a_status() -> None:
     thymio = alone("var a = 0\na = 1 / a")
     assert (thymio.status.state, thymio.status.line) == ("fault", 2)

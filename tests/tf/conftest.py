@@ -1,4 +1,4 @@
-"""The messages of transforms need ROS; without it this folder is left out."""
+"""The tests of this folder need the messages of ROS, and are skipped without them."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ DEADLINE_S = 20.0
 
 @pytest.fixture(autouse=True)
 def _alone(ros_domain):
-    """In a domain where nobody else speaks."""
+    """In a domain without other nodes."""
 
 
 def stamped(frame, child, seconds=1.0, x=0.0, yaw=0.0):
@@ -81,11 +81,11 @@ def test_messages_in_another_frame():
     assert (found.position.x, found.position.y) == (pytest.approx(1.0), pytest.approx(1.0))
     assert euler_from_quaternion([q.x, q.y, q.z, q.w])[2] == pytest.approx(math.pi / 2)
     assert isinstance(do_transform_pose(Pose(), buffer.lookup_transform("map", "base", Time())), Pose)
-    with pytest.raises(TypeException, match="Said found, expected one of PointStamped"):
+    with pytest.raises(TypeException, match="found Said, expected one of PointStamped"):
         Buffer().transform(type("Said", (String,), {"header": point.header})(), "map")
 
 
-def test_whether_there_is_one_and_why_not():
+def test_can_transform_with_the_reason():
     buffer = Buffer()
     buffer.set_transform(stamped("map", "base"), "test")
     assert buffer.can_transform("map", "base", Time()) is True
@@ -96,7 +96,7 @@ def test_whether_there_is_one_and_why_not():
     assert buffer.lookup_transform_full("base", *times).transform.translation.x == 0.0
 
 
-def test_a_wait_ends_with_the_transform_and_one_in_vain_with_its_time():
+def test_waiting_ends_with_the_transform_or_with_the_time_out():
     buffer = Buffer()
     late = threading.Timer(0.2, lambda: buffer.set_transform(stamped("map", "base", x=3.0), "test"))
     late.start()
@@ -123,7 +123,7 @@ def test_a_future_is_done_when_the_transform_comes():
     assert ended.value.value.transform.translation.x == pytest.approx(2.0)
 
 
-def test_what_is_sent_is_heard_and_static_frames_by_who_comes_later(ros):
+def test_transforms_are_received_and_static_ones_also_by_late_subscribers(ros):
     sender, hearer = ros.make_node("sender"), ros.make_node("hearer")
     StaticTransformBroadcaster(sender).sendTransform([stamped("base", "prox", 0.0, x=0.1)])
     fixed = StaticTransformBroadcaster(sender)
@@ -134,16 +134,16 @@ def test_what_is_sent_is_heard_and_static_frames_by_who_comes_later(ros):
     listener = TransformListener(buffer, hearer)
     ros.until(lambda: sender.count_subscribers("/tf"))
 
-    def heard():
+    def is_received():
         moving.sendTransform(stamped("map", "base", 1.0, x=1.0))
         return all(buffer.can_transform("map", name, Time()) for name in ("prox", "laser", "camera"))
 
-    ros.until(heard)
+    ros.until(is_received)
     assert buffer.lookup_transform("map", "laser", Time()).transform.translation.x == pytest.approx(1.4)
     listener.unregister()
 
 
-def test_a_listener_with_a_thread_hears_while_its_node_waits(ros):
+def test_a_listener_with_a_thread_receives_while_its_node_waits(ros):
     sender, hearer = ros.make_node("sender"), ros.make_node("hearer")
     buffer = Buffer()
     listener = TransformListener(buffer, hearer, spin_thread=True)
@@ -157,7 +157,7 @@ def test_a_listener_with_a_thread_hears_while_its_node_waits(ros):
     thread = threading.Thread(target=send)
     thread.start()
     try:
-        found = buffer.lookup_transform("map", "base", Time(), Duration(seconds=DEADLINE_S))  # nobody spins here
+        found = buffer.lookup_transform("map", "base", Time(), Duration(seconds=DEADLINE_S))  # the node is not spinning
     finally:
         done.set()
         thread.join()
@@ -170,7 +170,7 @@ def test_the_robot_and_its_sensors_are_on_the_map(ros, simulation):
     buffer = Buffer()
     listener = TransformListener(buffer, ros.make_node("hearer"))
     ros.until(lambda: ros.node.count_subscribers("/tf"))
-    sim.simulator._poll_subscribers()
+    sim.simulator.endpoints.poll()
     sim.step(0.5)
     ros.until(lambda: buffer.can_transform("map", "proximity_center_link", Time()))
     truth = sim.world.robots["thymio"].pose
@@ -180,7 +180,7 @@ def test_the_robot_and_its_sensors_are_on_the_map(ros, simulation):
     assert euler_from_quaternion([q.x, q.y, q.z, q.w])[2] == pytest.approx(truth.yaw_rad)
     sensor = buffer.lookup_transform("base_link", "proximity_center_link", Time()).transform.translation
     assert (sensor.x, sensor.y) == (pytest.approx(0.08, abs=0.005), pytest.approx(0.0))
-    with pytest.raises(LookupException, match="frames there are: base_footprint, base_link"):
+    with pytest.raises(LookupException, match="known frames: base_footprint, base_link"):
         buffer.lookup_transform("map", "base_lnik", Time())
     with pytest.raises(ExtrapolationException, match="into the future"):
         buffer.lookup_transform("odom", "base_link", Time(seconds=100.0))
@@ -188,7 +188,7 @@ def test_the_robot_and_its_sensors_are_on_the_map(ros, simulation):
 
 
 class Watcher(Node):
-    """Notes the time of the latest transform."""
+    """Records the time of the latest transform."""
 
     def __init__(self):
         super().__init__("watcher")
@@ -206,7 +206,7 @@ def test_a_reset_of_the_simulator_empties_the_buffer_of_a_node_on_its_time(ros, 
     sim = simulation()
     node = ros.start(Watcher)
     sim.until(lambda: node.buffer.can_transform("map", "base_link", Time(seconds=0.5)))
-    sim.simulator.reset()
+    sim.simulator.runner.reset()
     sim.until(lambda: node.places and node.places[-1] < 0.3)
     latest = node.buffer.lookup_transform("odom", "base_link", Time()).header.stamp
     assert latest.sec == 0
@@ -229,13 +229,13 @@ def test_the_example_of_the_page_goes_to_its_goal(ros, simulation, tmp_path, goa
     assert robot.twist.linear_m_s == pytest.approx(0.0, abs=1e-3)
 
 
-def test_the_page_names_what_there_is():
+def test_the_page_names_all_classes():
     from thymio_sim_ros import tf
 
-    told = set(re.findall(r"\b([A-Za-z_0-9]+)\b", PAGE.read_text()))
-    told |= {"TimeoutException", "TypeException"}
+    words = set(re.findall(r"\b([A-Za-z_0-9]+)\b", PAGE.read_text()))
+    words |= {"TimeoutException", "TypeException"}
     names = {name for name in tf.__all__ if not name.startswith(("is_", "random_", "rotation_", "vector_", "unit_"))}
-    assert {name for name in names if name[0].isupper() or name.startswith(("do_", "quaternion_from"))} <= told
+    assert {name for name in names if name[0].isupper() or name.startswith(("do_", "quaternion_from"))} <= words
 
 
 SIGNATURES = {

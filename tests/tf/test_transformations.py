@@ -41,13 +41,13 @@ def test_roll_pitch_yaw_and_x_y_z_w(angles, quaternion):
     assert same(tr.quaternion_from_euler(*tr.euler_from_quaternion(quaternion)), quaternion)
 
 
-def test_there_are_24_ways_to_say_three_angles():
+def test_there_are_24_conventions_of_euler_angles():
     assert len(set(AXES)) == 24
 
 
 @pytest.mark.parametrize("axes", AXES)
 @pytest.mark.parametrize("angles", [(0.3, 0.7, -1.1), (-2.0, 0.4, 3.0), (0.0, 0.0, 0.0), (1.0, 1.2, 0.0)])
-def test_angles_are_turns_about_axes_one_after_the_other(axes, angles):
+def test_angles_are_consecutive_rotations_about_axes(axes, angles):
     turns = [np.array(BASIC[letter](angle)) for letter, angle in zip(axes[1:], angles, strict=True)]
     if axes[0] == "s":
         turns.reverse()
@@ -59,25 +59,25 @@ def test_angles_are_turns_about_axes_one_after_the_other(axes, angles):
 
 
 @pytest.mark.parametrize("axes", AXES)
-def test_angles_come_back(axes):
+def test_angles_survive_the_conversion_to_a_matrix_and_back(axes):
     angles = (0.3, 0.7, -1.1)
     assert tr.euler_from_quaternion(tr.quaternion_from_euler(*angles, axes), axes) == pytest.approx(angles)
 
 
 @pytest.mark.parametrize("axes", AXES)
 @pytest.mark.parametrize("middle", [0.0, math.pi / 2, -math.pi / 2, math.pi])
-def test_where_the_middle_angle_leaves_the_others_open_the_rotation_still_comes_back(axes, middle):
+def test_in_gimbal_lock_the_rotation_survives_the_conversion(axes, middle):
     matrix = tr.euler_matrix(0.4, middle, 0.9, axes)
     assert np.allclose(tr.euler_matrix(*tr.euler_from_matrix(matrix, axes), axes), matrix, atol=1e-7)
 
 
 @pytest.mark.parametrize("axes", ["", "xyz", "sxxy", "sxyw", "qxyz", "sxy"])
-def test_axes_that_are_none(axes):
+def test_invalid_axes(axes):
     with pytest.raises(ValueError, match="expected s or r and three of xyz"):
         tr.quaternion_from_euler(0.0, 0.0, 0.0, axes)
 
 
-def test_a_product_turns_by_the_second_first():
+def test_a_product_applies_the_second_rotation_first():
     yaw, pitch = tr.quaternion_from_euler(0, 0, 0.5), tr.quaternion_from_euler(0, 0.3, 0)
     both = tr.quaternion_multiply(yaw, pitch)
     assert np.allclose(tr.quaternion_matrix(both), tr.quaternion_matrix(yaw) @ tr.quaternion_matrix(pitch))
@@ -109,12 +109,12 @@ def test_a_matrix_and_its_quaternion(seed):
 
 @pytest.mark.parametrize("axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, -2, 3)])
 @pytest.mark.parametrize("angle", [0.0, 0.1, 1.0, math.pi, -2.0])
-def test_a_turn_about_an_axis(axis, angle):
+def test_a_rotation_about_an_axis(axis, angle):
     assert same(tr.quaternion_from_matrix(tr.rotation_matrix(angle, axis)), tr.quaternion_about_axis(angle, axis))
     assert np.allclose(tr.rotation_matrix(angle, axis)[:3, :3] @ np.array(axis, dtype=float), axis)
 
 
-def test_a_turn_about_an_axis_through_a_point():
+def test_a_rotation_about_an_axis_through_a_point():
     matrix = tr.rotation_matrix(math.pi / 2, (0, 0, 1), (1, 0, 0))
     assert matrix @ (1, 0, 0, 1) == pytest.approx((1, 0, 0, 1))
     assert matrix @ (2, 0, 0, 1) == pytest.approx((1, 1, 0, 1))
@@ -134,12 +134,12 @@ def test_translations_and_products():
 
 
 @pytest.mark.parametrize(("fraction", "yaw"), [(0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (1.0, 2.0)])
-def test_a_part_of_the_way(fraction, yaw):
+def test_interpolation_by_a_fraction(fraction, yaw):
     found = tr.quaternion_slerp(tr.quaternion_from_euler(0, 0, 0), tr.quaternion_from_euler(0, 0, 2.0), fraction)
     assert tr.euler_from_quaternion(found)[2] == pytest.approx(yaw)
 
 
-def test_the_shorter_way_is_taken_unless_the_longer_one_is_wanted():
+def test_the_shorter_arc_is_used_by_default():
     one, other = tr.quaternion_from_euler(0, 0, 0), -tr.quaternion_from_euler(0, 0, 1.0)
     assert tr.euler_from_quaternion(tr.quaternion_slerp(one, other, 0.5))[2] == pytest.approx(0.5)
     longer = tr.euler_from_quaternion(tr.quaternion_slerp(one, other, 0.5, shortestpath=False))[2]

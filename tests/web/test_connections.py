@@ -1,4 +1,4 @@
-"""Places of connections: time limits, and who gives way to whom."""
+"""Slots of connections: time limits and eviction."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_a_connection_is_closed_after_the_time_of_its_phase(connections, clock, 
     assert len(connections) == 0
 
 
-def test_a_phase_that_goes_on_keeps_its_begin(connections, clock):
+def test_setting_the_same_phase_again_does_not_restart_its_time(connections, clock):
     place = admitted(connections, "a")
     connections.set_phase(place, Phase.READING)
     clock.now_s = 6.0
@@ -54,7 +54,7 @@ def test_a_phase_that_goes_on_keeps_its_begin(connections, clock):
     assert connections.close_overdue() == 1
 
 
-def test_the_oldest_silent_one_of_the_address_with_the_most_gives_way(connections, clock):
+def test_the_oldest_silent_connection_of_the_address_with_the_most_is_evicted(connections, clock):
     visitor = admitted(connections, "visitor")
     clock.now_s = 1.0
     first = admitted(connections, "attacker")
@@ -69,7 +69,7 @@ def test_the_oldest_silent_one_of_the_address_with_the_most_gives_way(connection
     assert not connections.is_full
 
 
-def test_silent_connections_go_before_those_that_have_begun_to_ask(connections, clock):
+def test_silent_connections_are_evicted_before_those_with_partial_requests(connections, clock):
     asking = admitted(connections, "a")
     connections.set_phase(asking, Phase.READING)
     clock.now_s = 1.0
@@ -79,7 +79,7 @@ def test_silent_connections_go_before_those_that_have_begun_to_ask(connections, 
 
 
 @pytest.mark.parametrize("phase", MIN_WAIT_S)
-def test_a_connection_that_has_only_begun_to_wait_is_kept(connections, clock, phase):
+def test_a_connection_that_has_waited_only_briefly_is_kept(connections, clock, phase):
     place = admitted(connections, "a")
     connections.set_phase(place, phase)
     clock.now_s = MIN_WAIT_S[phase] - 0.01
@@ -88,13 +88,13 @@ def test_a_connection_that_has_only_begun_to_wait_is_kept(connections, clock, ph
     assert connections.eviction_candidate() is place
 
 
-def test_a_connection_that_is_answered_never_gives_way(connections, clock):
+def test_a_connection_that_is_answered_is_never_evicted(connections, clock):
     connections.set_phase(admitted(connections, "a"), Phase.ANSWERING)
     clock.now_s = 60.0
     assert connections.eviction_candidate() is None
 
 
-def test_a_connection_whose_client_has_done_something_is_kept(connections, clock):
+def test_a_connection_with_pending_input_is_kept(connections, clock):
     ended: list[ConnectionSlot] = []
     place = admitted(connections, "a", ended)
     clock.now_s = 4.0
@@ -111,7 +111,7 @@ def test_a_connection_whose_client_has_done_something_is_kept(connections, clock
     assert ended == [place]
 
 
-def test_leaving_twice_gives_back_one_place(connections):
+def test_removing_a_connection_twice_frees_one_slot(connections):
     places = [admitted(connections, "a") for _ in range(4)]
     connections.remove(places[0])
     connections.remove(places[0])

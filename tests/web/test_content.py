@@ -1,8 +1,9 @@
-"""Paths of requests → documents; nothing but the page's files."""
+"""Documents by the paths of requests: only files of the page."""
 
 from __future__ import annotations
 
 import gzip
+import json
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,15 @@ def test_a_file_that_is_built_again_is_read_again(content, folder):
     assert new.tag != old.tag
 
 
+def test_the_installed_shapes_are_declared_with_a_tag(content):
+    found = content.find("/shapes.json")
+    assert found is content.find("/shapes.json")
+    assert found.media_type == "application/json"
+    assert gzip.decompress(found.compressed) == found.body
+    assert not found.is_immutable
+    assert {"box", "track"} <= set(json.loads(found.body)["shapes"])
+
+
 def test_small_files_are_not_made_larger(content, folder):
     (folder / "one.js").write_text("1")
     assert content.find("/one.js").compressed is None
@@ -77,7 +87,7 @@ def test_nothing_else_is_found(content, path):
     assert content.find(path) is None
 
 
-def test_links_lead_out_of_the_folder_only_as_colcon_makes_them(tmp_path, folder):
+def test_only_links_of_colcon_lead_out_of_the_folder(tmp_path, folder):
     installed = tmp_path / "install" / "web_ui"
     (installed / "assets").mkdir(parents=True)
     (installed / "index.html").symlink_to(folder / "index.html")

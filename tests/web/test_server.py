@@ -1,4 +1,4 @@
-"""The running server: what it answers, and whom it outlasts."""
+"""The running server: answers, and limits for clients."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def ask(port, path="/", method="GET", host="127.0.0.1", **headers):
 
 
 def talk(port, *words):
-    """All that the server says to these bytes until it closes the connection."""
+    """The answers of the server to these bytes until it closes the connection."""
     with socket.create_connection(("127.0.0.1", port), timeout=DEADLINE_S) as connection:
         for word in words:
             connection.sendall(word)
@@ -79,7 +79,7 @@ def test_hashed_files_are_kept_by_the_browser_and_others_asked_for_again(serve):
 
 
 @pytest.mark.parametrize("weak", ["", "W/"])
-def test_what_the_browser_has_is_not_sent_again(serve, weak):
+def test_a_cached_document_is_not_sent_again(serve, weak):
     port = serve()
     for wanted in ("gzip", "identity"):
         response, body = ask(port, "/assets/index-DGs6OHeF.js", Accept_Encoding=wanted)
@@ -159,7 +159,7 @@ def _has_ipv6():
         ("", 403),
     ],
 )
-def test_on_loopback_a_foreign_name_is_refused(serve, warnings, host, status):
+def test_on_loopback_a_foreign_name_is_rejected(serve, warnings, host, status):
     port = serve(allowed_hosts=("mine.example",))
     for _ in range(3):
         response, body = ask(port, Host=host)
@@ -168,7 +168,7 @@ def test_on_loopback_a_foreign_name_is_refused(serve, warnings, host, status):
     assert len(warnings) == (status == 403)
 
 
-def test_in_the_network_every_name_will_do(serve):
+def test_in_the_network_every_host_name_is_accepted(serve):
     assert ask(serve("0.0.0.0", is_loopback=False), Host="class-pc.school:8080")[0].status == 200
 
 
@@ -186,7 +186,7 @@ def test_in_the_network_every_name_will_do(serve):
     ],
     ids=["bytes", "word", "version", "length", "header", "target", "headers", "tls"],
 )
-def test_nonsense_is_refused_without_an_echo_and_without_noise(serve, warnings, request_head):
+def test_invalid_requests_are_rejected_without_echo_and_without_log(serve, warnings, request_head):
     port = serve()
     said = talk(port, request_head)
     assert said == b"" or said.startswith((b"HTTP/1.1 400", b"HTTP/1.0 400"))
@@ -197,26 +197,26 @@ def test_nonsense_is_refused_without_an_echo_and_without_noise(serve, warnings, 
     assert warnings == []
 
 
-def test_a_body_that_never_comes_holds_nothing(serve):
+def test_a_body_that_never_arrives_does_not_block(serve):
     port = serve()
     said = talk(port, b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000\r\n\r\nx")
     assert said.startswith(b"HTTP/1.1 405")
 
 
 @pytest.mark.parametrize("begin", [b"", b"GET / HTTP/1.1\r\nHost: local"])
-def test_who_does_not_ask_is_disconnected(serve, monkeypatch, begin):
+def test_a_client_without_a_complete_request_is_disconnected(serve, monkeypatch, begin):
     monkeypatch.setitem(places.TIME_LIMIT_S, Phase.SILENT, 0.2)
     monkeypatch.setitem(places.TIME_LIMIT_S, Phase.READING, 0.2)
     assert talk(serve(), begin) == b""
 
 
-def test_who_has_been_answered_is_disconnected_after_a_while(serve, monkeypatch):
+def test_an_idle_client_is_disconnected_after_its_time_limit(serve, monkeypatch):
     monkeypatch.setitem(places.TIME_LIMIT_S, Phase.IDLE, 0.2)
     said = talk(serve(), b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
     assert said.startswith(b"HTTP/1.1 200")
 
 
-def test_who_does_not_read_is_disconnected(serve, folder, monkeypatch):
+def test_a_client_that_does_not_read_is_disconnected(serve, folder, monkeypatch):
     (folder / "large.bin").write_bytes(bytes(8_000_000))
     monkeypatch.setitem(places.TIME_LIMIT_S, Phase.STALLED, 0.2)
     monkeypatch.delitem(places.MIN_WAIT_S, Phase.STALLED)
@@ -230,7 +230,7 @@ def test_who_does_not_read_is_disconnected(serve, folder, monkeypatch):
         assert ask(port)[0].status == 200  # in the place of the other
 
 
-def test_silent_and_half_requests_do_not_keep_others_out(serve, warnings):
+def test_silent_clients_and_partial_requests_do_not_block_others(serve, warnings):
     port = serve(max_connections=20)
     with contextlib.ExitStack() as stack:
         for number in range(60):
@@ -242,7 +242,7 @@ def test_silent_and_half_requests_do_not_keep_others_out(serve, warnings):
     assert len(warnings) <= 1
 
 
-def test_a_class_that_opens_the_page_at_once_is_served(serve):
+def test_a_class_that_opens_the_page_at_the_same_time_is_served(serve):
     port = serve(max_connections=64)
     with concurrent.futures.ThreadPoolExecutor(90) as pool:
         answers = list(pool.map(lambda path: ask(port, path)[1], ["/", "/assets/index-DGs6OHeF.js"] * 90))
@@ -262,7 +262,7 @@ def test_closing_ends_the_thread_and_frees_the_port(folder):
     again.close()
 
 
-def test_closing_before_the_server_has_begun_leaves_nothing(folder):
+def test_closing_before_the_server_has_started_leaves_nothing_behind(folder):
     server = PageThread(Content(folder, b"{}"), Settings(1), address="localhost", port=0, warn=print)
     server.close()
     with pytest.raises(ConnectionRefusedError):

@@ -7,13 +7,13 @@ import { History } from "../../web_ui/creator/history.js";
 import { canTurn, middleOf, moved, pointsOf, turned, withPoint } from "../../web_ui/creator/place.js";
 import { sketchOf } from "../../web_ui/creator/sketch.js";
 import { rounded, snapped } from "../../web_ui/creator/snap.js";
-import { shown, taken } from "../../web_ui/creator/units.js";
+import { toDisplay, toFile } from "../../web_ui/creator/units.js";
 import { WheelSteps } from "../../web_ui/creator/wheel.js";
-import { WORDS } from "../../web_ui/creator/words/index.js";
+import creatorTexts from "../../web_ui/i18n/creator.texts.js";
 import { CreatorSession } from "../../web_ui/creator/creator_session.js";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { lacksGround, itemsOffGround } from "../../web_ui/playground/validation.js";
-import { SHAPES } from "../../web_ui/playground/kinds/index.js";
+import { shapeKinds } from "../../web_ui/playground/kinds/index.js";
 
 /** Straight down. @param {number} x @param {number} y */
 const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1 } });
@@ -45,10 +45,10 @@ test("points snap to lines, to cell centers, or not at all", () => {
 });
 
 test("numbers are converted between units", () => {
-  assert.equal(taken(0.5, "m"), 0.005);
-  assert.equal(taken(1.5, "kg"), 0.0015);
-  assert.equal(shown(0.123456, "m"), 12.3456);
-  assert.equal(shown(taken(37.5, "rad"), "rad"), 37.5);
+  assert.equal(toFile(0.5, "m"), 0.005);
+  assert.equal(toFile(1.5, "kg"), 0.0015);
+  assert.equal(toDisplay(0.123456, "m"), 12.3456);
+  assert.equal(toDisplay(toFile(37.5, "rad"), "rad"), 37.5);
 });
 
 test("steps are undone and redone in order, and a new step discards undone ones", () => {
@@ -94,12 +94,12 @@ test("nothing can be placed on a robot or outside the ground, and the reason is 
   const { model, reported, click, names } = prepared();
   model.choose("cylinder");
   click(0, 0);
-  assert.deepEqual(reported.at(-1), { word: "problem.taken", values: { name: "thymio" } });
+  assert.deepEqual(reported.at(-1), { word: "problem.blocked", values: { name: "thymio" } });
   click(0.7, 0);
   assert.deepEqual(reported.at(-1), { word: "problem.outside" });
   model.choose("robot");
   click(0.05, 0);
-  assert.deepEqual(reported.at(-1), { word: "problem.taken", values: { name: "thymio" } });
+  assert.deepEqual(reported.at(-1), { word: "problem.blocked", values: { name: "thymio" } });
   assert.deepEqual(names(), ["ground", "thymio"]);
 });
 
@@ -156,7 +156,7 @@ test("the next wall starts where the last one ended", () => {
 });
 
 test("every kind can be placed, moved, turned, copied and removed, and all of it undone", () => {
-  for (const { name: kind } of SHAPES) {
+  for (const { name: kind } of shapeKinds()) {
     const { model, click, names, item } = prepared();
     const start = model.playground;
     if (kind === "activation") {
@@ -177,9 +177,9 @@ test("every kind can be placed, moved, turned, copied and removed, and all of it
     const placed = item(name);
     model.turn(1);
     assert.equal(item(name) !== placed, placed !== undefined && canTurn(placed), kind);
-    model.duplicate();
+    model.selecting.duplicate();
     assert.equal(model.selected, `${kind}_2`);
-    model.remove();
+    model.selecting.remove();
     assert.equal(model.selected, null);
     while (model.history.past.length > 0) model.undo();
     assert.equal(model.playground, start);
@@ -200,9 +200,9 @@ test("an item is dragged on the grid, and restored if the position is invalid", 
   assert.equal(item("box_1")?.x_m, 0.2);
   model.selecting.grab(down(0.2, 0.3));
   model.selecting.drag(down(0, 0), false);
-  assert.equal(model.ghost?.problem?.word, "problem.taken");
+  assert.equal(model.ghost?.problem?.word, "problem.blocked");
   model.selecting.drop();
-  assert.equal(reported.at(-1)?.word, "problem.taken");
+  assert.equal(reported.at(-1)?.word, "problem.blocked");
   assert.equal(item("box_1")?.x_m, 0.2);
 });
 
@@ -240,7 +240,7 @@ test("values are edited as numbers, and rejected with a reason", () => {
   assert.equal(item("box_1")?.mass_kg, 0.2);
   assert.equal(model.edit({ name: "thymio" })?.word, "problem.name");
   assert.equal(model.edit({ name: "a b" })?.word, "problem.value");
-  assert.equal(model.edit({ x_m: 0, y_m: 0 })?.word, "problem.taken");
+  assert.equal(model.edit({ x_m: 0, y_m: 0 })?.word, "problem.blocked");
   assert.equal(model.edit({ x_m: 3 })?.word, "problem.outside");
   assert.equal(model.edit({ name: "crate" }), null);
   assert.equal(model.selected, "crate");
@@ -257,7 +257,7 @@ test("a renamed door keeps its plates, and a removed door removes them", () => {
   model.select("door_1");
   model.edit({ name: "gate" });
   assert.equal(item("activation_1")?.door, "gate");
-  model.remove();
+  model.selecting.remove();
   assert.deepEqual(names(), ["ground", "thymio"]);
 });
 
@@ -318,9 +318,9 @@ test("the draft is stored and restored; a full storage is reported", () => {
     throw new Error("full");
   };
   again.model.undo();
-  again.replacePlayground(newPlayground("Ünser Feld!"), { word: "did.new" });
+  again.replacePlayground(newPlayground("Ünser Feld!"), { word: "change.new" });
   again.keep();
-  assert.equal(reported.at(-1), "tell.noDraft");
+  assert.equal(reported.at(-1), "status.noDraft");
   assert.equal(again.fileName, "Unser_Feld.json");
   again.model.undo();
   assert.ok(again.model.playground.items.some(({ name }) => name === "box_1"));
@@ -328,16 +328,10 @@ test("the draft is stored and restored; a full storage is reported", () => {
   clearTimeout(session.timer);
 });
 
-test("the creator has every text in every language, with the same values", () => {
-  /** @param {string} text */
-  const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
-  for (const table of Object.values(WORDS)) {
-    assert.deepEqual(Object.keys(table), Object.keys(WORDS.en));
-    for (const [key, text] of Object.entries(WORDS.en)) assert.deepEqual(values(table[key]), values(text), key);
-  }
-  for (const { name, fields } of SHAPES) {
-    assert.ok(`kind.${name}` in WORDS.en && `tool.${name}` in WORDS.en, name);
-    for (const key of Object.keys(fields)) assert.ok(`field.${key}` in WORDS.en, key);
+test("the creator has texts for every shape and its fields", () => {
+  for (const { name, fields } of shapeKinds()) {
+    assert.ok(`kind.${name}` in creatorTexts.en && `tool.${name}` in creatorTexts.en, name);
+    for (const key of Object.keys(fields)) assert.ok(`field.${key}` in creatorTexts.en, key);
   }
 });
 
@@ -397,12 +391,12 @@ test("a notch of any mouse is one step, and touchpad distances are accumulated",
   ];
   for (const notch of notches) {
     const wheel = new WheelSteps();
-    assert.deepEqual([1, 2, 3].map(() => wheel.take(notch)), [1, 1, 1]);
-    assert.equal(wheel.take({ ...notch, deltaY: -notch.deltaY }), -1);
+    assert.deepEqual([1, 2, 3].map(() => wheel.add(notch)), [1, 1, 1]);
+    assert.equal(wheel.add({ ...notch, deltaY: -notch.deltaY }), -1);
   }
-  assert.equal(new WheelSteps().take({ deltaY: 240, deltaMode: 0 }), 2);
+  assert.equal(new WheelSteps().add({ deltaY: 240, deltaMode: 0 }), 2);
   const pad = new WheelSteps();
-  const steps = Array.from({ length: 60 }, () => pad.take({ deltaY: 4, deltaMode: 0 }));
+  const steps = Array.from({ length: 60 }, () => pad.add({ deltaY: 4, deltaMode: 0 }));
   assert.equal(steps.reduce((sum, one) => sum + one, 0), 2);
 });
 
@@ -428,7 +422,7 @@ test("the saved state survives a reload, and a playground equal to its file coun
   const options = { storage, title: "Mine", report: () => {}, changed: () => {} };
   const session = new CreatorSession(options);
   const titled = (/** @type {CreatorSession} */ one, /** @type {string} */ title) =>
-    one.model.replacePlayground({ ...one.model.playground, title }, { word: "did.titled" });
+    one.model.replacePlayground({ ...one.model.playground, title }, { word: "change.titled" });
   titled(session, "Yours");
   session.keep();
   assert.equal(new CreatorSession(options).isUnsaved, true);

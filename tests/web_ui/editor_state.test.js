@@ -7,12 +7,11 @@ import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
 import { repairLabel } from "../../web_ui/editor/hint.js";
 import { History } from "../../web_ui/editor/history.js";
-import { Link } from "../../web_ui/editor/link.js";
+import { RuntimeClient } from "../../web_ui/editor/runtime_client.js";
 import { csv, parseNumbers } from "../../web_ui/editor/numbers.js";
 import { roundStep } from "../../web_ui/editor/plot.js";
-import { INITIAL, KEPT_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
-import { FileStore, KEPT_FILES } from "../../web_ui/editor/file_store.js";
-import { PHRASES, WORDS } from "../../web_ui/editor/words/index.js";
+import { INITIAL, MAX_LOGGED_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
+import { FileStore, MAX_FILES } from "../../web_ui/editor/file_store.js";
 import { ALL, Workspace } from "../../web_ui/editor/workspace.js";
 
 /** A browser's storage in memory. */
@@ -71,12 +70,12 @@ test("variables are split by their labels", () => {
 
 test("the log keeps the newest events, each with its robot, and can be emptied", () => {
   let state = INITIAL;
-  for (let index = 0; index < KEPT_EVENTS + 3; index++) {
+  for (let index = 0; index < MAX_LOGGED_EVENTS + 3; index++) {
     state = reduce(state, message("/anna/_aseba/events", labeled([["ping", [index]]])));
   }
-  assert.equal(state.log.length, KEPT_EVENTS);
+  assert.equal(state.log.length, MAX_LOGGED_EVENTS);
   const last = state.log.at(-1);
-  assert.deepEqual([last?.robot, last?.name, last?.values], ["anna", "ping", [KEPT_EVENTS + 2]]);
+  assert.deepEqual([last?.robot, last?.name, last?.values], ["anna", "ping", [MAX_LOGGED_EVENTS + 2]]);
   assert.deepEqual(reduce(state, { type: "forgetLog" }).log, []);
 });
 
@@ -114,8 +113,8 @@ test("series become a table with one row per time", () => {
 
 test("numbers must be whole, in range, and of the required count", () => {
   assert.deepEqual(parseNumbers(" 1, -32768 3 ", 3).values, [1, -32768, 3]);
-  assert.equal(parseNumbers("1 2", 3).trouble?.key, "number.count");
-  for (const bad of ["32768", "1.5", "a", "--1"]) assert.equal(parseNumbers(bad, 1).trouble?.key, "number.range", bad);
+  assert.equal(parseNumbers("1 2", 3).problem?.key, "number.count");
+  for (const bad of ["32768", "1.5", "a", "--1"]) assert.equal(parseNumbers(bad, 1).problem?.key, "number.range", bad);
 });
 
 test("grid lines are at round numbers", () =>
@@ -331,8 +330,8 @@ test("an unsaved text is offered at the next visit, a saved one is not", () => {
 test("the number of recent files is limited, and invalid storage content is ignored", () => {
   const storage = newStorage();
   const fileStore = new FileStore(storage);
-  for (let index = 0; index < KEPT_FILES + 5; index++) fileStore.remember({ name: `${index}`, text: "", time: index });
-  assert.equal(fileStore.recent().length, KEPT_FILES);
+  for (let index = 0; index < MAX_FILES + 5; index++) fileStore.addRecent({ name: `${index}`, text: "", time: index });
+  assert.equal(fileStore.recent().length, MAX_FILES);
   storage.setItem("editor.recent", "{");
   assert.deepEqual(fileStore.recent(), []);
 });
@@ -345,7 +344,7 @@ test("the newest recent files that fit into the storage are kept", () => {
     setItem(key, value);
   };
   const fileStore = new FileStore(storage);
-  for (const name of ["a", "b", "c"]) fileStore.remember({ name, text: name.repeat(60), time: 1 });
+  for (const name of ["a", "b", "c"]) fileStore.addRecent({ name, text: name.repeat(60), time: 1 });
   assert.deepEqual(
     fileStore.recent().map(({ name }) => name),
     ["c", "b"],
@@ -368,9 +367,9 @@ test("a setting that cannot be stored still takes effect", () => {
 test("a program for all replaces the programs of single robots", async () => {
   /** @type {any[]} */ const asked = [];
   const client = { setParameters: async (/** @type {any} */ given) => (asked.push(given), { ok: true, message: "" }) };
-  const link = new Link(/** @type {any} */ (client));
-  await link.load(null, "a.aesl", "x", ["anna", "paul"]);
-  await link.load("anna", "b.aesl", "y", ["anna", "paul"]);
+  const runtime = new RuntimeClient(/** @type {any} */ (client));
+  await runtime.load(null, "a.aesl", "x", ["anna", "paul"]);
+  await runtime.load("anna", "b.aesl", "y", ["anna", "paul"]);
   assert.deepEqual(
     asked.map((given) => given.map((/** @type {any} */ each) => `${each.name}=${each.value}`)),
     [
@@ -387,19 +386,9 @@ test("a program for all replaces the programs of single robots", async () => {
 
 test("a rejected variable is reported with its reason", async () => {
   const value = { results: [{ successful: false, reason: "too large" }] };
-  const link = new Link(/** @type {any} */ ({ call: async () => ({ ok: true, message: "", value }) }));
-  assert.deepEqual(await link.setVariable("", "a", [1]), { ok: false, message: "too large" });
+  const runtime = new RuntimeClient(/** @type {any} */ ({ call: async () => ({ ok: true, message: "", value }) }));
+  assert.deepEqual(await runtime.setVariable("", "a", [1]), { ok: false, message: "too large" });
 });
-
-for (const [language, table] of Object.entries(WORDS)) {
-  test(`the editor has every text in ${language}, with the same values`, () => {
-    assert.deepEqual(Object.keys(table), Object.keys(WORDS.en));
-    /** @param {string} text */
-    const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
-    for (const [key, text] of Object.entries(WORDS.en)) assert.deepEqual(values(table[key]), values(text), key);
-    if (language !== "en") assert.deepEqual(Object.keys(PHRASES[language]), Object.keys(PHRASES.de));
-  });
-}
 
 const REFUSED = {
   line: 2,

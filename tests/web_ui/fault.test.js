@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
+import pageTexts from "../../web_ui/i18n/page.texts.js";
 import { faultText, isForeign, refusalOf } from "../../web_ui/panels/fault.js";
 import { locate } from "../../web_ui/state/index.js";
 
@@ -11,9 +12,9 @@ const FOREIGN = [
   "a.json: line 1, column 14: found the end of the text, expected JSON (Expecting property name enclosed in double quotes)",
   "a.json: found [], expected an object",
   "a.json: format: found None, expected 1",
-  "a.json: found a wrong byte at 0, expected UTF-8 text",
+  "a.json: found an invalid byte at offset 0, expected UTF-8 text",
   "a.json: line 1: found <html>, expected <aseba-playground>",
-  "a.json: found a broken zip archive, expected a whole one",
+  "a.json: found a damaged zip archive, expected a complete zip archive",
   "a.json: line 1: found no element found, expected XML",
 ];
 
@@ -22,7 +23,7 @@ for (const message of FOREIGN) {
     const fault = locate(`/simulator.playground: ${message}`, "a.json");
     for (const language of Object.keys(LANGUAGES)) {
       const said = faultText(translator(language), fault);
-      assert.equal(said, LANGUAGES[language]["fault.notPlayground"]);
+      assert.equal(said, pageTexts[language]["fault.notPlayground"] ?? pageTexts.en["fault.notPlayground"]);
       assert.ok(!/Expecting|JSON|None|byte/.test(said));
     }
   });

@@ -70,12 +70,12 @@ test("invisible parts are not drawn: a distant robot is its body and the lit lig
   const instances = new RobotInstances({ fine: false });
   const look = { sensing: false, hovered: null };
   /** @param {Partial<import("../../web_ui/state/robot.js").Robot>} state */
-  const crowd = (state) => standing(20, state).map(({ frame }) => ({ frame, look: { ...look, robot: { ...NEW_ROBOT, ...state } } }));
-  instances.update(crowd({}));
+  const many = (state) => standing(20, state).map(({ frame }) => ({ frame, look: { ...look, robot: { ...NEW_ROBOT, ...state } } }));
+  instances.update(many({}));
   assert.equal(sum(copies(instances)), 20 * 2);
-  instances.update(crowd({ leds: { circle: [0, 0, 1], bottom_left: [0, 0.5, 0] } }));
+  instances.update(many({ leds: { circle: [0, 0, 1], bottom_left: [0, 0.5, 0] } }));
   assert.equal(sum(copies(instances)), 20 * 4);
-  instances.update(crowd({}));
+  instances.update(many({}));
   assert.equal(sum(copies(instances)), 20 * 2);
 });
 

@@ -99,30 +99,30 @@ test("a dragged body keeps its offset to the pointer, and the simulator is asked
   assert.equal(dragController.grab(down(0.05, 0.01), false), false);
   assert.equal(dragController.grab(down(0.05, 0.01), true), true);
   dragController.drag(down(0.55, -0.19));
-  const pose = dragController.held?.pose;
+  const pose = dragController.dragged?.pose;
   assert.ok(pose && Math.abs(pose.x - 0.5) < 1e-9 && Math.abs(pose.y + 0.2) < 1e-9);
   await dragController.drop();
   assert.equal(asked[0][0], "thymio");
-  assert.equal(dragController.held, null);
+  assert.equal(dragController.dragged, null);
 });
 
 test("a ghost reports the obstacle at its position", () => {
   const { dragController } = prepared();
   dragController.grab(down(0.3, 0), true);
   dragController.drag(down(1, 0));
-  assert.equal(dragController.held?.blocker, "wall");
+  assert.equal(dragController.dragged?.blocker, "wall");
   dragController.drag(down(0.6, 0));
-  assert.equal(dragController.held?.blocker, null);
+  assert.equal(dragController.dragged?.blocker, null);
 });
 
 test("the ring turns the selected body in move mode", () => {
   const { dragController } = prepared();
   dragController.setMode(true);
-  assert.equal(dragController.held?.body.name, "thymio");
-  const radius = reach(/** @type {any} */ (dragController.held).body) + 0.025;
+  assert.equal(dragController.dragged?.body.name, "thymio");
+  const radius = reach(/** @type {any} */ (dragController.dragged).body) + 0.025;
   assert.equal(dragController.grab(down(radius, 0), true), true);
   dragController.drag(down(0, radius));
-  assert.ok(dragController.held !== null && Math.abs(dragController.held.pose.yaw - Math.PI / 2) < 1e-9 && dragController.held.pose.x === 0);
+  assert.ok(dragController.dragged !== null && Math.abs(dragController.dragged.pose.yaw - Math.PI / 2) < 1e-9 && dragController.dragged.pose.x === 0);
 });
 
 test("keys move, turn, select the next body and drop it", async () => {
@@ -132,12 +132,12 @@ test("keys move, turn, select the next body and drop it", async () => {
   dragController.nudge(1, 2, 1);
   assert.deepEqual(reported.at(-1), ["move.at", { x: "31", y: "2", yaw: 15 }]);
   dragController.nudge(70, -2);
-  assert.deepEqual(reported.at(-1), ["move.taken", { x: "101", y: "0", yaw: 15, by: "wall" }]);
+  assert.deepEqual(reported.at(-1), ["move.blocked", { x: "101", y: "0", yaw: 15, by: "wall" }]);
   await dragController.drop();
   assert.equal(asked[0][0], "can");
-  assert.equal(dragController.held?.pose.x, 0.3); // still in hand, where it stands
+  assert.equal(dragController.dragged?.pose.x, 0.3); // still in hand, where it stands
   dragController.setMode(false);
-  assert.equal(dragController.held, null);
+  assert.equal(dragController.dragged, null);
 });
 
 test("nothing is selected in an empty world", async () => {
@@ -146,7 +146,7 @@ test("nothing is selected in an empty world", async () => {
   dragController.next();
   dragController.nudge(1, 0);
   await dragController.drop();
-  assert.equal(dragController.held, null);
+  assert.equal(dragController.dragged, null);
 });
 
 /** A playground of ours with a floor, and one robot. @param {number} size @param {Record<string, any>} robot */

@@ -14,14 +14,14 @@ from tests.processes import wait_for_port
 MARKS = [pytest.mark.browser, pytest.mark.process]
 
 
-class Fingers:
-    """Several touch points, through the DevTools protocol: names are fingers, positions are in CSS pixels."""
+class TouchPoints:
+    """Several touch points, through the DevTools protocol: each has a name; positions are in CSS pixels."""
 
     def __init__(self, page: Any) -> None:
         self._developer = page.context.new_cdp_session(page)
         self._down: dict[int, tuple[float, float]] = {}
 
-    def put(self, **places: tuple[float, float]) -> None:
+    def start(self, **places: tuple[float, float]) -> None:
         """Start touches: a=(x, y), b=(x, y)."""
         for name, place in places.items():
             self._down[ord(name)] = place
@@ -29,14 +29,14 @@ class Fingers:
 
     def move(self, steps: int = 6, **places: tuple[float, float]) -> None:
         """Move all touches at once."""
-        begin = {name: self._down[ord(name)] for name in places}
+        start = {name: self._down[ord(name)] for name in places}
         for step in range(1, steps + 1):
             for name, (x, y) in places.items():
-                from_x, from_y = begin[name]
+                from_x, from_y = start[name]
                 self._down[ord(name)] = (from_x + (x - from_x) * step / steps, from_y + (y - from_y) * step / steps)
             self._send("touchMove")
 
-    def lift(self) -> None:
+    def end(self) -> None:
         """End all touches."""
         self._down.clear()
         self._send("touchEnd")
@@ -93,12 +93,12 @@ def wait_for_frame(page: Any) -> None:
 
 def wait_until_still(page: Any, place: str) -> None:
     """Wait until an expression on the page gives the same position in several frames."""
-    page.evaluate("() => { window.stood = null; }")
+    page.evaluate("() => { window.previous = null; }")
     page.wait_for_function(
-        f"() => {{ const now = {place}; const frames = window.thymio.frames(); const {{stood}} = window;"
-        " const still = now && stood && Math.hypot(now.x - stood.x, now.y - stood.y) < 0.01;"
-        " if (!still) window.stood = now && {x: now.x, y: now.y, frames};"
-        " return still && frames > stood.frames + 2; }",
+        f"() => {{ const now = {place}; const frames = window.thymio.frames(); const {{previous}} = window;"
+        " const still = now && previous && Math.hypot(now.x - previous.x, now.y - previous.y) < 0.01;"
+        " if (!still) window.previous = now && {x: now.x, y: now.y, frames};"
+        " return still && frames > previous.frames + 2; }",
         polling=200,
     )
 

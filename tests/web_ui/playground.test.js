@@ -5,83 +5,49 @@ import { test } from "node:test";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { containsPoint, overlap, placed, rectangle } from "../../web_ui/playground/geometry.js";
 import { blockerOf, isOnGround, findProblem } from "../../web_ui/playground/validation.js";
-import { ROBOT, SHAPES } from "../../web_ui/playground/kinds/index.js";
+import { BUILT_IN } from "../../web_ui/playground/declarations.js";
+import { kindNamed, ROBOT, shapeKinds } from "../../web_ui/playground/kinds/index.js";
 import { Markers } from "../../web_ui/playground/markers.js";
-import { partsOf } from "../../web_ui/playground/parts.js";
-import { Fault, needed } from "../../web_ui/playground/rules.js";
+import { partsOf, valuesOf } from "../../web_ui/playground/parts.js";
+import { Fault } from "../../web_ui/playground/rules.js";
 import { worldOf } from "../../web_ui/playground/world.js";
 
-/** @typedef {import("../../web_ui/playground/rules.js").Fields} Fields */
-/** @typedef {import("../../web_ui/playground/rules.js").Rule} Rule */
-
 const FOLDER = new URL("../../playgrounds/", import.meta.url);
-const SCHEMA = JSON.parse(readFileSync(new URL("playground.schema.json", FOLDER), "utf8"));
-const NAME = { type: "string", pattern: "^([A-Za-z](_?[A-Za-z0-9])*)$", maxLength: 60 };
+/** Playgrounds that page and simulator both read or both reject (tests/sim/playground/test_declarations.py). */
+const CASES = JSON.parse(readFileSync(new URL("../data/web/playground_cases.json", import.meta.url), "utf8"));
 
-/** A rule as the published schema tells it, without its words. @param {Rule} rule @returns {any} */
-function schemaOf({ type, low, high, pattern, longest, fewest, fields }) {
-  if (type === "number") return { type: "number", minimum: low, maximum: high };
-  if (type === "text") return { type: "string", pattern: pattern?.source, maxLength: longest };
-  if (type === "image") return { type: "string", minLength: 5, maxLength: longest };
-  if (type === "flag") return { type: "boolean" };
-  const item = { type: "array", items: { type: "number", minimum: -100, maximum: 100 }, minItems: 2, maxItems: 2 };
-  if (type === "points") return { type: "array", items: item, minItems: fewest, maxItems: 1000 };
-  return objectOf(fields ?? {}, {});
-}
+test("every declared shape of the simulator has a drawing of its own", () => {
+  assert.deepEqual(shapeKinds().filter((kind) => !kind.isExact({})), []);
+  assert.deepEqual(shapeKinds().map(({ name }) => name), Object.keys(BUILT_IN.shapes));
+});
 
-/** @param {Fields} fields @param {Record<string, any>} extra */
-function objectOf(fields, extra) {
-  const properties = Object.fromEntries(
-    Object.entries(fields).map(([key, { rule, defaultValue }]) => {
-      const hasDefault = defaultValue !== undefined && defaultValue !== null;
-      return [key, { ...schemaOf(rule), ...(hasDefault ? { default: defaultValue } : {}) }];
-    }),
+/** With lengths in nanometers, and without images. @param {import("../../web_ui/playground/primitives.js").Primitive[]} primitives */
+const rounded = (primitives) =>
+  JSON.parse(
+    JSON.stringify(
+      primitives.filter(({ type }) => type !== "print"),
+      (_key, value) => (typeof value === "number" ? Math.round(value * 1e9) / 1e9 + 0 : value),
+    ),
   );
-  const required = Object.entries(fields)
-    .filter(([, { required }]) => required)
-    .map(([key]) => key);
-  return { type: "object", properties: { ...extra, ...properties }, required };
-}
 
-/** The schema without words, without the null that what may be left out may be, and in one order. @param {any} schema @returns {any} */
-function bare(schema) {
-  if (Array.isArray(schema)) return schema.map(bare);
-  if (typeof schema !== "object" || schema === null) return schema;
-  if (schema.anyOf?.[1]?.type === "null") return bare(schema.anyOf[0]);
-  const { description: _words, additionalProperties: _closed, ...rest } = schema;
-  if (rest.default === null) delete rest.default;
-  if (rest.required?.length === 0) delete rest.required;
-  const entries = Object.entries(rest).map(([key, value]) => [
-    key,
-    key === "properties" ? members(value) : bare(value),
-  ]);
-  if (Array.isArray(rest.required)) rest.required.sort();
-  return Object.fromEntries(entries.sort(([one], [other]) => (one < other ? -1 : 1)));
-}
-
-/** @param {Record<string, any>} properties */
-function members(properties) {
-  return Object.fromEntries(
-    Object.keys(properties)
-      .sort()
-      .map((key) => [key, bare(properties[key])]),
-  );
-}
-
-for (const kind of SHAPES) {
-  test(`a ${kind.name} has the fields of the published schema`, () => {
-    const forms = SCHEMA.properties.shapes.items.oneOf;
-    const published = forms.find((/** @type {any} */ form) => form.properties.kind.const === kind.name);
-    const own = objectOf(kind.fields, { kind: { const: kind.name }, name: NAME });
-    assert.deepEqual(bare(own).properties, bare(published).properties);
-    assert.deepEqual(new Set(published.required), new Set(["kind", ...own.required]));
+for (const kind of shapeKinds()) {
+  test(`a ${kind.name} is drawn of the primitives that the simulator makes of it`, () => {
+    const values = valuesOf({ name: "x", ...kind.sample, kind: kind.name });
+    assert.deepEqual(rounded(kind.draw(values)), rounded(BUILT_IN.shapes[kind.name].primitives));
   });
 }
 
-test("the page knows every shape of the published schema, and a robot's fields", () => {
-  const kinds = SCHEMA.properties.shapes.items.oneOf.map((/** @type {any} */ form) => form.properties.kind.const);
-  assert.deepEqual(SHAPES.map(({ name }) => name).sort(), kinds.sort());
-  assert.deepEqual(bare(objectOf(ROBOT.fields, {})).properties, bare(SCHEMA.properties.robots.items).properties);
+test("the names of fields say how a kind is placed", () => {
+  /** @param {string} name */
+  const placed = (name) => {
+    const { points, path, isRelative, placement } = /** @type {import("../../web_ui/playground/kinds/index.js").Kind} */ (kindNamed(name));
+    return { points: points.length, path, isRelative, placement };
+  };
+  assert.deepEqual(placed("box"), { points: 1, path: undefined, isRelative: true, placement: "center" });
+  assert.deepEqual(placed("door"), { points: 2, path: undefined, isRelative: true, placement: "center" });
+  assert.deepEqual(placed("wall"), { points: 2, path: undefined, isRelative: true, placement: "ends" });
+  assert.deepEqual(placed("track"), { points: 0, path: "points_m", isRelative: false, placement: "path" });
+  assert.deepEqual(placed("activation"), { points: 1, path: "area_m", isRelative: true, placement: "center" });
 });
 
 for (const file of readdirSync(FOLDER).filter((name) => name.endsWith(".json") && !name.includes("schema"))) {
@@ -127,22 +93,24 @@ for (const [what, given, key, word] of /** @type {[string, string, string, strin
   ["no JSON", "{", "", "fault.json"],
   ["a list", "[]", "", "fault.object"],
   ["another format", '{"format": 2, "title": ""}', "format", "fault.format"],
-  ["a missing title", '{"format": 1}', "title", "fault.line"],
-  ["an unknown key", text([{ ...BOX, sise_x_m: 1 }]), "shapes[0].sise_x_m", "fault.known"],
-  ["a missing key", text([{ kind: "box", x_m: 0 }]), "shapes[0].y_m", "fault.number"],
-  ["a number out of range", text([{ ...BOX, size_x_m: 0 }]), "shapes[0].size_x_m", "fault.number"],
-  ["text for a number", text([{ ...BOX, x_m: "1" }]), "shapes[0].x_m", "fault.number"],
-  ["a wrong color", text([{ ...BOX, color: "red" }]), "shapes[0].color", "fault.shade"],
-  ["a name twice", text([BOX, BOX]), "shapes[1].name", "fault.ownName"],
-  ["a robot in a box", text([BOX], [{ name: "thymio", x_m: 0, y_m: 0 }]), "robots[0]", "fault.free"],
-  ["a track of one place", text([{ kind: "track", points_m: [[0, 0], [0, 0]], width_m: 0.1, color: "#000000" }]), "shapes[0].points_m", "fault.places"], // prettier-ignore
-  ["a plate without its door", text([{ kind: "activation", x_m: 0, y_m: 0, size_x_m: 0.1, size_y_m: 0.1, area_m: [[0, 0], [1, 0], [0, 1]], door: "gate" }]), "shapes[0].door", "fault.door"], // prettier-ignore
 ])) {
   test(`${what} is rejected with its location`, () => {
     assert.throws(
       () => parse(given),
       (error) => error instanceof Fault && error.key === key && error.expected.word === word,
     );
+  });
+}
+
+for (const { name, playground, key, word } of CASES) {
+  test(`${name} is ${key === null ? "read" : "rejected with its location"}`, () => {
+    const given = JSON.stringify({ format: 1, ...playground });
+    if (key === null) assert.equal(parse(given).items.length > 0, true);
+    else
+      assert.throws(
+        () => parse(given),
+        (error) => error instanceof Fault && error.key === key && error.expected.word === word,
+      );
   });
 }
 
@@ -160,7 +128,7 @@ test("an item may not overlap a robot, but objects may overlap each other", () =
   const [robot] = parse(text([], [{ name: "thymio", x_m: 0, y_m: 0 }])).items;
   const crate = { ...BOX, x_m: 0.05 };
   assert.equal(blockerOf([robot], crate), "thymio");
-  assert.deepEqual(findProblem([robot], crate), { word: "problem.taken", values: { name: "thymio" } });
+  assert.deepEqual(findProblem([robot], crate), { word: "problem.blocked", values: { name: "thymio" } });
   assert.equal(findProblem([robot, { ...BOX, name: "other", x_m: 0.2 }], { ...BOX, x_m: 0.21 }), null);
   assert.equal(findProblem([robot], { ...BOX, x_m: 0.13 + 1e-9 }), null);
 });
@@ -195,6 +163,6 @@ test("a disc beside a corner does not overlap it", () => {
 });
 
 test("a robot's kind needs a name", () => {
-  assert.ok(needed(ROBOT.fields.name.rule).required);
+  assert.ok(ROBOT.fields.name.required);
   assert.equal(partsOf({ kind: "robot", name: "a", x_m: 0, y_m: 0 }).footprints.length, 1);
 });

@@ -23,8 +23,25 @@ const ROBOT = {
   },
 };
 
+const ROW = { label: { en: "" }, unit: "", scale: 1, digits: 0, full_scale: null, words: 1 };
+const G = 9.81 / 23;
+
+/** The declarations of the built-in sensors (thymio_sim_ros/sim/sensors/). */
+const DECLARED = [
+  {
+    name: "accelerometer",
+    label: { en: "acceleration" },
+    values: ["x", "y", "z"].map((axis) => ({ ...ROW, label: { en: axis }, unit: "m/s²", scale: G, digits: 1 })),
+  },
+  { name: "battery", label: { en: "battery" }, values: [{ ...ROW, unit: "V", scale: 1 / 198.9, digits: 2 }] },
+  { name: "sound", label: { en: "microphone" }, values: [{ ...ROW, unit: "%", scale: 100 / 255 }] },
+  { name: "temperature", label: { en: "temperature" }, values: [{ ...ROW, unit: "°C", scale: 0.1, digits: 1 }] },
+];
+
+const key = (/** @type {string} */ name) => name;
+
 test("every value is shown in SI units beside Thymio's integer, ready for a spreadsheet", () => {
-  const lines = asText(groupsOf((key) => key), ROBOT).split("\n").map((line) => line.split("\t")); // prettier-ignore
+  const lines = asText(groupsOf(key, "en", DECLARED), ROBOT).split("\n").map((line) => line.split("\t")); // prettier-ignore
   const find = (/** @type {string} */ label, group = "sensors.others") =>
     lines.find(([title, name]) => title === group && name === label)?.slice(2);
   assert.deepEqual(find("sensors.temperature"), ["22.1 °C", "221"]);
@@ -38,8 +55,37 @@ test("every value is shown in SI units beside Thymio's integer, ready for a spre
 });
 
 test("a robot without messages has empty values", () => {
-  const text = asText(groupsOf((key) => key), NEW_ROBOT); // prettier-ignore
+  const text = asText(groupsOf(key, "en", DECLARED), NEW_ROBOT);
   assert.ok(!text.includes("NaN") && !text.includes("undefined"));
+});
+
+test("a sensor of a plug-in has the rows that it declares", () => {
+  const compass = {
+    name: "compass",
+    label: { en: "compass", de: "Kompass" },
+    values: [
+      { ...ROW, label: { en: "heading" }, unit: "°", full_scale: 180 },
+      { ...ROW, label: { en: "field" }, words: 3 },
+    ],
+  };
+  const robot = { ...NEW_ROBOT, raw: { compass: [-90, 1, 2, 3] } };
+  /** @param {string} language @param {import("../../web_ui/state/robot.js").Robot} shown */
+  const last = (language, shown = robot) => {
+    const groups = groupsOf(key, language, [...DECLARED, compass]);
+    assert.deepEqual(groups.at(-1)?.[1].map(({ full }) => full), [180, null]);
+    return asText(groups, shown).split("\n").slice(-2);
+  };
+  assert.deepEqual(last("en"), ["compass\theading\t-90 °\t-90", "compass\tfield\t1 2 3\t1 2 3"]);
+  assert.deepEqual(last("de")[0], "Kompass\theading\t-90 °\t-90");
+  assert.deepEqual(last("fr", NEW_ROBOT)[1], "compass\tfield\t\t");
+});
+
+test("the rows of built-in sensors keep their places and labels", () => {
+  const groups = groupsOf(key, "en", DECLARED);
+  const titles = groups.map(([title]) => title);
+  assert.deepEqual(titles.slice(4), ["sensors.acceleration", "sensors.others", "sensors.buttons"]);
+  assert.deepEqual(groups[5][1].map(({ label }) => label).slice(0, 2), ["sensors.temperature", "sensors.microphone"]);
+  assert.equal(groupsOf(key, "en", []).length, 6);
 });
 
 test("value labels are at the ends of the beams and beside the ground patches", () => {

@@ -12,7 +12,7 @@ import { FakeAudio } from "./audio.js";
 const START = /** @type {State} */ ({ ...INITIAL, connection: "connected", robots: { "": NEW_ROBOT } });
 
 /** @param {State} state @param {string} topic @param {number[]} data */
-function heard(state, topic, data) {
+function stateAfter(state, topic, data) {
   return reduce(state, { type: "message", topic, value: { data }, timeNs: 0n });
 }
 
@@ -60,21 +60,21 @@ test("a sound continues when only its volume changes, and restarts when it is pl
 
 test("a tone sounds until the simulator reports its end", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/_sound/state", [880, 0.2, 0.5]);
+  const tone = stateAfter(START, "/_sound/state", [880, 0.2, 0.5]);
   speaker.update(tone);
   const [source] = audio.sounding;
   assert.equal(source.loop, true);
   assert.equal(source.gain.value, 0.5);
   assert.ok(Math.abs((source.playbackRate.value * source.buffer.sampleRate) / source.buffer.length - 880) < 1e-9);
-  speaker.update(heard(tone, "/_sound/state", [0, 0, 0.5]));
+  speaker.update(stateAfter(tone, "/_sound/state", [0, 0, 0.5]));
   assert.equal(audio.sounding.length, 0);
 });
 
 test("another volume does not restart the tone", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/_sound/state", [880, 0.2, 1]);
+  const tone = stateAfter(START, "/_sound/state", [880, 0.2, 1]);
   speaker.update(tone);
-  speaker.update(heard(tone, "/_sound/state", [880, 0.2, 0.125]));
+  speaker.update(stateAfter(tone, "/_sound/state", [880, 0.2, 0.125]));
   assert.equal(audio.sources.length, 1);
   assert.equal(audio.sources[0].gain.value, 0.125);
 });
@@ -89,7 +89,7 @@ test("samples are played at their rate times the real-time factor", () => {
     const reported = JSON.stringify({ real_time_factor: factor });
     let state = reduce(START, { type: "message", topic: "/simulator/_state", value: { data: reported }, timeNs: 0n });
     const samples = Array.from({ length: 78 }, (_, at) => at);
-    state = heard(heard(state, "/_sound/state/samples", samples), "/_sound/state", [0, 0.01, 1]);
+    state = stateAfter(stateAfter(state, "/_sound/state/samples", samples), "/_sound/state", [0, 0.01, 1]);
     speaker.update(state);
     const [source] = audio.sounding;
     assert.equal(source.loop, false);
@@ -108,7 +108,7 @@ test("two robots are heard together; a removed one falls silent", () => {
 
 test("nothing sounds after the connection is lost", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/_sound/state", [440, Infinity, 1]);
+  const tone = stateAfter(START, "/_sound/state", [440, Infinity, 1]);
   speaker.update(tone);
   speaker.update(reduce(tone, { type: "disconnected" }));
   assert.equal(audio.sounding.length, 0);
@@ -116,7 +116,7 @@ test("nothing sounds after the connection is lost", () => {
 
 test("a pause suspends sounds", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/_sound/state", [440, 1, 1]);
+  const tone = stateAfter(START, "/_sound/state", [440, 1, 1]);
   /** @param {boolean} paused */
   const with_ = (paused) =>
     reduce(tone, {
@@ -140,7 +140,7 @@ test("no audio context is created before the first user action, nor while muted"
     return /** @type {any} */ (new FakeAudio());
   };
   const waiting = new Speaker({ createContext, muted: false, changed: () => {} });
-  waiting.update(heard(START, "/_sound/state", [440, 1, 1]));
+  waiting.update(stateAfter(START, "/_sound/state", [440, 1, 1]));
   assert.deepEqual([opened, waiting.phase], [0, "waiting"]);
   waiting.unlock();
   assert.deepEqual([opened, waiting.phase, waiting.playing.size], [1, "on", 1]);
@@ -152,7 +152,7 @@ test("no audio context is created before the first user action, nor while muted"
 
 test("muting stops sounds, and unmuting restarts them", () => {
   const { audio, speaker } = prepared();
-  speaker.update(heard(START, "/_sound/state", [440, Infinity, 1]));
+  speaker.update(stateAfter(START, "/_sound/state", [440, Infinity, 1]));
   speaker.setMuted(true);
   assert.equal(audio.sounding.length, 0);
   speaker.setMuted(false);

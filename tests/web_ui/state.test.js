@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { INITIAL, locate, programOf, reduce, snapshot } from "../../web_ui/state/index.js";
 import { Store } from "../../web_ui/state/store.js";
 import { applyMarkers } from "../../web_ui/state/markers.js";
-import { isWatched, splitTopic } from "../../web_ui/state/names.js";
+import { isWatched, splitTopic, subscriptionKey } from "../../web_ui/state/names.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import { captured } from "./support.js";
 
@@ -294,6 +294,8 @@ test("with many robots, beams and values are subscribed to for the selected robo
   const state = (count) => ({
     selected: "r1",
     simulator: null,
+    sensors: [],
+    sensorsShown: true,
     robots: Object.fromEntries(Array.from({ length: count }, (_, number) => [`r${number}`, NEW_ROBOT])),
   });
   const topics = ["/r0/_ground_truth/odom", "/r0/_led/state", "/r0/_raw/proximity", "/r1/_raw/proximity", "/_markers"];
@@ -302,6 +304,21 @@ test("with many robots, beams and values are subscribed to for the selected robo
   assert.deepEqual(watched(2), topics);
   assert.deepEqual(watched(20), topics.filter((topic) => topic !== "/r0/_raw/proximity"));
   assert.equal(isWatched(state(20), "/r1/no/such"), false);
+});
+
+test("integers that only the sensor panel shows are wanted while it is open", () => {
+  const topics = ["/_raw/compass", "/_raw/motor", "/_raw/leds", "/_raw/ground"];
+  const wanted = (/** @type {State} */ state) => topics.filter((topic) => isWatched(state, topic));
+  const shown = after([
+    { type: "channels", topics: ["/_ground_truth/odom"] },
+    message("/simulator/_sensors", json([{ name: "compass", label: { en: "compass" }, values: [] }])),
+  ]);
+  assert.deepEqual(wanted(shown), ["/_raw/ground"]);
+  const open = after([{ type: "showSensors", shown: true }], shown);
+  assert.deepEqual(wanted(open), ["/_raw/compass", "/_raw/motor", "/_raw/ground"]);
+  assert.notEqual(subscriptionKey(open), subscriptionKey(shown));
+  const heard = after([message("/_raw/compass", { data: [90] })], open);
+  assert.deepEqual(heard.robots[""].raw.compass, [90]);
 });
 
 test("with many robots, readings are discarded when another robot is selected", () => {
@@ -335,7 +352,7 @@ test("a notice disappears with its cause, and one of the bridge when the bridge 
   reported({ type: "status", status: { level: 2, message: "too many", id: "channels" } });
   assert.deepEqual(reported({ type: "solved", cause: "/simulator/step" }), ["for good", "too many"]);
   assert.deepEqual(reported({ type: "removeStatus", ids: ["channels"] }), ["for good"]);
-  reported({ type: "notice", level: "error", text: "nobody there", cause: "connection" });
+  reported({ type: "notice", level: "error", text: "no connection", cause: "connection" });
   assert.deepEqual(reported({ type: "connected" }), ["for good"]);
 });
 

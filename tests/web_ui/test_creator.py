@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import math
+import os
 
 import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
+from tests import plugin_page
 from tests.web_ui.conftest import DEADLINE_MS, LOCAL
 from tests.web_ui.page_support import (
     MARKS,
-    Fingers,
+    TouchPoints,
     open_page,
     wait_for_frame,
     wait_for_service,
@@ -189,8 +191,8 @@ def test_the_ghost_is_red_at_invalid_positions_and_the_reason_is_shown(suite, pa
     open_creator(page, suite)
     page.click("[data-tool=cylinder]")
     page.mouse.move(*spot(page, 0.0, 0.0))
-    page.wait_for_function("window.thymio.built().problem === 'problem.taken'")
-    playwright.expect(page.locator(".building-hint")).to_have_text("thymio is in the way")
+    page.wait_for_function("window.thymio.built().problem === 'problem.blocked'")
+    playwright.expect(page.locator(".placing-hint")).to_have_text("thymio is in the way")
     click(page, 0.0, 0.0)
     page.mouse.move(*spot(page, 0.3, 0.2))
     page.wait_for_function("window.thymio.built().problem === null")
@@ -236,8 +238,8 @@ def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(suite, pag
     page.click("[data-tool=track]")
     for key in ("Space", "ArrowUp", "ArrowUp", "Space", "Enter", "Escape"):
         page.keyboard.press(key)
-    page.click(".things-list summary")
-    page.click("[data-thing=track_1]")
+    page.click(".item-list summary")
+    page.click("[data-item=track_1]")
     name = page.get_by_label("Name")
     name.fill("lane")
     page.keyboard.press("Tab")
@@ -287,7 +289,7 @@ def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_g
     page.mouse.move(*spot(page, -0.3, 0.2))
     page.wait_for_function("Math.abs(window.thymio.built().placing.place[0] + 0.3) < 0.01")
     page.mouse.wheel(0, 120)
-    playwright.expect(page.locator(".told")).to_contain_text("-15°")
+    playwright.expect(page.locator(".creator-bar .status")).to_contain_text("-15°")
     page.keyboard.down("Alt")
     click(page, -0.313, 0.207)
     page.keyboard.up("Alt")
@@ -388,7 +390,7 @@ def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, pa
     page.keyboard.press("Escape")
     page.keyboard.press("n")
     playwright.expect(page.locator(".item-form [data-field=name]")).to_be_visible()
-    page.locator(".things-list summary").click()
+    page.locator(".item-list summary").click()
     assert page.evaluate(FINDINGS) == []
 
 
@@ -402,12 +404,12 @@ def test_items_are_placed_and_dragged_by_touch(suite, browser):
     page.touchscreen.tap(*spot(page, 0.25, 0.2))
     wait_for_items(page, 3)
     assert items(page)["thymio_1"]["x_m"] == 0.25
-    fingers, corners = Fingers(page), ((0.4, 0.4), (-0.4, -0.4))
+    touches, corners = TouchPoints(page), ((0.4, 0.4), (-0.4, -0.4))
     before = math.dist(*(spot(page, *corner) for corner in corners))
     camera = built(page)["camera"]
-    fingers.put(a=(380, 280), b=(420, 320))
-    fingers.move(a=(320, 220), b=(480, 380))
-    fingers.lift()
+    touches.start(a=(380, 280), b=(420, 320))
+    touches.move(a=(320, 220), b=(480, 380))
+    touches.end()
     page.wait_for_function("(camera) => window.thymio.built().camera[0] !== camera[0]", arg=camera)
     wait_for_camera(page)
     assert math.dist(*(spot(page, *corner) for corner in corners)) > 1.2 * before
@@ -488,3 +490,32 @@ def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page,
     fault = page.locator(".creator .fault")
     playwright.expect(fault).to_contain_text("This file is not a playground.")
     playwright.expect(fault.locator(".technical")).to_be_hidden()
+
+
+def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone(suite, page, tmp_path, monkeypatch):
+    installed = tmp_path / "site-packages"
+    plugin_page.lay_out(installed, plugin_page.files())
+    monkeypatch.setenv("PYTHONPATH", f"{installed}{os.pathsep}{os.environ.get('PYTHONPATH', '')}")
+    open_creator(page, suite)
+    tool = page.locator("[data-tool=slalom]")
+    assert tool.get_attribute("title") == "Slalom posts"
+    tool.click()
+    click(page, -0.4, 0.3)
+    wait_for_items(page, 3)
+    page.keyboard.press("Escape")
+    click(page, -0.4, 0.3, 0.05)
+    page.locator("[data-field=gap_m]").fill("50")
+    page.locator("[data-field=gap_m]").press("Enter")
+    assert page.locator(".field", has=page.locator("[data-field=gap_m]")).locator("label").inner_text() == "Gap (cm)"
+    page.locator("[data-field=gap_m]").fill("0")
+    page.locator("[data-field=gap_m]").press("Enter")
+    page.locator("[data-field=gap_m][aria-invalid=true]").wait_for()
+    with page.expect_download() as saving:
+        page.click("#creator-save")
+    saved = json.loads(saving.value.path().read_text())
+    assert saved["shapes"][1] == {
+        "kind": "slalom", "name": "slalom_1", "x_m": -0.4, "y_m": 0.3, "length_m": 1, "gap_m": 0.5,
+    }  # fmt: skip
+    page.click("#creator-try")
+    page.locator(".palette").wait_for(state="detached")
+    page.wait_for_function("() => window.thymio.state().markers > 4")

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from thymio_sim_ros import webbuild
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground import writer
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
+from web_ui import build
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -25,7 +25,7 @@ SCHEMA = Path(__file__).parents[2] / "playgrounds" / "playground.schema.json"
 @cache
 def cases() -> list[dict[str, Any]]:
     """Random playgrounds built with the creator's modules, and the page's verdict on each."""
-    node = webbuild.find_node()
+    node = build.find_node()
     if node is None:
         pytest.skip("no Node on this machine")
     done = subprocess.run([node.folder / "node", SCRIPT, str(PLAYGROUNDS)], capture_output=True, text=True, check=True)

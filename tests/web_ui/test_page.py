@@ -215,7 +215,7 @@ def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejecte
     open_page(page, suite("--playground", "base"))
     page.set_input_files("#playground-file", str(archive))
     page.wait_for_function("window.thymio.state().simulator.playground === 'my maze.playground'")
-    playwright.expect(page.locator("details.remarks")).to_contain_text("<feeder> left out")
+    playwright.expect(page.locator("details.remarks")).to_contain_text("<feeder> skipped")
     page.set_input_files("#playground-file", str(broken))
     fault = page.locator("div.fault", has_text="broken.playground")
     playwright.expect(fault.locator("dd")).to_contain_text(["line 2: <world> w", "'wide'", "a number"])

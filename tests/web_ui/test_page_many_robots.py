@@ -26,39 +26,39 @@ AS_LATE = f"(stamps) => ({STAMPS})().every((stamp, at) => stamp >= stamps[at])"
 
 
 @pytest.fixture
-def crowd(suite, page, tmp_path) -> Any:
+def robots_page(suite, page, tmp_path) -> Any:
     """Six robots that drive small circles."""
     shapes = [{"kind": "rectangle", "size_x_m": 3.0, "size_y_m": 1.0, "color": "#eef2f6"}]
     robots = [{"name": name, "x_m": -1.2 + 0.5 * number, "y_m": 0.0} for number, name in enumerate(NAMES)]
-    world, program = tmp_path / "crowd.json", tmp_path / "circle.aesl"
-    world.write_text(json.dumps({"format": 1, "title": "Crowd", "shapes": shapes, "robots": robots}))
+    world, program = tmp_path / "many_robots.json", tmp_path / "circle.aesl"
+    world.write_text(json.dumps({"format": 1, "title": "Many robots", "shapes": shapes, "robots": robots}))
     program.write_text("motor.left.target = 100\nmotor.right.target = 200\n")
     open_page(page, suite("--playground", str(world), "--program", str(program)))
     page.wait_for_function(ALL_TURN, arg=len(NAMES))
     return page
 
 
-def test_all_of_many_robots_move_by_their_shared_transforms(crowd):
-    crowd.wait_for_function(f"() => ({PLACED})() === 5")
-    selected = crowd.evaluate("() => window.thymio.state().selected")
+def test_all_of_many_robots_move_by_their_shared_transforms(robots_page):
+    robots_page.wait_for_function(f"() => ({PLACED})() === 5")
+    selected = robots_page.evaluate("() => window.thymio.state().selected")
     assert selected == NAMES[0]
-    crowd.get_by_role("group", name="Robot", exact=True).get_by_role("button", name=NAMES[3]).click()
-    crowd.wait_for_function(f"() => ({PLACED})() === 6")
-    stamps = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.stampNs)")
+    robots_page.get_by_role("group", name="Robot", exact=True).get_by_role("button", name=NAMES[3]).click()
+    robots_page.wait_for_function(f"() => ({PLACED})() === 6")
+    stamps = robots_page.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.stampNs)")
     later = (
         "(stamps) => Object.values(window.thymio.state().robots).every(({latest}, at) => latest.stampNs > stamps[at])"
     )
-    crowd.wait_for_function(later, arg=stamps)
-    crowd.wait_for_function("() => window.thymio.state().robot.raw.motor !== undefined")
+    robots_page.wait_for_function(later, arg=stamps)
+    robots_page.wait_for_function("() => window.thymio.state().robot.raw.motor !== undefined")
 
 
-def test_a_browser_that_connects_while_paused_gets_all_poses(crowd, other_page):
-    crowd.wait_for_function(f"() => ({PLACED})() === 5")
-    crowd.get_by_role("button", name="Pause").click()
-    crowd.wait_for_function("() => window.thymio.state().simulator.paused")
-    open_page(other_page, crowd.url)
+def test_a_browser_that_connects_while_paused_gets_all_poses(robots_page, other_page):
+    robots_page.wait_for_function(f"() => ({PLACED})() === 5")
+    robots_page.get_by_role("button", name="Pause").click()
+    robots_page.wait_for_function("() => window.thymio.state().simulator.paused")
+    open_page(other_page, robots_page.url)
     other_page.wait_for_function(f"(count) => ({STAMPS})().filter(Boolean).length === count", arg=len(NAMES))
-    crowd.wait_for_function(AS_LATE, arg=other_page.evaluate(STAMPS))  # its last ones may come after the pause
-    stood = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.pose)")
-    for name, pose in zip(NAMES, stood, strict=True):
+    robots_page.wait_for_function(AS_LATE, arg=other_page.evaluate(STAMPS))  # its last ones may come after the pause
+    poses = robots_page.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.pose)")
+    for name, pose in zip(NAMES, poses, strict=True):
         other_page.wait_for_function(STANDS, arg=[name, pose["x"], pose["y"]])

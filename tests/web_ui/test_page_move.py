@@ -47,14 +47,14 @@ def test_a_robot_and_a_can_are_dragged_and_an_occupied_position_is_rejected(suit
     open_still(page, suite, still_world)
     page.keyboard.down("Shift")
     drag(page, (0.02, 0, 0.05), (0.02, -0.25, 0.05))
-    assert page.evaluate("() => window.thymio.held().blocker") is None
+    assert page.evaluate("() => window.thymio.dragged().blocker") is None
     page.mouse.up()
     page.wait_for_function(f"({POSE})().y < -0.2")
     drag(page, (0.4, 0, 0.1), (0.2, 0.2, 0.1))
     page.mouse.up()
     page.wait_for_function("() => window.thymio.state().objects[0].pose.position.y > 0.15")
     drag(page, (0.02, -0.25, 0.05), (-0.38, 0.2, 0.05))
-    page.wait_for_function("() => window.thymio.held().blocker === 'box'")
+    page.wait_for_function("() => window.thymio.dragged().blocker === 'box'")
     page.mouse.up()
     playwright.expect(page.locator(".notice.error")).to_contain_text("box")
     assert page.evaluate(POSE)["y"] == pytest.approx(-0.25, abs=0.02)
@@ -64,16 +64,16 @@ def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(suite, page, still_wo
     open_still(page, suite, still_world)
     page.locator("#view").focus()
     page.keyboard.press("m")
-    page.wait_for_function("() => window.thymio.held() !== null")
+    page.wait_for_function("() => window.thymio.dragged() !== null")
     drag(page, (0.105, 0, 0), (0, 0.105, 0))
     page.mouse.up()
     page.wait_for_function(f"Math.abs(({POSE})().yaw - Math.PI / 2) < 0.1")
-    page.wait_for_function("() => Math.abs(window.thymio.held().pose.yaw - Math.PI / 2) < 0.1")
+    page.wait_for_function("() => Math.abs(window.thymio.dragged().pose.yaw - Math.PI / 2) < 0.1")
     for key in ("Shift+ArrowRight", "Shift+ArrowRight", "Enter"):
         page.keyboard.press(key)
     page.wait_for_function(f"Math.abs(({POSE})().x - 0.1) < 0.01")
     page.keyboard.press("Escape")
-    page.wait_for_function("() => window.thymio.held() === null")
+    page.wait_for_function("() => window.thymio.dragged() === null")
     assert page.evaluate("() => window.thymio.state().robot.buttons.center") is False
 
 

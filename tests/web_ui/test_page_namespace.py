@@ -36,14 +36,14 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
         assert one.evaluate("Object.keys(window.thymio.state().robots)") == [""]
 
     wait_for_program(page, "switch.aesl")
-    stood, start = other_page.evaluate(X), page.evaluate(X)
+    before, start = other_page.evaluate(X), page.evaluate(X)
     place = wait_for_position(page, "button.center")
     page.mouse.move(place["x"], place["y"])
     page.mouse.down()
     page.wait_for_function("() => window.thymio.state().robot.buttons.center === true")
     page.mouse.up()
     page.wait_for_function(f"(start) => Math.abs({X} - start) > 0.02", arg=start)
-    assert other_page.evaluate(X) == stood
+    assert other_page.evaluate(X) == before
 
     wait_for_service(page, "/simulator/pause", "/simulator/reset", "/aseba_runtime/check")
     page.click(".time .primary")

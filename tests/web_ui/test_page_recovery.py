@@ -54,8 +54,8 @@ def test_controls_are_disabled_with_a_reason_while_the_simulator_is_gone(suite, 
     page.keyboard.press("Control+End")
     page.keyboard.insert_text("# kept")
     page.click("#editor-switch")
-    surroundings = ".card.surroundings input, .card.surroundings button, .card.surroundings select"
-    states = page.evaluate(STATES, f"{LOCKED}, {surroundings}")
+    stimuli = ".card.stimuli input, .card.stimuli button, .card.stimuli select"
+    states = page.evaluate(STATES, f"{LOCKED}, {stimuli}")
     assert len(states) > 30
     assert all(disabled for disabled, _ in states)
     assert {title for _, title in page.evaluate(STATES, LOCKED)} == {"Not connected to the simulator"}
@@ -67,7 +67,7 @@ def test_controls_are_disabled_with_a_reason_while_the_simulator_is_gone(suite, 
     page.wait_for_function(PAUSED)
     playwright.expect(page.locator(".dpad button").first).to_be_enabled()
     playwright.expect(page.locator(".dpad button").first).to_have_attribute("title", "Forward")
-    for states in (page.evaluate(STATES, LOCKED), page.evaluate(STATES, surroundings)):
+    for states in (page.evaluate(STATES, LOCKED), page.evaluate(STATES, stimuli)):
         assert not any(disabled for disabled, _ in states)
     page.click("#editor-switch")
     playwright.expect(page.locator(".cm-content")).to_contain_text("# kept")

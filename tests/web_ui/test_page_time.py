@@ -31,8 +31,8 @@ def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite,
         if ticks is not None:
             page.select_option(".steps select", ticks)
         page.wait_for_function(
-            "() => { const {timeNs} = window.thymio.state(); const stood = window.stood === timeNs;"
-            " window.stood = timeNs; return stood; }",
+            "() => { const {timeNs} = window.thymio.state(); const isStill = window.previous === timeNs;"
+            " window.previous = timeNs; return isStill; }",
             polling=500,
         )
         before = page.evaluate(CLOCK)

@@ -49,7 +49,11 @@ def test_with_the_read_only_token_the_page_only_watches(suite, page):
     page.goto(f"{address}?tour=off#token=looktoken")
     page.wait_for_function("window.thymio?.state().readOnly && window.thymio.state().simulator !== null")
     page.locator("#read-only").wait_for()
-    page.wait_for_function("document.querySelector('.time').inert && document.querySelector('.dpad').inert")
+    controls = ".time button, .time select, .dpad button, .stop, .program button, .playground select, #creator-try"
+    page.wait_for_function(
+        "(controls) => [...document.querySelectorAll(controls)].every((control) => control.disabled)", arg=controls
+    )
+    assert page.locator(".stop").get_attribute("title") == page.locator("#read-only").get_attribute("title")
     before = page.evaluate("window.thymio.state().timeNs")
     page.keyboard.press("Escape")  # would stop everything
     page.wait_for_function("window.thymio.state().notices.some(({text}) => text.includes('read-only'))")

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.web_ui.conftest import checked_page
-from tests.web_ui.page_support import MARKS, Fingers, open_page, wait_for_position
+from tests.web_ui.page_support import MARKS, TouchPoints, open_page, wait_for_position
 
 pytestmark = MARKS
 
@@ -55,17 +55,17 @@ def corners(page: Any) -> list[tuple[float, float]]:
 def test_one_finger_turns_the_view_and_two_zoom_it(suite, tablet):
     open_page(tablet, suite(*RESTING))
     wait_for_position(tablet, "robot")
-    fingers = Fingers(tablet)
+    touches = TouchPoints(tablet)
     before = corners(tablet)
-    fingers.put(a=(60, 120))
-    fingers.move(a=(180, 120))
-    fingers.lift()
+    touches.start(a=(60, 120))
+    touches.move(a=(180, 120))
+    touches.end()
     tablet.wait_for_function(TURNED, arg=before[0])
     wait_for_position(tablet, "robot")
     turned = corners(tablet)
-    fingers.put(a=(60, 120), b=(100, 160))
-    fingers.move(a=(20, 80), b=(200, 260))
-    fingers.lift()
+    touches.start(a=(60, 120), b=(100, 160))
+    touches.move(a=(20, 80), b=(200, 260))
+    touches.end()
     tablet.wait_for_function(ZOOMED, arg=1.2 * math.dist(*turned))
 
 
@@ -74,18 +74,18 @@ def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(suite, 
     tablet.locator("#view").focus()
     tablet.keyboard.press("f")
     wait_for_position(tablet, "button.center")
-    fingers = Fingers(tablet)
-    fingers.put(a=place_of(tablet, "button.forward"), b=place_of(tablet, "button.backward"))
+    touches = TouchPoints(tablet)
+    touches.start(a=place_of(tablet, "button.forward"), b=place_of(tablet, "button.backward"))
     tablet.wait_for_function(
         "() => { const {forward, backward} = window.thymio.state().robot.buttons; return forward && backward; }"
     )
-    fingers.lift()
+    touches.end()
     tablet.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
-    fingers.put(a=middle_of(tablet, "[data-button=left]"), b=middle_of(tablet, "[data-button=center]"))
+    touches.start(a=middle_of(tablet, "[data-button=left]"), b=middle_of(tablet, "[data-button=center]"))
     tablet.wait_for_function(
         "() => { const {left, center} = window.thymio.state().robot.buttons; return left && center; }"
     )
-    fingers.lift()
+    touches.end()
     tablet.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
 
 
@@ -95,13 +95,13 @@ def test_a_robot_is_dragged_by_touch(suite, tablet):
     tablet.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
     before = tablet.evaluate(POSE)
     tablet.get_by_role("button", name="Move objects").tap()
-    tablet.wait_for_function("() => window.thymio.held() !== null")  # a tap becomes a click only later
-    fingers = Fingers(tablet)
+    tablet.wait_for_function("() => window.thymio.dragged() !== null")  # a tap becomes a click only later
+    touches = TouchPoints(tablet)
     x, y = place_of(tablet, "robot")
-    fingers.put(a=(x, y))
-    fingers.move(a=(x + 60, y + 10))
-    tablet.wait_for_function("() => window.thymio.held()?.blocker === null")
-    fingers.lift()
+    touches.start(a=(x, y))
+    touches.move(a=(x + 60, y + 10))
+    tablet.wait_for_function("() => window.thymio.dragged()?.blocker === null")
+    touches.end()
     tablet.wait_for_function(
         "(before) => { const {x, y} = window.thymio.state().robot.latest.pose;"
         " return Math.hypot(x - before.x, y - before.y) > 0.05; }",

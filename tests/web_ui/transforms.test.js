@@ -1,4 +1,4 @@
-// A crowd is placed by the transforms that all robots share.
+// Many robots are placed by the transforms that all robots share.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -75,29 +75,29 @@ test("a repeated transform is one sample, and the next one follows it", () => {
 });
 
 test("the selected robot, and a few robots, get their poses from their own topics", () => {
-  const crowd = standing(NAMES);
-  assert.equal(crowd.selected, "a");
-  assert.equal(reported(crowd, frames("a")), crowd);
+  const many = standing(NAMES);
+  assert.equal(many.selected, "a");
+  assert.equal(reported(many, frames("a")), many);
   const few = standing(["a", "b"]);
   assert.equal(reported(few, frames("b")), few);
 });
 
 test("unknown frames place no robot", () => {
-  const crowd = standing(NAMES);
-  assert.equal(reported(crowd, frames("b", { odometry: "wheels" })), crowd);
-  assert.equal(reported(crowd, frames("b").slice(1)), crowd);
+  const many = standing(NAMES);
+  assert.equal(reported(many, frames("b", { odometry: "wheels" })), many);
+  assert.equal(reported(many, frames("b").slice(1)), many);
 });
 
 test("robot topics are subscribed to until the transforms have arrived, and again while paused", () => {
   const topics = ["/tf", "/a/joint_states", "/b/_ground_truth/odom", "/b/joint_states", "/b/_led/state"];
   const watched = (/** @type {State} */ state) => topics.filter((topic) => isWatched(state, topic));
-  const crowd = standing(NAMES);
-  const placed = reported(crowd, frames("b"));
-  assert.deepEqual(watched(crowd), topics);
+  const many = standing(NAMES);
+  const placed = reported(many, frames("b"));
+  assert.deepEqual(watched(many), topics);
   assert.deepEqual(watched(placed), ["/tf", "/a/joint_states", "/b/_led/state"]);
   assert.deepEqual(watched(paused(placed, true)), topics);
   assert.deepEqual(watched(paused(placed, false)), watched(placed));
   assert.deepEqual(watched(standing(["a", "b"])), topics.slice(1));
-  const states = [crowd, placed, paused(placed, true), reduce(placed, { type: "select", robot: "b" }), standing(["a"])];
+  const states = [many, placed, paused(placed, true), reduce(placed, { type: "select", robot: "b" }), standing(["a"])];
   assert.equal(new Set(states.map(subscriptionKey)).size, states.length);
 });

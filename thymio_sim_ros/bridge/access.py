@@ -1,4 +1,4 @@
-"""Access control: tokens, their roles, and a limit for attempts with wrong tokens. Without sockets.
+"""Access control without I/O: tokens, their roles, and a limit on attempts with wrong tokens.
 
 A server without a token serves every client that can reach its address. Tokens travel in addresses and headers, never
 in messages, parameters or logs, which every client may read.
@@ -14,14 +14,14 @@ import urllib.parse
 from collections import OrderedDict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from enum import StrEnum
+
+from thymio_sim_ros.bridge.protocol.constants import Role
 
 __all__ = [
     "READ_ONLY_VARIABLE",
     "TOKEN",
     "TOKEN_VARIABLE",
     "AttemptLimiter",
-    "Role",
     "Tokens",
     "given_token",
     "is_loopback",
@@ -29,38 +29,34 @@ __all__ = [
 ]
 
 TOKEN_VARIABLE, READ_ONLY_VARIABLE = "THYMIO_SIM_TOKEN", "THYMIO_SIM_READ_ONLY_TOKEN"
-"""Environment variables: what a command is started with, every user of the computer may see."""
+"""Environment variables with tokens. Unlike arguments of a command, other users of the computer cannot read them."""
 
 TOKEN = re.compile(r"[A-Za-z0-9._~-]{4,200}")
-"""A token needs no escapes in an address; shorter ones are guessed."""
+"""Form of a token: it needs no escapes in an address; shorter ones could be guessed."""
 
 _BURST = 30
+"""Wrong tokens that an address may try without waiting."""
 _PER_S = 1.0
+"""Attempts that an address regains per second."""
 _MAX_ADDRESSES = 1000
-
-
-class Role(StrEnum):
-    """What a client may do."""
-
-    FULL = "full"
-    READ_ONLY = "read_only"
+"""Addresses that are remembered."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tokens:
-    """The tokens of a server. Without `full` everyone may do everything, but for a client with the read-only one."""
+    """The tokens of a server. Without `full`, all clients have all rights, except those with the read-only token."""
 
     full: str = field(default="", repr=False)
     read_only: str = field(default="", repr=False)
 
     @property
     def is_required(self) -> bool:
-        """Whether a client needs one."""
+        """Whether a client needs a token."""
         return bool(self.full)
 
     def role(self, given: str | None) -> Role | None:
-        """The role of a client that gives this token; None: it may not connect."""
-        # Each comparison takes the same time whatever is given.
+        """The role of a client that gives this token; None if it may not connect."""
+        # Both comparisons are always made, in constant time: the response time reveals nothing about the tokens.
         found = (given or "").encode("utf-8", "surrogatepass")
         is_full = bool(self.full) and hmac.compare_digest(found, self.full.encode())
         is_read_only = bool(self.read_only) and hmac.compare_digest(found, self.read_only.encode())
@@ -72,7 +68,7 @@ class Tokens:
 
     @classmethod
     def for_address(cls, address: str, full: str = "", read_only: str = "") -> Tokens:
-        """These tokens; where the network reaches the address, new ones in place of those that are empty."""
+        """The given tokens; random ones replace empty ones if the address is reachable from the network."""
         if full or not is_loopback(address):
             return cls(full or new_token(), read_only or new_token())
         return cls("", read_only)
@@ -84,7 +80,7 @@ def new_token() -> str:
 
 
 def is_loopback(address: str) -> bool:
-    """Whether an address to listen on is reached from this computer only."""
+    """Whether an address to listen on is reachable only from this computer."""
     if address == "localhost":
         return True
     try:
@@ -94,7 +90,7 @@ def is_loopback(address: str) -> bool:
 
 
 def given_token(target: str, authorizations: Iterable[str]) -> str | None:
-    """The token of a request: `?token=` of its target, or `Authorization: Bearer`; None where it has neither."""
+    """The token of a request, from `?token=` of its target or from `Authorization: Bearer`; None without either."""
     query = urllib.parse.parse_qs(target.partition("?")[2], errors="replace")
     if query.get("token"):
         return query["token"][-1]
@@ -106,32 +102,33 @@ def given_token(target: str, authorizations: Iterable[str]) -> str | None:
 
 
 class AttemptLimiter:
-    """Limits how often an address may try a wrong token: `_BURST` times at once, then `_PER_S`."""
+    """Limits how often an address may try a wrong token: `_BURST` times immediately, then `_PER_S` times per second."""
 
     def __init__(self, now_s: Callable[[], float]) -> None:
+        """`now_s` is a monotonic clock, s."""
         self._now_s = now_s
-        self._left: OrderedDict[str, tuple[float, float]] = OrderedDict()
-        """Network → attempts that are left, and since when; the most recent last."""
+        self._remaining_by_network: OrderedDict[str, tuple[float, float]] = OrderedDict()
+        """Network → remaining attempts and the time of this number, s; the most recently used last."""
 
     def is_allowed_to_try(self, address: str) -> bool:
-        """Whether a token from this address is looked at."""
-        return self._left_of(_network(address)) >= 1.0
+        """Whether a token from this address is checked."""
+        return self._remaining(_network(address)) >= 1.0
 
     def record_failure(self, address: str) -> None:
-        """A token from this address was wrong."""
+        """Count a wrong token from this address."""
         network = _network(address)
-        self._left[network] = (self._left_of(network) - 1.0, self._now_s())
-        self._left.move_to_end(network)
-        if len(self._left) > _MAX_ADDRESSES:
-            self._left.popitem(last=False)
+        self._remaining_by_network[network] = (self._remaining(network) - 1.0, self._now_s())
+        self._remaining_by_network.move_to_end(network)
+        if len(self._remaining_by_network) > _MAX_ADDRESSES:
+            self._remaining_by_network.popitem(last=False)
 
-    def _left_of(self, network: str) -> float:
-        left, since_s = self._left.get(network, (float(_BURST), 0.0))
-        return min(float(_BURST), left + (self._now_s() - since_s) * _PER_S)
+    def _remaining(self, network: str) -> float:
+        remaining, since_s = self._remaining_by_network.get(network, (float(_BURST), 0.0))
+        return min(float(_BURST), remaining + (self._now_s() - since_s) * _PER_S)
 
 
 def _network(address: str) -> str:
-    """The number itself; of IPv6 the network, in which one computer has as many numbers as it likes."""
+    """The address itself, or the /64 network of an IPv6 address: one computer can use any address of its network."""
     try:
         number = ipaddress.ip_address(address.partition("%")[0])
     except ValueError:

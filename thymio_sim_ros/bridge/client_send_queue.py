@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 from websockets.protocol import State
 
-from thymio_sim_ros.bridge.constants import StatusLevel
 from thymio_sim_ros.bridge.framing import data_frame, framed
-from thymio_sim_ros.bridge.messages import Status
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import Status
+from thymio_sim_ros.bridge.protocol.wire import encode_server
 from thymio_sim_ros.bridge.transport import SharedConnection
-from thymio_sim_ros.bridge.wire import encode_server
 
 SendFunction = Callable[[int, bytes], bool]
 """Sends a payload with its time in ns; returns False if the frame was kept for later."""
@@ -45,11 +45,11 @@ class ClientSendQueue:
 
     @property
     def has_backlog(self) -> bool:
-        """Whether data frames wait for room in the socket's buffer."""
+        """Whether data frames are kept until the socket's buffer has room."""
         return bool(self._newest)
 
     def send_control(self, frame: bytes) -> None:
-        """Send a frame that must not be lost, of any size; disconnect the client if too many bytes wait already."""
+        """Send a frame that must not be lost, of any size; disconnect the client if too many bytes are buffered."""
         if self._transport.get_write_buffer_size() > _CONTROL_FACTOR * self._limit:
             self._transport.abort()
         elif self._is_open():

@@ -1,8 +1,8 @@
 """A lock that waiting threads get before the thread that released it.
 
 With a plain lock, a thread that releases and acquires it in a loop, such as a publisher without pauses, starves all
-others, because a waiting thread has to wake up first. Here a second lock is held by the next owner while it waits: a
-thread that comes back meanwhile queues up behind it.
+others, because a waiting thread has to wake up first. Here the next owner holds a second lock while it waits; a thread
+that returns meanwhile has to wait for this second lock, and thus for the next owner.
 """
 
 from __future__ import annotations
@@ -20,14 +20,15 @@ class FairLock:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._next_lock = threading.Lock()
-        """Held by the thread that gets the lock next, while it waits; all others wait for this one."""
+        """Held by the thread that gets the lock next, while it waits; all other threads wait for this lock."""
         self._is_awaited = False
         self._acquire = self._lock.acquire
         self.release: Callable[[], None] = self._lock.release
-        """End the lock."""
+        """Release the lock."""
 
     def acquire(self) -> None:
         """Acquire the lock; wait until no other thread holds it."""
+        # The fast path takes a free lock without waiting, but only if no thread is waiting for it.
         if self._is_awaited or not self._acquire(False):
             with self._next_lock:
                 self._is_awaited = True

@@ -1,21 +1,21 @@
 """WebSocket frames as a server sends them: whole messages, unmasked (RFC 6455 section 5.2).
 
-`websockets` writes the same bytes, but its state belongs to the event loop, and it takes longer for a frame than the
-kernel for sending it. Handshake, reading, pings and the end of a connection stay its business.
+`websockets` would write the same bytes, but its state belongs to the event loop, and building a frame takes it longer
+than the kernel needs to send it. It still does handshakes, reading, pings and the end of connections.
 """
 
 from __future__ import annotations
 
 import struct
 
-from thymio_sim_ros.bridge.constants import BinaryOpcode
-from thymio_sim_ros.bridge.wire import DATA_HEAD_SIZE, data_head
+from thymio_sim_ros.bridge.protocol.constants import BinaryOpcode
+from thymio_sim_ros.bridge.protocol.wire import DATA_HEAD_SIZE, data_head
 
 __all__ = ["binary_head", "data_frame", "framed"]
 
 _TEXT = 0x81
 _BINARY = 0x82
-"""An opcode with the bit that says that the message ends with this frame."""
+"""Opcode with the FIN bit, 0x80: the message ends with this frame."""
 
 _MESSAGE_DATA = int(BinaryOpcode.MESSAGE_DATA)
 
@@ -23,16 +23,17 @@ _SHORT = struct.Struct("!BB")
 _MEDIUM = struct.Struct("!BBH")
 _LONG = struct.Struct("!BBQ")
 _MEDIUM_DATA = struct.Struct("<BBBBBIQ")
-"""Both heads in one; the length as two bytes, since the rest is little-endian."""
+"""WebSocket header and message header in one call. The length is packed as two single bytes because it is big-endian
+and the message header is little-endian."""
 
 
 def binary_head(size: int) -> bytes:
-    """What stands before a binary message of `size` bytes."""
+    """The WebSocket header of a binary message of `size` bytes."""
     return _head(_BINARY, size)
 
 
 def data_frame(subscription_id: int, time_ns: int, payload: bytes) -> bytes:
-    """The frame of a `MessageData`: hot path."""
+    """The frame of a `MessageData`. Hot path: sizes of 126 to 65535 bytes, which most messages have, take one call."""
     size = DATA_HEAD_SIZE + len(payload)
     if 126 <= size < 1 << 16:
         return (

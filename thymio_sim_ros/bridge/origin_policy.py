@@ -1,8 +1,9 @@
-"""Which web pages may connect: any page a browser shows can open a WebSocket to this machine.
+"""Which web pages may connect: any page in a browser can open a WebSocket to this machine.
 
-A native client sends no Origin and is welcome. A page is welcome when it comes from this machine, from the Foxglove
-app, from a numeric address equal to the one it connects to (a robot on the network serving its own page; a number
-cannot be rebound to another host), or when the user has allowed its origin. `*` allows all.
+Native clients send no Origin and may connect. A page may connect if it comes from this machine, from the Foxglove app,
+or from an origin that the user has allowed (`*` allows all). A page may also connect to the numeric address that it was
+loaded from, such as that of a robot which serves its own page: unlike a name, a number cannot be rebound to another
+host (DNS rebinding).
 """
 
 from __future__ import annotations

@@ -9,56 +9,49 @@ stops reading from the client that fills it.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import itertools
 import logging
 import ssl
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from http import HTTPStatus
 from socket import socket
 from typing import Any, Protocol, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
-from websockets.datastructures import Headers
-from websockets.exceptions import ConnectionClosed, NegotiationError
+from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
-from websockets.http11 import Request, Response
-from websockets.typing import Subprotocol
 
-from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens, given_token
+from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, SendFunction
-from thymio_sim_ros.bridge.constants import SUBPROTOCOLS, StatusLevel
-from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.events import Command, Data, Event, RemoveChannels
 from thymio_sim_ros.bridge.fair_lock import FairLock
 from thymio_sim_ros.bridge.framing import framed
-from thymio_sim_ros.bridge.messages import ServerMessage, Status, Time, Unsubscribe
-from thymio_sim_ros.bridge.origin_policy import is_allowed
-from thymio_sim_ros.bridge.switchboard import Delivery, Routes, Switchboard
+from thymio_sim_ros.bridge.handshake import HandshakeCheck, select_subprotocol
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.errors import FrameError
+from thymio_sim_ros.bridge.protocol.messages import ServerMessage, Status, Time, Unsubscribe
+from thymio_sim_ros.bridge.protocol.wire import decode_client, encode_server
+from thymio_sim_ros.bridge.switchboard.events import Command, Data, Event, RemoveChannels
+from thymio_sim_ros.bridge.switchboard.outcome import Delivery
+from thymio_sim_ros.bridge.switchboard.subscriptions import Routes
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
-from thymio_sim_ros.bridge.wire import decode_client, encode_server
 
-__all__ = ["WRONG_TOKEN", "BridgeServer", "EventSink", "ServerSettings"]
+__all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 
 _FLUSH_PERIOD_S = 0.01
+"""Time between attempts to send kept data frames."""
 _FULL_PAUSE_S = 0.005
-WRONG_TOKEN = 4401
-"""Close code for a page without a valid token: browsers hide the reason of a rejected handshake from pages."""
-_NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's terminal, or append ?token=… to this one"
-_WRONG_TOKEN_TEXT = (
-    "the token is wrong or of an earlier start: open the address that is in the simulator's terminal now"
-)
-_WARN_EVERY_S = 60.0
+"""Time between checks whether the event sink accepts events again."""
 _CLOSE_S = 0.3
+"""Time that clients have to answer the closing handshake."""
 BACKLOG = 128
-"""Connections that may wait to be accepted."""
+"""Connections that the kernel queues until they are accepted."""
 _ACCEPTED_AT_ONCE = 4
-"""Connections accepted in one iteration of the loop: a handshake takes 3 ms."""
+"""Connections accepted in one iteration of the loop. A handshake takes 3 ms, during which no client is served."""
 _NO_SENDERS: tuple[Routes, tuple[SendFunction, ...]] = ((), ())
 _SMALL_SHARE = 0.05
-"""Share of the loop's time below which a client is served without a pause."""
+"""Share of the loop's time below which a client is not throttled."""
 _TIME_SLOT = -1
 """Key of the newest time in a send queue; no subscription has this ID."""
 
@@ -80,7 +73,7 @@ class ServerSettings:
     allowed_origins: tuple[str, ...] = ()
     """Additional origins of web pages (see `origin_policy`); `*` allows all."""
     buffer_limit: int = 1 << 20
-    """Bytes that may wait for a client before data frames are dropped."""
+    """Bytes that may be buffered for a client before data frames are dropped."""
     max_message_size: int = 4 << 20
     """Size of the longest frame accepted from a client, bytes."""
     max_clients: int = 128
@@ -102,7 +95,7 @@ class BridgeServer:
 
     def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
         self._board = board
-        self._routed, self._retained = board.routed, board.retained
+        self._routed, self._retained = board.subscriptions.routed, board.subscriptions.retained
         self._senders: dict[int, tuple[Routes, tuple[SendFunction, ...]]] = {}
         """Send functions by channel, with the routes they were made for; made again when the routes change."""
         self._sink = sink
@@ -110,8 +103,7 @@ class BridgeServer:
         self._log = logging.getLogger(__name__)
         self._queues: dict[int, ClientSendQueue] = {}
         self._client_ids = itertools.count(1)
-        self._attempts = AttemptLimiter(time.monotonic)
-        self._warned_s: dict[str, float] = {}
+        self._handshakes = HandshakeCheck(self._settings.tokens, self._settings.allowed_origins, self._log)
         self._flush_is_due = False
         self._loop: asyncio.AbstractEventLoop
         self._servers: list[Server] = []
@@ -131,7 +123,7 @@ class BridgeServer:
         self._loop = asyncio.get_running_loop()
         self._throttle_lock = asyncio.Lock()
         settings = self._settings
-        # Refused handshakes are answered with their reason; websockets would log each with a traceback.
+        # `websockets` logs each rejected handshake with a traceback; `HandshakeCheck` logs the ones that matter.
         log = logging.getLogger(f"{__name__}.websockets")
         log.setLevel(logging.CRITICAL)
         for listener in listeners:
@@ -140,8 +132,8 @@ class BridgeServer:
                 sock=listener,
                 ssl=settings.tls,
                 create_connection=cast("type[ServerConnection]", self._make_connection),
-                select_subprotocol=_select_subprotocol,
-                process_request=self._check_access,
+                select_subprotocol=select_subprotocol,
+                process_request=self._handshakes.check,
                 compression=None,
                 server_header=None,
                 max_size=settings.max_message_size,
@@ -151,7 +143,7 @@ class BridgeServer:
                 backlog=_ACCEPTED_AT_ONCE,
                 logger=log,
             )
-            listener.listen(BACKLOG)  # more may wait than are accepted at once
+            listener.listen(BACKLOG)  # the kernel may queue more connections than are accepted in one iteration
             self._servers.append(server)
 
     async def close(self) -> None:
@@ -187,11 +179,11 @@ class BridgeServer:
         try:
             routes = self._routed.get(channel_id)
             if routes is None:
-                return  # not retained either: it would be outdated for the next subscriber
-            if channel_id in self._retained:
-                self._board.retain(Data(channel_id, time_ns, payload))
+                return  # without subscribers the message is not retained: it would be outdated for the next one
+            if channel_id in self._retained.by_channel:
+                self._retained.add(Data(channel_id, time_ns, payload))
             known, senders = self._senders.get(channel_id, _NO_SENDERS)
-            if known is not routes:
+            if known is not routes:  # routes are immutable: another object means other subscriptions
                 senders = tuple(self._queues[client].sender(subscription_id) for client, subscription_id in routes)
                 self._senders[channel_id] = (routes, senders)
             for send in senders:
@@ -244,7 +236,7 @@ class BridgeServer:
             await connection.close(CloseCode.TRY_AGAIN_LATER, "too many clients")
             return
         if connection.role is None:
-            await self._reject(connection)
+            await self._handshakes.reject(connection)
             return
         client = next(self._client_ids)
         queue = ClientSendQueue(connection, self._settings.buffer_limit)
@@ -258,7 +250,7 @@ class BridgeServer:
             await self._throttle(time.thread_time() - began_s)
             await self._read(client, connection)
         except ConnectionClosed:
-            pass  # a lost connection ends like a closed one
+            pass  # a lost connection is handled like a closed one
         finally:
             with self._lock:
                 del self._queues[client]
@@ -267,7 +259,11 @@ class BridgeServer:
             self._post_events(events)
 
     async def _read(self, client: int, connection: SharedConnection) -> None:
-        """Receive a client's messages until it leaves."""
+        """Process messages of a client until it disconnects.
+
+        The client is throttled after each `SLICE_S` of processor time, unless its share of the loop's time is small:
+        such a client must not wait behind the busy ones.
+        """
         spent_s, since_s = 0.0, time.monotonic()
         async for frame in connection:
             if self._is_closing:
@@ -278,7 +274,6 @@ class BridgeServer:
             while self._sink.is_full(client) and not self._is_closing:
                 await asyncio.sleep(_FULL_PAUSE_S)
             if spent_s >= SLICE_S:
-                # A client that uses little of the loop's time does not queue behind the busy ones.
                 if spent_s > _SMALL_SHARE * (time.monotonic() - since_s):
                     await self._throttle(spent_s)
                 spent_s, since_s = 0.0, time.monotonic()
@@ -294,14 +289,14 @@ class BridgeServer:
                 await asyncio.sleep(spent_s)
 
     def _handshake_frame(self, message: ServerMessage) -> bytes:
-        """Encode one of the first messages to a client, cached: 1500 topics are 2 MB, the same for all clients."""
+        """Encode one of the first messages to a client; cached, because 1500 topics are 2 MB for each client."""
         known = self._frames.get(type(message))
         if known is None or known[0] is not message:
             known = self._frames[type(message)] = message, framed(encode_server(message))
         return known[1]
 
     def _log_client_limit(self) -> None:
-        """Log that the limit of clients is reached, once until there are fewer."""
+        """Log that the limit of clients is reached; once, until there are fewer clients."""
         if not self._is_limit_logged:
             self._is_limit_logged = True
             self._log.warning("%d clients are connected: more are rejected", self._settings.max_clients)
@@ -324,64 +319,3 @@ class BridgeServer:
     def _post_events(self, events: Iterable[Event]) -> None:
         for event in events:
             self._sink.post(event)
-
-    def _check_access(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Reject a handshake without a valid token or from a foreign page; with a valid token any page is accepted."""
-        assert isinstance(connection, SharedConnection)
-        tokens, address = self._settings.tokens, _address(connection)
-        token = given_token(request.path, request.headers.get_all("Authorization"))
-        if tokens.is_required and not self._attempts.is_allowed_to_try(address):
-            self._warn("attempts", f"too many connections from {address} with a wrong token; its others have to wait")
-            return connection.respond(HTTPStatus.TOO_MANY_REQUESTS, "Too many wrong tokens; wait some seconds.\n")
-        connection.role = tokens.role(token)
-        origin, host = _header(request.headers, "Origin"), _header(request.headers, "Host")
-        if connection.role is None:
-            self._attempts.record_failure(address)
-            self._warn("token", f"refused a connection from {address}: its token is wrong or missing")
-            if origin is not None:
-                return None  # the reason is sent once it is connected
-            response = connection.respond(HTTPStatus.UNAUTHORIZED, f"{_token_text(request)}\n")
-            response.headers["WWW-Authenticate"] = "Bearer"
-            return response
-        if tokens.is_required or is_allowed(origin, host, self._settings.allowed_origins):
-            return None
-        self._warn("origin", f"refused a web page from {origin:.100}: add it to allowed_origins if it is yours")
-        return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
-
-    async def _reject(self, connection: SharedConnection) -> None:
-        """Send a status with the reason, and close the connection."""
-        assert connection.request is not None
-        text = _token_text(connection.request)
-        with contextlib.suppress(ConnectionClosed):
-            await connection.send(encode_server(Status(StatusLevel.ERROR, text, "access")))
-            await connection.close(WRONG_TOKEN, "wrong or missing token")
-
-    def _warn(self, about: str, text: str) -> None:
-        """Log a warning, at most once in `_WARN_EVERY_S` per topic: any client can cause it."""
-        now_s = time.monotonic()
-        if now_s - self._warned_s.get(about, -_WARN_EVERY_S) >= _WARN_EVERY_S:
-            self._warned_s[about] = now_s
-            self._log.warning("%s", text)
-
-
-def _address(connection: ServerConnection) -> str:
-    peer = connection.remote_address
-    return str(peer[0]) if peer else ""
-
-
-def _token_text(request: Request) -> str:
-    given = given_token(request.path, request.headers.get_all("Authorization"))
-    return _NO_TOKEN_TEXT if given is None else _WRONG_TOKEN_TEXT
-
-
-def _header(headers: Headers, name: str) -> str | None:
-    """The header's value, the last one if it is repeated."""
-    values = headers.get_all(name)
-    return values[-1] if values else None
-
-
-def _select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol:
-    for name in SUBPROTOCOLS:
-        if name in offered:
-            return name
-    raise NegotiationError(f"offer one of the sub-protocols {', '.join(SUBPROTOCOLS)}")

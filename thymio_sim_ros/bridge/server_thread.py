@@ -1,4 +1,4 @@
-"""The thread of the event loop. Commands and messages are written to the sockets by the thread that calls."""
+"""The server in its own thread with an event loop, and its listening sockets."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import socket
 import threading
 from collections.abc import Callable, Sequence
 
-from thymio_sim_ros.bridge.events import Command
-from thymio_sim_ros.bridge.messages import ServerInfo
+from thymio_sim_ros.bridge.protocol.messages import ServerInfo
 from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer, EventSink, ServerSettings
-from thymio_sim_ros.bridge.switchboard import Switchboard
+from thymio_sim_ros.bridge.switchboard.events import Command
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 
 __all__ = ["ServerThread", "check_free", "listen"]
 
 _LOOPBACK = ("127.0.0.1", "::1")
 """Addresses of `localhost`: a browser may try either first."""
 
-_NOT_HERE = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
+_NO_ADDRESS = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 """Errors on a machine without IPv6; the other loopback address is enough then."""
 
 _TRIES = 20
@@ -28,7 +28,7 @@ _TRIES = 20
 def listen(address: str, port: int) -> list[socket.socket]:
     """Open listening sockets, all on one port; port 0 selects a free one. `localhost` means IPv4 and IPv6 loopback.
 
-    Raises OSError with address and port.
+    Raises OSError that names address and port.
     """
     return _sockets(address, port, do_listen=True)
 
@@ -56,7 +56,7 @@ def _all_bound(addresses: Sequence[str], port: int, *, do_listen: bool) -> list[
         try:
             bound = _bound(address, port, do_listen=do_listen)
         except OSError as error:
-            if sockets and error.errno in _NOT_HERE:
+            if sockets and error.errno in _NO_ADDRESS:
                 continue
             for bound in sockets:
                 bound.close()
@@ -91,7 +91,10 @@ def _named(error: OSError, address: str, port: int) -> OSError:
 
 
 class ServerThread:
-    """A running bridge. The port is bound when the constructor returns; `close` releases everything."""
+    """A running server. The port is bound when the constructor returns; `close` releases it.
+
+    The calling thread of `publish` and `post` writes to the sockets itself.
+    """
 
     def __init__(
         self,
@@ -102,12 +105,13 @@ class ServerThread:
         port: int = 8765,
         settings: ServerSettings | None = None,
     ) -> None:
+        """Start serving on `address` and `port` (0: a free one). Raises OSError if it cannot be bound."""
         self._listeners = listen(address, port)
         settings = settings or ServerSettings()
         board = Switchboard(info, is_read_only_service=settings.is_read_only_service)
         self._server = BridgeServer(board, sink, settings)
         self.publish: Callable[[int, int, bytes], None] = self._server.publish
-        """Send a message of a channel: its id, time in ns and payload; from any thread."""
+        """Send a message of a channel to its subscribers: channel ID, time in ns, payload; from any thread."""
         self._loop = asyncio.new_event_loop()
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="foxglove-server", daemon=True)

@@ -17,22 +17,23 @@ from typing import Any, cast
 
 from websockets.asyncio.server import ServerConnection
 
-from thymio_sim_ros.bridge.access import Role
+from thymio_sim_ros.bridge.protocol.constants import Role
 
 __all__ = ["SLICE_S", "SharedConnection", "SharedTransport"]
 
 SLICE_S = 0.002
-"""Time that one client may take of the event loop before others have their turn."""
+"""Processor time of the event loop that one client may use before other clients are served, s."""
 
 _PIECE = 1 << 13
-"""Bytes handed to the protocol at once: some thousand frames at most."""
+"""Bytes passed to the protocol in one call: at most some thousand frames."""
 
 
 class SharedTransport(asyncio.Transport):
     """A transport of the event loop; `try_write`, `write`, `abort` and `get_write_buffer_size` are open to all threads.
 
-    Invariant: bytes are sent in the order of the calls. Bytes that the kernel does not accept wait here until the next
-    write, or until the loop finds room. With TLS, waiting bytes go to the loop's transport.
+    Invariant: bytes are sent in the order of the calls. Bytes that the kernel does not accept are buffered here until
+    the next write, or until the loop reports the socket as writable. With TLS, only the loop's transport can encrypt:
+    all bytes are passed on to it in the thread of the loop.
     """
 
     def __init__(self, inner: asyncio.Transport, loop: asyncio.AbstractEventLoop) -> None:
@@ -43,23 +44,27 @@ class SharedTransport(asyncio.Transport):
         self._waiting = bytearray()
         self._is_ended = False
         self._is_flush_scheduled = False
-        """Whether the loop sees to what waits."""
-        # With TLS only the loop's transport can make the bytes; else a descriptor of our own, valid until `release`.
+        """Whether the loop is going to send the buffered bytes."""
+        # A duplicate of the descriptor stays valid until `release`: the loop's transport may close its own one while
+        # another thread is sending, and the number could then belong to another connection. None with TLS.
         is_plain = inner.get_extra_info("sslcontext") is None
         self._socket: socket.socket | None = inner.get_extra_info("socket").dup() if is_plain else None
         self._is_plain = is_plain
         self.is_paused = False
-        """Whether its protocol wants to read nothing."""
+        """Whether the protocol has paused reading."""
         self._is_suspended = False
         self.on_resume: Callable[[], None] = lambda: None
-        """Called in the loop's thread when the protocol wants to read again."""
+        """Called in the loop's thread when the protocol resumes reading."""
 
     def write(self, data: bytes | bytearray | memoryview) -> None:
-        """Send; what cannot be sent at once waits. Does nothing when the connection is ending."""
+        """Send bytes, buffered without limit. Does nothing if the connection is closing."""
         self.try_write(bytes(data), sys.maxsize)
 
     def try_write(self, data: bytes, limit: int) -> bool:
-        """The same unless more than `limit` bytes wait already; returns whether they did not."""
+        """Send bytes unless more than `limit` bytes are buffered; return False if they were not sent.
+
+        Returns True without sending if the connection is closing.
+        """
         with self._lock:
             if self._is_ended:
                 return True
@@ -77,17 +82,20 @@ class SharedTransport(asyncio.Transport):
             return True
 
     def get_write_buffer_size(self) -> int:
-        """Bytes that the kernel has not taken yet."""
+        """Bytes that the kernel has not accepted yet."""
         return len(self._waiting) + self._inner.get_write_buffer_size()
 
     def abort(self) -> None:
-        """End the connection at once, without what waits."""
+        """Close the connection immediately and drop the buffered bytes."""
         with self._lock:
             self._end()
         self._loop.call_soon_threadsafe(self._inner.abort)
 
     def release(self) -> None:
-        """Give the descriptor back, or the client would not hear that the connection is gone. In the loop's thread."""
+        """Close the duplicated descriptor, without which the client would not see the end of the connection.
+
+        Only the loop's thread may call it.
+        """
         with self._lock:
             self._end()
             if self._socket is not None:
@@ -100,22 +108,22 @@ class SharedTransport(asyncio.Transport):
         self._waiting.clear()
 
     def _send(self, data: bytes | bytearray) -> int:
-        """Give the kernel as much as it takes, and say how much that was."""
+        """Pass bytes to the kernel without blocking; return the number of accepted bytes."""
         assert self._socket is not None
         try:
             return self._socket.send(data)
         except (BlockingIOError, InterruptedError):
             return 0
         except OSError:
-            return len(data)  # the connection is lost: the loop finds out by reading and ends it
+            return len(data)  # the connection is lost: the loop detects it by reading, and closes it
 
     def _flush_waiting(self) -> bool:
-        """Try to send what waits; whether nothing does any more."""
+        """Try to send the buffered bytes; return whether the buffer is empty."""
         del self._waiting[: self._send(self._waiting)]
         return not self._waiting
 
     def _schedule_flush(self) -> None:
-        """Let the loop send what waits."""
+        """Make the loop send the buffered bytes as soon as the socket is writable."""
         with self._lock:
             if self._socket is not None:
                 self._loop.add_writer(self._socket, self._flush_when_writable)
@@ -124,22 +132,22 @@ class SharedTransport(asyncio.Transport):
                 self._move_to_inner()
 
     def _flush_when_writable(self) -> None:
-        """There is room."""
+        """Send buffered bytes; called by the loop when the socket is writable."""
         with self._lock:
             if self._socket is not None and self._flush_waiting():
                 self._is_flush_scheduled = False
                 self._loop.remove_writer(self._socket)
 
     def _move_to_inner(self) -> None:
-        """Leave what waits to the loop's transport."""
+        """Pass the buffered bytes to the loop's transport."""
         if self._waiting and not self._inner.is_closing():
             self._inner.write(bytes(self._waiting))
         self._waiting.clear()
 
-    # --- what only the event loop's thread calls ---
+    # --- called by the event loop's thread only ---
 
     def writelines(self, list_of_data: Iterable[bytes | bytearray | memoryview]) -> None:
-        """Send all."""
+        """Send several pieces as one."""
         self.write(b"".join(list_of_data))
 
     def can_write_eof(self) -> bool:
@@ -147,12 +155,12 @@ class SharedTransport(asyncio.Transport):
         return self._inner.can_write_eof()
 
     def write_eof(self) -> None:
-        """Say that nothing follows what was written."""
+        """Close the writing direction after the buffered bytes."""
         self._end_after_flush()
         self._inner.write_eof()
 
     def close(self) -> None:
-        """End the connection after what was written."""
+        """Close the connection after the buffered bytes."""
         self._end_after_flush()
         self._inner.close()
 
@@ -162,27 +170,27 @@ class SharedTransport(asyncio.Transport):
             self._end()
 
     def is_closing(self) -> bool:
-        """Whether the connection is ending."""
+        """Whether the connection is closing."""
         return self._inner.is_closing()
 
     def get_extra_info(self, name: str, default: Any = None) -> Any:
-        """Facts about the connection."""
+        """Return information on the connection, such as `peername`."""
         return self._inner.get_extra_info(name, default)
 
     def pause_reading(self) -> None:
-        """Read nothing until `resume_reading`."""
+        """Stop reading until `resume_reading`."""
         self.is_paused = True
         self._inner.pause_reading()
 
     def resume_reading(self) -> None:
-        """Read again."""
+        """Resume reading, unless it is also suspended."""
         self.is_paused = False
         if not self._is_suspended:
             self._inner.resume_reading()
         self.on_resume()
 
     def suspend_reading(self, is_suspended: bool) -> None:
-        """The same for a second party: data is received while neither of them minds."""
+        """Stop or resume reading, independently of `pause_reading`: data is received while neither applies."""
         self._is_suspended = is_suspended
         if is_suspended:
             self._inner.pause_reading()
@@ -194,35 +202,35 @@ class SharedTransport(asyncio.Transport):
         return self._inner.is_reading()
 
     def set_write_buffer_limits(self, high: int | None = None, low: int | None = None) -> None:
-        """When the protocol is told to pause writing."""
+        """Set the buffer sizes at which the protocol is asked to pause and to resume writing."""
         self._inner.set_write_buffer_limits(high, low)
 
     def set_protocol(self, protocol: asyncio.BaseProtocol) -> None:
-        """Who is told what arrives."""
+        """Set the protocol that receives the data."""
         self._inner.set_protocol(protocol)
 
     def get_protocol(self) -> asyncio.BaseProtocol:
-        """Who is told what arrives."""
+        """The protocol that receives the data."""
         return self._inner.get_protocol()
 
 
 class SharedConnection(ServerConnection):
-    """A connection of `websockets` on a transport that others may write to as well.
+    """A connection of `websockets` whose transport is shared with other threads.
 
-    What arrives is handed to the protocol in small pieces, for `SLICE_S` at a time: a quarter of a megabyte may be
-    forty thousand pings, which take the loop half a second.
+    Received data is passed to the protocol in small pieces, for `SLICE_S` at a time: a quarter of a megabyte may
+    contain forty thousand pings, which would block the loop for half a second.
     """
 
     transport: SharedTransport
     is_refused = False
-    """Whether it is closed at once, unheard."""
+    """Whether the connection is closed immediately, without reading, because there are too many."""
     on_lost: Callable[[], None] = staticmethod(lambda: None)
-    """Called when the connection is gone."""
+    """Called when the connection is lost or closed."""
     role: Role | None = None
-    """What its client may do; None: it has to go."""
+    """Role of its client; None: the client gave no valid token, and the connection has to be closed."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """The client is there."""
+        """Wrap the transport of a new connection."""
         self._unread = bytearray()
         self._feeding: asyncio.TimerHandle | None = None
         if self.is_refused:
@@ -232,7 +240,7 @@ class SharedConnection(ServerConnection):
         self.transport.on_resume = self._feed_later
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """The client is gone."""
+        """Release the transport."""
         self._unread.clear()
         self._cancel_feeding()
         self.on_lost()
@@ -242,7 +250,7 @@ class SharedConnection(ServerConnection):
         self.transport.release()
 
     def data_received(self, data: bytes) -> None:
-        """Bytes of the client."""
+        """Receive bytes of the client."""
         if self.is_refused:
             return
         self._unread += data
@@ -250,12 +258,16 @@ class SharedConnection(ServerConnection):
             self._feed()
 
     def eof_received(self) -> None:
-        """The client sends nothing more."""
+        """Note that the client sends no more bytes."""
         if not self.is_refused:
             super().eof_received()
 
     def _feed(self) -> None:
-        """Hand over what is unread, as long as the time lasts and the protocol takes it."""
+        """Pass unread bytes to the protocol until `SLICE_S` is spent or the protocol pauses reading.
+
+        After a full slice the next one starts only when the same time has passed again: a client that floods the
+        connection uses at most half of the loop's time, and the kernel's buffer slows it down.
+        """
         self._cancel_feeding()
         began_s, spent_s = time.thread_time(), 0.0
         while self._unread and not self.transport.is_paused and spent_s < SLICE_S:

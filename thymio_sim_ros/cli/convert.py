@@ -9,13 +9,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from thymio_sim_ros import resources
+from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.sim.playground.reader import PlaygroundError, schema
 from thymio_sim_ros.sim.playground.writer import dumps
 
 __all__ = ["run"]
 
-REFUSED, INCOMPLETE = 2, 1
+INCOMPLETE = 1
 
 EXAMPLE = """\
 reads: Aseba .playground files (XML, or a zip with world.xml and its pictures), the JSON of the Thymio web simulation,
@@ -36,7 +37,7 @@ def run(argv: Sequence[str]) -> int:
     try:
         _, playground = load_playground(options.file)
     except (PlaygroundError, resources.ResourceError, OSError) as error:
-        return _print_error(str(error), REFUSED)
+        return _print_error(str(error), USAGE_ERROR)
     for note in playground.notes:
         _print_error(f"{options.file}: {note}", 0)
     if options.strict and playground.notes:
@@ -55,7 +56,7 @@ def _write(text: str, output: Path | None) -> int:
         raise
     except OSError as error:
         return _print_error(
-            f"{output or 'standard output'}: {error.strerror}; expected a file that can be written", REFUSED
+            f"{output or 'standard output'}: {error.strerror}; expected a file that can be written", USAGE_ERROR
         )
     return 0
 

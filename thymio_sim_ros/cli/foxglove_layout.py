@@ -9,15 +9,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from aseba_vm.cli.output import standard_output
+from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.studio_layout import APPS, SHIPPED, render
 
 __all__ = ["hint", "run"]
 
-REFUSED = 2
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 
 EXAMPLE = """\
-In the application: Layouts, Import from file. For a robot without a namespace the files are shipped; their paths:
+In the application: Layouts, Import from file. For a robot without a namespace, these files are shipped:
   {}
 
 example:
@@ -28,7 +28,7 @@ example:
 
 
 def run(argv: Sequence[str]) -> int:
-    """Write one layout; the exit code."""
+    """Write one layout; return the exit code."""
     options = _parser().parse_args(argv)
     text = render(options.app, options.robot, options.namespace)
     if options.output is None:
@@ -40,12 +40,12 @@ def run(argv: Sequence[str]) -> int:
     except OSError as error:
         wrong = f"{options.output}: {error.strerror}; expected a file that can be written"
         print(f"thymio-sim foxglove-layout: {wrong}", file=sys.stderr)
-        return REFUSED
+        return USAGE_ERROR
     return 0
 
 
 def hint(robots: Sequence[str]) -> str:
-    """Where the layout for these robots is, for a person who starts the suite."""
+    """Path of the layout for the robots of a suite, or the command that writes one."""
     if len(robots) == 1:
         return f"{SHIPPED['foxglove']} (for Lichtblick: {SHIPPED['lichtblick'].name} beside it)"
     return f"thymio-sim foxglove-layout --robot {robots[0]} -o {robots[0]}.json (or of another robot)"
@@ -54,7 +54,9 @@ def hint(robots: Sequence[str]) -> str:
 def _namespace(text: str) -> str:
     name = text.strip("/")
     if name and _NAME.fullmatch(name) is None:
-        raise argparse.ArgumentTypeError(f"'{text}' is no namespace; expected letters, digits and _, such as thymio_1")
+        raise argparse.ArgumentTypeError(
+            f"'{text}' found, expected a namespace of letters, digits and _, such as thymio_1"
+        )
     return name
 
 
@@ -67,7 +69,7 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     parser.add_argument(
-        "--robot", type=_namespace, default="", metavar="NAME", help="name of the robot, where there are several"
+        "--robot", type=_namespace, default="", metavar="NAME", help="name of the robot, if there are several"
     )
     parser.add_argument(
         "--namespace", type=_namespace, default="", metavar="NAME", help="namespace of the whole suite, if it has one"

@@ -1,127 +1,57 @@
-"""Replays run logs: the same worlds are given the same, and what every tick gives is compared with what it gave."""
+"""The command `thymio-sim replay`: repeat a run from its log and compare every tick."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import argparse
+import sys
+import time
+from collections.abc import Sequence
 from pathlib import Path
 
-from thymio_sim_ros.runlog.run_log import LogEnded, LogEntry, RunLogError, TicksChecked, WorldStarted, digest, read
-from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned
-from thymio_sim_ros.sim.model.clock import TICK_NS
-from thymio_sim_ros.sim.world import World
+import thymio_sim_ros
+from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.cli.output import print_json
+from thymio_sim_ros.runlog.replay import replay
+from thymio_sim_ros.runlog.run_log import RunLogError, made_by
 
-__all__ = ["ReplayResult", "replay"]
+__all__ = ["DIFFERENT", "run"]
 
-
-@dataclass(frozen=True, slots=True)
-class ReplayResult:
-    """How a replay went: worlds, ticks that were compared, the first that differs, whether the log has its end.
-
-    `differs` is (number of the world or reset from 1, tick of it from 1).
-    """
-
-    runs: int
-    ticks: int
-    differs: tuple[int, int] | None
-    is_complete: bool
-
-    @property
-    def seconds(self) -> float:
-        """Simulated time that was compared."""
-        return self.ticks * TICK_NS * 1e-9
+DIFFERENT = 1
+"""Exit code for a run that differs from its log."""
 
 
-@dataclass(slots=True)
-class _Run:
-    """A world from its start or a reset: inputs by the tick after which they came, and what each tick gave."""
-
-    start: WorldStarted
-    line: int
-    inputs: dict[int, list[Input]] = field(default_factory=dict)
-    last: int = 0
-    """The latest of their ticks."""
-    crcs: list[str] = field(default_factory=list)
-
-
-def replay(path: Path) -> ReplayResult:
-    """ReplayResult a log as far as it goes the same; OSError, RunLogError."""
-    lines = list(read(path))
-    is_complete = bool(lines) and isinstance(lines[-1][1], LogEnded)
-    ticks = number = 0
-    for number, run in enumerate(_runs(str(path), lines), start=1):
-        differs = _first_difference(str(path), run)
-        if differs is not None:
-            return ReplayResult(number, ticks + differs, (number, differs), is_complete)
-        ticks += len(run.crcs)
-    return ReplayResult(number, ticks, None, is_complete)
-
-
-def _runs(path: str, lines: list[tuple[int, LogEntry]]) -> Iterator[_Run]:
-    run: _Run | None = None
-    has_ended = False
-    for number, line in lines:
-        if has_ended:
-            raise RunLogError(path, number, "found a line after the end, expected nothing")
-        if isinstance(line, WorldStarted):
-            if run is not None:
-                yield run
-            run = _Run(line, number)
-        elif isinstance(line, LogEnded):
-            has_ended = True
-        elif run is None:
-            raise RunLogError(path, number, "found what happened to no world, expected a world first")
-        elif isinstance(line, TicksChecked):
-            run.crcs.extend(line.crcs)
-            if run.last > len(run.crcs):
-                found = f"found the first {len(run.crcs)} ticks after an input at tick {run.last}"
-                raise RunLogError(path, number, f"{found}, expected that many")
-        elif isinstance(line[1], Reset):
-            yield run
-            run = _Run(run.start, run.line)
-        elif line[0] < max(len(run.crcs), run.last):
-            raise RunLogError(path, number, f"found tick {line[0]}, expected {max(len(run.crcs), run.last)} or later")
-        else:
-            run.last = line[0]
-            run.inputs.setdefault(line[0], []).append(line[1])
-    if run is not None:
-        yield run
-
-
-def _first_difference(path: str, run: _Run) -> int | None:
-    """The first tick, counted from 1, that gives something else than it gave then."""
-    options = run.start.options
-    periods = None if options.periods_ns is None else dict(options.periods_ns)
+def run(argv: Sequence[str]) -> int:
+    """Replay a run log and print the result; return the exit code. Raises UsageError for a file that is no run log."""
+    options = _parser().parse_args(argv)
+    started = time.perf_counter()
     try:
-        world = World(
-            run.start.playground,
-            seed=options.seed,
-            noise=options.noise,
-            proximity_model=options.proximity_model,
-            motor_model=options.motor_model,
-            periods_ns=periods,
-        )
-    except ValueError as error:
-        raise RunLogError(path, run.line, str(error)) from error
-    for tick, crc in enumerate(run.crcs):
-        for happened in run.inputs.get(tick, ()):
-            try:
-                _do(world, happened)
-            except (KeyError, TypeError, ValueError):
-                return tick + 1
-        result = world.step()
-        if digest((result.now_ns, tuple(result.readings), result.contacts)) != crc:
-            return tick + 1
-    return None
+        result = replay(options.file)
+    except OSError as error:
+        raise UsageError(f"{options.file}: {error.strerror}; expected a run log") from error
+    except RunLogError as error:
+        raise UsageError(str(error)) from error
+    factor = result.seconds / max(time.perf_counter() - started, 1e-9)
+    if not result.is_complete:
+        _print_error(options.file, "the log is cut off; replayed up to its last complete line")
+    if result.differs is not None:
+        number, tick = result.differs
+        maker, current = made_by(options.file), thymio_sim_ros.__version__
+        versions = "" if maker == current else f" (log written by version {maker}, this is {current})"
+        _print_error(options.file, f"run {number}, tick {tick} differs from the log{versions}")
+    report = {"runs": result.runs, "seconds": result.seconds, "identical": result.differs is None}
+    print_json(report | {"real_time_factor": round(factor, 1)})
+    return 0 if result.differs is None else DIFFERENT
 
 
-def _do(world: World, happened: Input) -> None:
-    match happened:
-        case Posted(name, command):
-            world.post(name, command)
-        case Spawned(start):
-            world.spawn(start)
-        case Removed(name):
-            world.remove(name)
-        case Reset():
-            world.reset()
+def _print_error(file: Path, text: str) -> None:
+    print(f"thymio-sim: {file}: {text}", file=sys.stderr)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim replay",
+        description="Repeat a run from its log and compare every tick bit for bit. Exit code 1: a tick differs.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("file", type=Path, metavar="FILE", help="a log of `thymio-sim runner --log` or the simulator")
+    return parser

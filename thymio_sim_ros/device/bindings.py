@@ -1,6 +1,6 @@
-"""Where a sensor's words go and an actuator's commands come from: derived from what the plug-ins declare.
+"""Bindings between plug-ins and the memory of a machine, derived from the declarations of sensors and actuators.
 
-A sensor is declared once, in `sim/sensors`; its variables, addresses, events and topic follow from there.
+A sensor is declared once, in `sim/sensors`; its variables, addresses, events and topic follow from the declaration.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from thymio_sim_ros.sim.plugin_api.aseba_binding import Native
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """A variable: where it lies, its words' place in the reading, and the event that a change of it raises, if any."""
+    """A variable: its address, the index of its first word in the reading, and the event of its changes, if any."""
 
     address: int
     size: int
@@ -26,7 +26,7 @@ class Slot:
 
 
 class Run(NamedTuple):
-    """A part of the memory, and of the words that belong there; each ends before its `end`."""
+    """A range of addresses and the range of words that belongs there; the ends are exclusive."""
 
     address: int
     address_end: int
@@ -36,10 +36,10 @@ class Run(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SensorBinding:
-    """The variables that hold parts of a reading of `size` words, and the local event it raises.
+    """The variables that hold parts of a reading of `size` words, and the local event that it causes.
 
-    `runs` are the same places joined where they touch, `edges` those of them that raise an event of their own.
-    `above`: address of the variable that the first word must exceed for the event, and that must not be 0.
+    `runs` are the slots, with adjacent ones joined; `edges` are the slots whose changes cause an event.
+    `above` is the address of a threshold: it must be exceeded by the first word, and not be 0, to cause `event`.
     """
 
     slots: tuple[Slot, ...]
@@ -52,7 +52,7 @@ class SensorBinding:
 
 @dataclass(frozen=True, slots=True)
 class OutputBinding:
-    """Variables that a program writes and the command they make together; `runs` as in `SensorBinding`."""
+    """Variables that a program writes, and the command made from their words; `runs` are the slots, joined."""
 
     slots: tuple[Slot, ...]
     runs: tuple[Run, ...]
@@ -61,7 +61,7 @@ class OutputBinding:
 
 @cache
 def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
-    """Every sensor that Aseba sees, by name; variables that the layout lacks are left out."""
+    """Bindings of all sensors with Aseba variables or an event, by name, without variables that the layout lacks."""
     addresses = target(layout).addresses
     found = {}
     for sensor in compatible_plugins()[0]:
@@ -80,13 +80,13 @@ def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
 
 
 def sensor_names() -> tuple[str, ...]:
-    """Names of the sensors that Aseba sees, in the order in which they measure."""
+    """Names of the sensors with Aseba variables or an event, in the order in which they measure."""
     return tuple(sensors())
 
 
 @cache
 def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
-    """Every group of variables that makes a command; groups that the layout lacks are left out."""
+    """Bindings of all groups of variables that make a command; groups that the layout lacks are skipped."""
     addresses = target(layout).addresses
     found = []
     for actuator in compatible_plugins()[1]:
@@ -99,13 +99,13 @@ def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
 
 @cache
 def natives() -> dict[str, Native]:
-    """Every native function that reaches an actuator, by name."""
+    """Native functions declared by actuators, by name."""
     return {native.name: native for actuator in compatible_plugins()[1] for native in actuator.aseba.natives}
 
 
 @cache
 def at_reset() -> tuple[Command, ...]:
-    """What a reset of the robot tells its actuators."""
+    """Commands for the actuators after a reset of the robot."""
     return tuple(command for actuator in compatible_plugins()[1] for command in actuator.aseba.at_reset)
 
 

@@ -1,9 +1,9 @@
-"""What natives and events cost a program, in instructions (`aseba_vm.machine.costs`).
+"""Costs of native functions and events in instructions (`aseba_vm.machine.costs`).
 
-The unit is an instruction on the interpreter, the slowest engine: 0.25 µs of a core where this was measured. A budget
-of 5000 is then at most a few milliseconds of processor time, whatever a program does in it. `benchmarks/aseba_costs.py`
-measures natives and prints them beside this table. Natives that read or write sounds are charged for their bytes
-besides.
+The unit is an instruction of the interpreter, without translation: 0.25 µs of a core where this was measured. A budget
+of 5000 instructions is then at most a few milliseconds of processor time, whatever the program calls.
+`benchmarks/aseba_costs.py` measures native functions and prints the results beside this table. Functions that read or
+write sounds are also charged for each byte.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from aseba_vm.machine.natives import NATIVES
 __all__ = ["BYTES_PER_INSTRUCTION", "COSTS"]
 
 BYTES_PER_INSTRUCTION = 100
-"""Bytes of a sound that are read from the card and sent, or written to it, in the time of an instruction."""
+"""Bytes of a sound that can be read from the card, or written to it, in the time of one instruction."""
 
 _CALL = Cost(16)
 """A call from the machine into Python."""
 _VECTOR = Cost(12, 1)
-"""A native of the machine itself, which may use all words of its arguments."""
+"""A native function of the machine, which may process all words of its arguments."""
 _COMMAND = Cost(30)
 """A command for an actuator."""
 
@@ -44,4 +44,4 @@ COSTS = Costs(
     others=_COMMAND,
     emit=Cost(150, 1),
 )
-"""The table. `others` are the natives of actuators, those of plug-ins among them."""
+"""Cost by name. `others` is that of the functions declared by actuators, including plug-ins."""

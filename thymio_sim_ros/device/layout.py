@@ -1,7 +1,7 @@
-"""The Thymio that programs are compiled for: the layout of a robot or of the reference playground, and plug-ins.
+"""Targets of the compiler: the layout of the robot or of the reference playground, extended by plug-ins.
 
-A layout says in which order variables, events and natives come (docs/spec/thymio-robot.md sections 4 and 6.1); programs
-find them by name, bytecode by place.
+A layout is the order of variables, events and native functions (docs/spec/thymio-robot.md sections 4 and 6.1). Programs
+refer to them by name, bytecode by position: it runs only on the layout for which it was compiled.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _PLAYGROUND_NATIVES = """
     prox.comm.enable sd.open sd.write sd.read sd.seek sound.duration
 """
 _FREE_WORDS = 512
-"""Words for a program's own variables, in every layout."""
+"""Words for the variables of programs, in every layout."""
 _STANDARD = ("math.", "deque.")
 
 
@@ -56,7 +56,7 @@ def _playground() -> TargetDescription:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """One way to lay a Thymio out: its description, and what its variables hold at the start."""
+    """A target without plug-ins, and the values of its variables after a reset, if they are not 0."""
 
     base: TargetDescription
     initial_values: Mapping[str, tuple[int, ...]]
@@ -71,15 +71,16 @@ LAYOUTS: Mapping[str, Layout] = {
 
 @cache
 def target(layout: str = THYMIO) -> TargetDescription:
-    """The target of this installation in one of LAYOUTS."""
+    """Return the target with this layout and all compatible plug-ins. Raises KeyError for an unknown layout."""
     return extend(LAYOUTS[layout].base, *compatible_plugins())
 
 
 @cache
 def compatible_plugins() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
-    """All sensors and actuators, but for those of other packages that do not fit: they stay unknown to programs.
+    """Return all sensors and actuators, except incompatible ones of other packages, which are logged.
 
-    One does not fit when it gives a variable or native that exists, of the robot or of another one, another size.
+    A plug-in is incompatible if it declares an existing variable or native function with another size. Its sensor or
+    actuator works, but programs do not see it.
     """
     try:
         extend(THYMIO_II, all_sensors(), all_actuators())
@@ -89,7 +90,7 @@ def compatible_plugins() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
 
 
 def _compatible_one_by_one() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
-    """Ours, then those of others that fit what is there."""
+    """Add one plug-in after another, those of this package first; skip those that are incompatible."""
     all_of_them: tuple[Sensor | Actuator, ...] = (*all_sensors(), *all_actuators())
     ours = {*registry.own_names(sensors), *registry.own_names(actuators)}
     kept: list[Sensor | Actuator] = []
@@ -113,10 +114,10 @@ def _partitioned(plugins: Sequence[Sensor | Actuator]) -> tuple[tuple[Sensor, ..
 
 
 def extend(base: TargetDescription, sensing: Sequence[Sensor], acting: Sequence[Actuator]) -> TargetDescription:
-    """The base in its own order; what only a plug-in knows comes after it, and programs keep their room.
+    """Return the base with the variables, events and native functions of plug-ins appended.
 
-    What the robot has and the base leaves out stays out. ValueError when a plug-in gives a name that exists another
-    size.
+    The memory grows by the appended variables, so that programs keep their free words. Names that the robot has but the
+    base lacks are not added. Raises ValueError if a plug-in declares an existing name with another size.
     """
     variables = {variable.name: variable for variable in (*THYMIO_II.variables, *base.variables)}
     events = {event.name: event for event in base.local_events}

@@ -1,7 +1,7 @@
 """Native functions of the Thymio as the machine calls them (docs/spec/thymio-robot.md section 6).
 
-The machine itself knows `math.*` and `deque.*`. Natives that actuators declare become their commands; the others
-reach the parts of the robot's services by the table at the end.
+The machine implements `math.*` and `deque.*`. Native functions that an actuator declares become its commands; the
+others call services of the firmware (`SERVICE_NATIVES`).
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from thymio_sim_ros.sim.plugin_api import aseba_binding
 __all__ = ["SERVICE_NATIVES", "native_functions"]
 
 Send = Callable[[Command, Mapping[str, Sequence[int]]], None]
-"""Takes a command and the variables that the call sets."""
+"""Sends a command and writes the variables (words by name) that the call sets."""
 
 DONE, FAILED = 0, -1
-"""What `sd.open` and `sd.seek` answer."""
+"""Results of `sd.open` and `sd.seek`."""
 
 
 def native_functions(send: Send, services: FirmwareServices, meter: LoadMeter) -> dict[str, Native]:
-    """All functions that are not the machine's own, by name; `meter` counts their calls."""
+    """Return the functions that the machine does not implement, by name; `meter` counts their calls."""
     actuators = {native.name: _commanding(native, send, meter) for native in bindings.natives().values()}
     return actuators | {name: _serving(name, serve, services, meter) for name, serve in SERVICE_NATIVES.items()}
 
@@ -105,7 +105,7 @@ def _system_sound(call: NativeCall, services: FirmwareServices) -> None:
 
 
 def _duration(call: NativeCall, services: FirmwareServices) -> None:
-    """Tenths of a second."""
+    """Write the length in tenths of a second; a recording has 7812 samples per second."""
     call.write(1, [min(32767, services.recorded_bytes(call.value(0)) * 5 // 3906)])
 
 
@@ -131,7 +131,7 @@ def _read(call: NativeCall, services: FirmwareServices) -> None:
 
 
 def _seek(call: NativeCall, services: FirmwareServices) -> None:
-    """Positions are words without sign, so that the second half of a large file can be reached."""
+    """Positions are unsigned, so that the second half of a large file can be reached."""
     done = services.card is not None and services.card.seek(call.value(0) & 0xFFFF)
     call.write(1, [DONE if done else FAILED])
 

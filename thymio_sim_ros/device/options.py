@@ -1,11 +1,11 @@
-"""What a user may choose about a simulated Thymio, the same on the command line and in parameters."""
+"""Options of a simulated Thymio, shared by the command line and ROS parameters."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from thymio_sim_ros.device.events import FIRMWARE, POLICIES
+from thymio_sim_ros.device.event_queue import FIRMWARE, POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.errors import ThymioSimError
 
@@ -13,12 +13,15 @@ __all__ = ["DEFAULTS", "DeviceOptions", "OptionError"]
 
 
 class OptionError(ThymioSimError, ValueError):
-    """A choice that does not exist; the text is one line."""
+    """An unknown layout or policy; the text is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceOptions:
-    """Layout and event policy by name; folders that stand for the card and for the robot's flash memory, if any."""
+    """Names of layout and event policy; folders used as memory card and as flash memory, if any.
+
+    Raises OptionError for an unknown name.
+    """
 
     layout: str = THYMIO
     events: str = FIRMWARE
@@ -32,11 +35,11 @@ class DeviceOptions:
 
     @property
     def settings_file(self) -> Path | None:
-        """Where flashed settings are kept, if anywhere."""
+        """File in which flashed settings are kept, or None."""
         return None if self.settings is None else self.settings / "settings.json"
 
     def for_robot(self, name: str, *, alone: bool) -> DeviceOptions:
-        """The options of one robot: alone it has the folders to itself, among others a folder of its name in each."""
+        """Return the options of one robot: the same if it is alone, otherwise with the subfolders of its name."""
         if alone:
             return self
         return replace(
@@ -47,4 +50,4 @@ class DeviceOptions:
 
 
 DEFAULTS = DeviceOptions()
-"""A robot as it is sold: its own layout and events, no card."""
+"""Options of a new robot: layout and events of the firmware, no card."""

@@ -28,7 +28,7 @@ from thymio_sim_ros.sim.commands import (
 __all__ = ["Outputs"]
 
 _SOUNDS = frozenset({PlayTone, PlaySystemSound, PlaySamples, StopSound})
-"""Commands with which a program uses sound."""
+"""Commands that count as use of sound by a program."""
 LIGHT_REPEAT_NS = 500_000_000
 """Time after which a repeated setting of lights to the same levels is sent again."""
 _NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})

@@ -18,42 +18,46 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 REFUSED = 2
-"""Exit code of a node that was given something wrong; it has said what."""
+"""Exit code of a node that rejected its arguments; it has logged the reason."""
 
 RESPAWN_DELAY_S = 1.0
+"""Time before a node is started again, with `respawn`."""
 
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 TOKENS = ("THYMIO_SIM_TOKEN", "THYMIO_SIM_READ_ONLY_TOKEN")
 
 ARGUMENTS = {
-    "playground": ("line", "playground: a shipped name or a file"),
-    "program": ("line_follower", "Aseba program: a built-in behaviour, an .aesl file, or none"),
-    "behaviour": ("", "what the robot is switched on with, such as menu; '' is the program"),
-    "card": ("", "folder that stands for the robot's memory card; '' is no card"),
-    "settings": ("", "folder that keeps the robot's settings; '' forgets them"),
-    "layout": ("thymio", "order of variables and natives"),
-    "events": ("firmware", "how events meet"),
-    "motor_model": ("ideal", "how motors follow"),
-    "proximity_model": ("default", "how proximity sensors see thin things"),
-    "seed": ("0", "seed of all noise"),
-    "log": ("", "file of a run log for thymio-sim replay; '' is none"),
-    "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
-    "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
+    "playground": ("line", "playground: the name of a shipped one, or a file"),
+    "program": ("line_follower", "Aseba program: the name of a built-in one, an .aesl file, or none"),
+    "behaviour": ("", "built-in behavior, such as menu, that runs when the robot is switched on; '' for the program"),
+    "card": ("", "folder used as the robots' memory card; '' for no card"),
+    "settings": ("", "folder in which the robots' settings are stored; '' does not store them"),
+    "layout": ("thymio", "variables and native functions: thymio (firmware 14) or playground (Aseba Playground)"),
+    "events": ("firmware", "event policy: firmware (events wait) or playground (an event ends the running handler)"),
+    "motor_model": ("ideal", "motor model: ideal (no lag) or firmware (the robot's control loop and its lag)"),
+    "proximity_model": ("default", "proximity sensor model, see docs/robot.md"),
+    "seed": ("0", "seed of the random numbers of all noise"),
+    "log": ("", "file for a run log, for thymio-sim replay; '' for none"),
+    "real_time_factor": ("1.0", "simulated seconds per second; 0 runs as fast as possible"),
+    "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0 for never"),
     "driver_compat": (
         "false",
-        "ranges as the existing Thymio driver reports them (-1 for nothing), and all its topics",
+        "ranges as in the ROS driver of the real Thymio (-1 if out of range), and all its topics",
     ),
     "namespace": ("", "namespace of all nodes and robots, such as lab1"),
-    "robot_names": ("['']", "names of the playground's robots, such as [anna, bert]; '' keeps the playground's"),
-    "namespaced_tf": ("false", "frames have bare names, on tf and tf_static in each robot's namespace"),
-    "params_file": ("", "YAML file of ROS parameters for all nodes; what it says wins over these arguments"),
-    "address": ("localhost", "where page and bridge listen; 0.0.0.0: the whole network"),
-    "require_token": ("true", "whether clients need a token where the network reaches the address"),
+    "robot_names": ("['']", "names of the robots, such as [anna, bert]; [''] keeps those of the playground"),
+    "namespaced_tf": (
+        "false",
+        "frames without prefix, on tf and tf_static in the namespace of each robot",
+    ),
+    "params_file": ("", "YAML file of ROS parameters for all nodes; it overrides these arguments"),
+    "address": ("localhost", "address on which page and bridge listen; 0.0.0.0 for all IPv4 interfaces"),
+    "require_token": ("true", "whether clients need a token if the address is reachable from the network"),
     "port": ("8080", "TCP port of the page"),
     "foxglove_port": ("8765", "TCP port of the Foxglove bridge"),
     "web": ("true", "serve the page"),
-    "rviz": ("false", "start RViz with our configuration (needs the package rviz2)"),
-    "respawn": ("false", "start a node again that died"),
+    "rviz": ("false", "start RViz with a configuration for the robots (needs the package rviz2)"),
+    "respawn": ("false", "restart nodes that exit"),
 }
 CHOICES = {
     "layout": ["thymio", "playground"],
@@ -64,11 +68,11 @@ CHOICES = {
 
 
 WORLD_TOPICS = ("_markers", "_markers/objects", "map")
-"""What our RViz configuration calls `/_markers` and so on, since it may be started in a robot's namespace."""
+"""Topics of the world, which are absolute in the RViz configuration; they are remapped into the namespace."""
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Four nodes on one clock, and RViz if wanted; all but the simulator follow simulated time."""
+    """The four nodes and, optionally, RViz; all except the simulator use simulated time."""
     value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
     return LaunchDescription(
         [
@@ -76,7 +80,7 @@ def generate_launch_description() -> LaunchDescription:
                 DeclareLaunchArgument(name, default_value=default, description=text, choices=CHOICES.get(name))
                 for name, (default, text) in ARGUMENTS.items()
             ),
-            # First: without rviz2 launch gives up at once, and would leave behind what runs by then.
+            # RViz is first: if rviz2 is missing, launch ends immediately, without stopping nodes that are running.
             Node(
                 package="rviz2",
                 executable="rviz2",
@@ -93,11 +97,11 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def _nodes(context: LaunchContext) -> list[Node]:
-    """Our nodes, each with its parameters and the file of all; RuntimeError where there is no such file."""
+    """The nodes of the suite with their parameters. Raises RuntimeError if the file of parameters does not exist."""
     value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
     file = value["params_file"].perform(context)
     if file and not Path(file).expanduser().is_file():
-        raise RuntimeError(f"params_file: '{file}' found, expected a YAML file of ROS parameters")
+        raise RuntimeError(f"params_file: found '{file}', expected a YAML file of ROS parameters")
     shared = [str(Path(file).expanduser())] if file else []
     has_driver = ["'", value["driver_compat"], "'.lower() in ('true', '1')"]
     range_convention = PythonExpression(["'driver' if ", *has_driver, " else 'rep117'"])
@@ -145,7 +149,7 @@ def _nodes(context: LaunchContext) -> list[Node]:
 
 
 def _give_tokens(context: LaunchContext) -> list[SetEnvironmentVariable]:
-    """Bridge and page get the same tokens, by their environment: parameters can be read by everyone in the domain."""
+    """Pass the same tokens to bridge and page by the environment: every node of the domain can read parameters."""
     address, is_required = (context.launch_configurations[name] for name in ("address", "require_token"))
     if address in LOOPBACK or is_required.lower() not in ("true", "1"):
         return []
@@ -155,7 +159,7 @@ def _give_tokens(context: LaunchContext) -> list[SetEnvironmentVariable]:
 
 
 def _node(name: str, parameters: list[object], value: dict[str, LaunchConfiguration], **options: object) -> Node:
-    """One of our executables; its node has the same name. Of the parameters the last win."""
+    """A node of this package; its executable has the same name. Later parameters override earlier ones."""
     return Node(
         package="thymio_sim_ros",
         executable=name,
@@ -171,7 +175,7 @@ def _node(name: str, parameters: list[object], value: dict[str, LaunchConfigurat
 
 
 def _shut_down_if_rejected(event: ProcessExited, _context: LaunchContext) -> list[Shutdown] | None:
-    """A wrong playground, program or port ends the suite, which would be useless without that node."""
+    """Stop the suite if a node rejected its arguments, such as a playground, a program or a port."""
     if event.returncode != REFUSED:
         return None
-    return [Shutdown(reason=f"{event.process_name} refused what it was given")]
+    return [Shutdown(reason=f"{event.process_name} rejected its arguments")]

@@ -1,6 +1,6 @@
-"""All nodes in one process, each on an executor and a thread of its own: `ros2 run thymio_sim_ros thymio`.
+"""All nodes in one process, each with its own executor and thread: `ros2 run thymio_sim_ros thymio`.
 
-The nodes are the same as in separate processes and talk by the same topics.
+The nodes are the same as in separate processes and communicate by the same topics.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.suite_config import SuiteConfig
 
 REFUSED = 2
+"""Exit code for invalid arguments."""
 
 
 def suite_nodes(context: Context, suite: SuiteConfig, warnings: Sequence[str] = ()) -> Iterator[AnnouncedNode]:
-    """Simulator, Aseba runtime and, as wanted, bridge and page, in the order of their start.
+    """Create simulator, Aseba runtime and, depending on the suite, bridge and page, in this order.
 
-    `warnings` about the arguments are logged by the first.
+    `warnings` about the arguments are logged by the simulator. Raises StartError if a node cannot start.
     """
     given = defaults(suite)
     simulator = Simulator(context, given[SIMULATOR])
     for warning in warnings:
         simulator.node.get_logger().warning(warning)
-    robots = [names.name for names in simulator.names.values()]
+    robots = [names.name for names in simulator.endpoints.robots.names.values()]
     yield simulator
     yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True)
     foxglove_port, tokens = suite.foxglove_port, suite.tokens
@@ -46,12 +47,12 @@ def suite_nodes(context: Context, suite: SuiteConfig, warnings: Sequence[str] = 
 
 
 def run(suite: SuiteConfig, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:
-    """Run the suite until SIGINT or SIGTERM; the exit code. `args`: those of ROS, else those of the process."""
-    return _run(suite, args, lambda hosts: hosts, on_ready)
+    """Run the suite until SIGINT or SIGTERM; return the exit code. `args` are ROS arguments (None: of the process)."""
+    return _run(suite, args, lambda nodes: nodes, on_ready)
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """The executable `thymio`: the suite with its defaults, ROS arguments for everything else."""
+    """The executable `thymio`: the suite with its default values, which ROS arguments can change."""
     return _run(SuiteConfig(), args, announce)
 
 

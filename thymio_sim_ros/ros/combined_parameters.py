@@ -1,8 +1,8 @@
-"""The parameters of the suite in one process: which node each belongs to, and with which default.
+"""The parameters of the suite in one process: the nodes that each belongs to, and default values.
 
-A parameter given without a node's name (`-p port:=9000`) would go to every node of the process, though `port` of the
-page is not `port` of the bridge. `assigned` gives each to the nodes that it is meant for; this works in a namespace
-too, where rcl itself finds no node by `-p node:name:=value`.
+rcl would set a parameter without a node name (`-p port:=9000`) on every node of the process, but `port` of the page is
+not `port` of the bridge. `assigned` assigns each parameter to the nodes that it is intended for. This also works in a
+namespace, where rcl does not find nodes by `-p node:name:=value`.
 """
 
 from __future__ import annotations
@@ -22,32 +22,33 @@ from thymio_sim_ros.suite_config import SuiteConfig
 __all__ = ["BRIDGE", "PAGE", "RUNTIME", "SIMULATOR", "SUITE", "Target", "assigned", "defaults", "targets"]
 
 SUITE = "thymio"
-"""What the process is called; `-p thymio:name:=value` is the same as `-p name:=value`."""
+"""Name of the process; `-p thymio:name:=value` is the same as `-p name:=value`."""
 
 SIMULATOR, RUNTIME, BRIDGE, PAGE = "simulator", "aseba_runtime", "foxglove_bridge", "web_ui"
 
 Target = tuple[str, str]
-"""A node, and what it calls the parameter."""
+"""A node and its name of the parameter."""
 
 _SPECIAL: Mapping[str, tuple[Target, ...]] = {
     "port": ((PAGE, "port"),),
     "foxglove_port": ((BRIDGE, "port"), (PAGE, "foxglove_port")),
     "robot_names": ((SIMULATOR, "robot_names"),),
 }
-"""Names that mean something else to one of the nodes that have them; the runtime follows the simulator's robots."""
+"""Parameters whose names have different meanings in different nodes. The runtime gets the robots from the simulator."""
 
-_OF_ROS: Mapping[str, tuple[str, ...]] = {
+_ROS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "use_sim_time": (RUNTIME, BRIDGE, PAGE),
     "start_type_description_service": (SIMULATOR, RUNTIME, BRIDGE, PAGE),
 }
-"""Parameters that rclpy declares, and the nodes they are meant for: the simulator makes the time."""
+"""Parameters that rclpy declares, and the nodes that they are intended for. The simulator publishes simulated time, and
+must not use it itself."""
 
 _PARAMETER = ("-p", "--param")
 _QUOTED = ('"', "'", "[", "{")
 
 
 def defaults(suite: SuiteConfig) -> dict[str, Any]:
-    """The parameters of each node by its name, with the values of this suite; of bridge and page if it has them."""
+    """The parameters of each node of the suite by the name of the node, with the values of the suite."""
     device = suite.device
     values: dict[str, Any] = {
         SIMULATOR: SimulatorParams(
@@ -80,11 +81,11 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
 
 
 def targets(name: str) -> tuple[Target, ...]:
-    """Where a parameter of the suite goes; nothing for one that no node has."""
+    """The targets of a parameter of the suite; empty if no node has it."""
     if name in _SPECIAL:
         return _SPECIAL[name]
-    if name in _OF_ROS:
-        return tuple((node, name) for node in _OF_ROS[name])
+    if name in _ROS_PARAMETERS:
+        return tuple((node, name) for node in _ROS_PARAMETERS[name])
     if name.startswith("qos_overrides."):
         return ((SIMULATOR, name),)
     if is_free(name):
@@ -94,9 +95,9 @@ def targets(name: str) -> tuple[Target, ...]:
 
 @contextmanager
 def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
-    """The arguments of ROS with each parameter at its node, and a warning for each that no node has.
+    """Yield the ROS arguments with each parameter assigned to its nodes, and warnings about unknown parameters.
 
-    They name a file that is there until the context ends. StartError when it cannot be written.
+    The arguments name a temporary file, which exists until the context ends. Raises StartError if it cannot be written.
     """
     rest, given = _split(words)
     if not given:
@@ -109,11 +110,13 @@ def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
             file.flush()
             yield [*rest, "--ros-args", "--params-file", file.name], warnings
     except OSError as error:
-        raise StartError(f"parameters cannot be passed on: {error.strerror} ({error.filename})") from error
+        raise StartError(
+            f"cannot write the parameters to a temporary file: {error.strerror} ({error.filename})"
+        ) from error
 
 
 def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """All words but those of parameters, and the parameters: `node:name:=value` or `name:=value`."""
+    """Split words into the parameters, `node:name:=value` or `name:=value`, and all other words."""
     rest: list[str] = []
     given: list[str] = []
     is_of_ros, waiting = False, list(words)
@@ -129,7 +132,10 @@ def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str]]:
-    """Node → parameter → value as it was written, those that name their node last; and what is wrong."""
+    """Return node → parameter → value as it was written, and warnings.
+
+    Parameters that name a node are applied last, and so override those without.
+    """
     sections: dict[str, dict[str, str]] = {node: {} for node in (SIMULATOR, RUNTIME, BRIDGE, PAGE)}
     warnings: list[str] = []
     rules = [(*left.rpartition(":")[::2], value) for left, _, value in (rule.partition(":=") for rule in given)]
@@ -150,7 +156,7 @@ def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str
 
 
 def _yaml(sections: Mapping[str, Mapping[str, str]]) -> str:
-    """A file of parameters; `/**/` finds the nodes in every namespace."""
+    """The text of a parameter file; `/**/` matches the nodes in every namespace."""
     lines = []
     for node, values in sections.items():
         if values:
@@ -160,7 +166,7 @@ def _yaml(sections: Mapping[str, Mapping[str, str]]) -> str:
 
 
 def _scalar(value: str) -> str:
-    """A value as rcl reads it; text that YAML would take for more than a line or for a mapping is quoted."""
+    """A value as rcl parses it; text that YAML would parse as several lines or as a mapping is quoted."""
     if value.startswith(_QUOTED):
         return value.replace("\n", " ")
     is_plain = value and "\n" not in value and ": " not in value and not value.endswith(":")

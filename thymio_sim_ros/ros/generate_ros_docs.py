@@ -1,4 +1,4 @@
-"""docs/ros.md from the declarations that the nodes use: `python -m thymio_sim_ros.ros.generate_ros_docs > docs/ros.md`.
+"""docs/ros.md from the declarations of the nodes: `python -m thymio_sim_ros.ros.generate_ros_docs > docs/ros.md`.
 
 Plug-ins of other packages are left out: the page is about what is shipped.
 """
@@ -23,10 +23,10 @@ from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.type_mismatch import type_name
 from thymio_sim_ros.ros.ros_docs_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
-from thymio_sim_ros.ros.simulator import robot_endpoints, world_endpoints, world_services
+from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_topics
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
-from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
+from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 from thymio_sim_ros.suite_config import SuiteConfig
@@ -38,7 +38,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """One topic in a table; neighbors that differ in the last word of their name alone become one."""
+    """A row for a topic; adjacent topics that differ only in the last part of their name are merged."""
 
     topic: str
     type: str
@@ -49,19 +49,19 @@ class _Line:
 
     @property
     def place(self) -> str:
-        """What comes before the last word."""
+        """The name without its last part."""
         return self.topic.rpartition("/")[0]
 
     @property
     def sort(self) -> tuple[str, ...]:
-        """What neighbors share."""
+        """What merged topics have in common."""
         word = self.topic.rpartition("/")[2]
         frame = self.frame.replace(f"_{word}_", "_…_")
         return (self.place, self.type, self.rate, frame, self.profile, self.about)
 
 
 def text() -> str:
-    """The whole page."""
+    """The text of the page."""
     parts = [
         BEFORE,
         "## Published topics of a robot\n",
@@ -101,22 +101,22 @@ def text() -> str:
 
 
 def published() -> dict[str, tuple[str, str]]:
-    """Every topic of the simulator, relative to the robot's namespace or absolute: its type and its kind of QoS."""
+    """Type and kind of QoS of every topic of the simulator; names are absolute or relative to a robot's namespace."""
     return {line.topic: (line.type, line.profile) for line in (*_published(), *_of_world())}
 
 
 def own_sensors() -> tuple[Sensor, ...]:
-    """Those that are shipped."""
+    """The shipped sensors, without plug-ins."""
     ours = registry.own_names(sensors)
     return tuple(sensor for sensor in all_sensors() if sensor.name in ours)
 
 
 CELL_BAR = "\\|"
-"""A bar inside a cell of a Markdown table."""
+"""A vertical bar inside a cell of a Markdown table."""
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table of Markdown, and an empty line."""
+    """A Markdown table, followed by an empty line."""
     lines = [heads, ["---"] * len(heads), *rows]
     return "".join(f"| {' | '.join(cell.replace('|', CELL_BAR) for cell in line)} |\n" for line in lines)
 
@@ -142,7 +142,7 @@ def _of_driver() -> Iterator[tuple[str, str, str, str]]:
 
 
 def _of_world() -> Iterator[_Line]:
-    for topic, one in world_endpoints.TOPICS.items():
+    for topic, one in world_topics.TOPICS.items():
         yield _Line(
             _in_no_namespace(topic), type_name(one.type), one.rate, one.frame, qos.kind_of(one.profile), one.about
         )
@@ -160,12 +160,12 @@ def _of_world() -> Iterator[_Line]:
 
 
 def _in_no_namespace(name: str) -> str:
-    """A name of the simulator as it is where the node has no namespace."""
+    """The absolute name of a topic or service of the simulator without a namespace."""
     return name if name.startswith("/") else f"/{name.replace('~', 'simulator')}"
 
 
 def _topics(lines: Iterable[_Line]) -> str:
-    """Topics by their place, in the order in which places first appear."""
+    """Topics grouped by their place, in the order of the first topic of each place."""
     listed = list(lines)
     places = {line.place: None for line in listed}
     ordered = [line for place in places for line in listed if line.place == place]
@@ -221,7 +221,7 @@ def _vector(values: Iterable[float]) -> str:
 
 
 def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
-    """Each parameter; those of groups that differ in the middle of their names alone share a line."""
+    """Rows of parameters; those that differ only in the middle of their names share a row."""
     for first, name in _grouped(values):
         yield (
             f"`{name}`",
@@ -233,7 +233,7 @@ def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
 
 
 def _grouped(values: object) -> Iterator[tuple[parameters.Declared, str]]:
-    """The first parameter of each group, and the name of its line."""
+    """The first parameter of each group, and the name of its row."""
     groups: dict[tuple[str, str], list[parameters.Declared]] = {}
     for one in parameters.declared(values):
         groups.setdefault((_outer(one.name), one.metadata["text"]), []).append(one)
@@ -244,7 +244,7 @@ def _grouped(values: object) -> Iterator[tuple[parameters.Declared, str]]:
 
 
 def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
-    """Each parameter of the combined process, its nodes and its default; those of a group share a line."""
+    """Parameters of the combined process with their nodes and defaults; those of a group share a row."""
     values = combined_parameters.defaults(SuiteConfig())
     suite = ["port", "foxglove_port", "address"]
     for name in suite:
@@ -259,7 +259,7 @@ def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
 
 
 def _outer(name: str) -> str:
-    """`a.b.c` without its middle."""
+    """The first and the last part of a dotted name."""
     words = name.split(".")
     return f"{words[0]}.{words[-1]}"
 

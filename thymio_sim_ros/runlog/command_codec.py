@@ -1,4 +1,4 @@
-"""Commands as JSON and back, from the types of their fields: plug-ins' commands too, and nothing is lost."""
+"""Lossless conversion of commands, including those of plug-ins, to JSON and back by the types of their fields."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ __all__ = ["CommandJsonError", "decode", "encode", "kinds"]
 
 
 class CommandJsonError(ThymioSimError, ValueError):
-    """A command that cannot be read: what was found, what was expected."""
+    """A command that cannot be decoded; the text has what was found and what was expected."""
 
 
 def kinds() -> dict[str, type[Any]]:
-    """Every type of command that a world takes, by name."""
+    """Types of all commands that a world accepts, by name."""
     taken = [kind for plugin in (*all_actuators(), *all_stimuli()) for kind in plugin.accepts]
     return {kind.__name__: kind for kind in (*taken, MoveObject)}
 
 
 def encode(command: Command) -> tuple[str, dict[str, Any]]:
-    """The name of a command's type, and its fields; bytes are base64."""
+    """Return the name of the type of a command, and its fields; bytes become base64."""
     members = dataclasses.fields(command)  # type: ignore[arg-type]  # every command is a dataclass, plug-ins' too
     return type(command).__name__, {member.name: _write(getattr(command, member.name)) for member in members}
 
 
 def decode(name: object, values: object) -> Command:
-    """The command of a name and fields as `encode` gives them; CommandJsonError."""
+    """Return the command with this type and these fields, as from `encode`. Raises CommandJsonError."""
     known = kinds()
     if not isinstance(name, str) or name not in known:
         raise CommandJsonError(f"found the command {name!r}, expected one of {', '.join(sorted(known))}")

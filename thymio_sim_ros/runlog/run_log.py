@@ -1,4 +1,4 @@
-"""Run logs: everything that worlds were given, so that the same run can be had again bit for bit.
+"""Run logs: all inputs of worlds, from which a run can be repeated bit for bit.
 
 Version 1 is JSON lines in UTF-8:
 
@@ -11,9 +11,9 @@ Version 1 is JSON lines in UTF-8:
     {"ticks": 100, "crc": "eight hexadecimal digits for each of these ticks"}
     {"end": true}
 
-`tick` is how many ticks had passed; after `world` and `reset` it counts from 0. The digits are the CRC-32 of what each
-tick since the last such line gave: readings and contacts, as their `repr`. A log without its last line was cut off,
-maybe within a line; it is good up to there.
+`tick` is the number of ticks that had passed; it counts from 0 after `world` and `reset`. `crc` has the CRC-32 of the
+result (`repr` of readings and contacts) of each tick since the previous such line. A log without its last line was cut
+off, perhaps within a line; it is valid up to there.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ FORMAT = "thymio-sim run log"
 VERSION = 1
 _TICKS_PER_LINE = 100
 _WRONG = (ValueError, KeyError, TypeError, RecursionError, FieldError, PlaygroundError, CommandJsonError)
-"""What a line raises that is none."""
+"""Exceptions caused by an invalid line."""
 _DIGITS = 8
 
 
 class RunLogError(ThymioSimError):
-    """A log that cannot be read: file and line, what was found there, what was expected."""
+    """A log that cannot be read; the text has file, line, what was found and what was expected."""
 
     def __init__(self, path: str, line: int, problem: str) -> None:
         super().__init__(f"{path}: line {line}: {problem}")
@@ -58,7 +58,7 @@ class RunLogError(ThymioSimError):
 
 @dataclass(frozen=True, slots=True)
 class WorldStarted:
-    """A world begins."""
+    """Start of a world."""
 
     name: str
     playground: Playground
@@ -67,30 +67,29 @@ class WorldStarted:
 
 @dataclass(frozen=True, slots=True)
 class TicksChecked:
-    """So many ticks passed; `crcs` is what each of them gave."""
+    """Digests of the results of ticks, in order."""
 
     crcs: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class LogEnded:
-    """The log is complete."""
+    """End of a complete log."""
 
 
 LogEntry = WorldStarted | TicksChecked | LogEnded | tuple[int, Input]
-"""What a line says; inputs with the tick after which they came."""
+"""Content of a line; an input has the tick after which it came."""
 
 
 def digest(result: object) -> str:
-    """What stands for a tick's result in a log."""
+    """Digest of the result of a tick: 8 hexadecimal digits."""
     return f"{zlib.crc32(repr(result).encode()):0{_DIGITS}x}"
 
 
 class RunLog:
-    """Writes a log; the journal of one world at a time. Invariant: the file always ends with a whole line.
+    """Writes a log; the input recorder of one world at a time. Invariant: the file always ends with a whole line.
 
-    When the file cannot be written any more, `on_error` is called once and the log stays as it is; without it OSError
-    is raised.
+    If the file can no longer be written, `on_error` is called once and the log ends; without it OSError is raised.
     """
 
     def __init__(self, file: TextIO, *, on_error: Callable[[OSError], None] | None = None) -> None:
@@ -100,14 +99,14 @@ class RunLog:
         self._write({"format": FORMAT, "version": VERSION, "made_by": thymio_sim_ros.__version__})
 
     def begin(self, name: str, world: World) -> None:
-        """Follow a world from now on, which has just been made."""
+        """Start to record a new world."""
         self._flush()
         head = {"name": name, "playground": dumps(world.playground), **asdict(world.options)}
         self._write({"world": head})
         world.recorder = self
 
     def record(self, tick: int, happened: Input) -> None:
-        """Something came in after so many ticks."""
+        """Record an input after `tick` ticks."""
         match happened:
             case Posted(name, command):
                 kind, values = command_codec.encode(command)
@@ -121,7 +120,7 @@ class RunLog:
                 self._write({"tick": tick, "reset": True})
 
     def record_step(self, result: object) -> None:
-        """A step gave this."""
+        """Record the result of a step."""
         self._crcs.append(digest(result))
         if len(self._crcs) == _TICKS_PER_LINE:
             self._flush()
@@ -150,7 +149,7 @@ class RunLog:
 
     @contextmanager
     def _guarded(self, file: TextIO) -> Iterator[None]:
-        """Meanwhile an OSError ends the log; what the file still buffers is dropped."""
+        """Context in which an OSError ends the log; data buffered by the file is dropped."""
         try:
             yield
         except OSError as error:
@@ -163,7 +162,7 @@ class RunLog:
 
 
 def read(path: Path) -> Iterator[tuple[int, LogEntry]]:
-    """The lines of a log after its first, with their numbers; OSError, RunLogError."""
+    """Yield number and content of the lines of a log after the first. Raises OSError or RunLogError."""
     number = 0
     with path.open("rb") as file:
         for number, text in enumerate(file, start=1):
@@ -182,7 +181,7 @@ def read(path: Path) -> Iterator[tuple[int, LogEntry]]:
 
 
 def made_by(path: Path) -> str:
-    """The version of the program that wrote a log that `read` reads."""
+    """Version of the program that wrote a log. The log must be valid for `read`."""
     with path.open(encoding="utf-8") as file:
         return str(json.loads(file.readline()).get("made_by"))
 

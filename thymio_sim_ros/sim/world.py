@@ -81,7 +81,9 @@ class World:
             ValueError: A model or sensor is unknown, or a period is not above 0.
         """
         if proximity_model not in PROXIMITY_MODELS:
-            raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
+            raise ValueError(
+                f"proximity model: found {proximity_model!r}, expected one of {', '.join(PROXIMITY_MODELS)}"
+            )
         self._motor_model = SetMotorModel(motor_model)
         self._sensors = _chosen(all_sensors(), periods_ns)
         self.playground = playground
@@ -196,7 +198,7 @@ class World:
         return result
 
     def snapshot(self) -> Snapshot:
-        """The visible state of the world now."""
+        """Return the visible state of the world now."""
         return Snapshot(
             self._clock.now_ns,
             tuple(robot.snapshot() for robot in self._robots.values()),
@@ -220,7 +222,7 @@ class World:
         self._batch = RobotBatch(self._robots.values(), self._shared) if len(self._robots) >= MIN_BATCH_ROBOTS else None
 
     def _names(self) -> set[str]:
-        """All names in use."""
+        """Return all names in use."""
         return {*self._robots, *(shape.name for shape in self.playground.shapes)}
 
     def _check_place(self, wanted: Footprint) -> None:
@@ -310,21 +312,21 @@ class World:
 
 
 def _finite(name: str, pose: Pose) -> Pose:
-    """The pose; raises ValueError if it is not finite."""
+    """Return the pose. Raises ValueError if it is not finite."""
     if not all(map(math.isfinite, (pose.x_m, pose.y_m, pose.yaw_rad))):
         at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
-        raise ValueError(f"'{name}' cannot stand at {at}: expected finite numbers")
+        raise ValueError(f"'{name}' cannot be placed at {at}: expected finite numbers")
     return pose
 
 
 def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
-    """The sensors that measure; raises ValueError for an unknown name or a period that is not above 0."""
+    """Return the sensors that measure. Raises ValueError for an unknown name or a period that is not above 0."""
     if periods_ns is None:
         return sensors
     names = [sensor.name for sensor in sensors]
     for name, period_ns in periods_ns.items():
         if name not in names:
-            raise ValueError(f"sensor {name!r}: expected one of {', '.join(names)}")
+            raise ValueError(f"sensor: found {name!r}, expected one of {', '.join(names)}")
         if period_ns <= 0:
             raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
     return tuple(sensor.with_period(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)

@@ -1,11 +1,11 @@
-"""Layouts of Foxglove and Lichtblick for one robot: one description, two files.
+"""Layouts of Foxglove and Lichtblick for one robot, written from one description.
 
-    panels    what a layout is made of
-    thymio    the description: which panels, on which topics
-    forms     the description as either application's file
+    panels    parts of a layout: panels, split areas, tabs
+    thymio    the description: panels, topics, services and parameters
+    forms     conversion to the file of each application
 
-The two files for a robot without a namespace are shipped beside this module; `tests/studio_layout` holds them equal to
-what the description says today.
+The two files for a robot without a namespace are shipped beside this module; `tests/studio_layout` checks that
+they are equal to the present description.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""A layout as a file of either application.
+"""Conversion of a layout to the files of the applications (docs/spec/foxglove.md sections 3 and 4).
 
-Lichtblick and older versions of Studio: panels by id in one table, and a binary tree of areas. The present Foxglove
-app: one tree with the panels in it, some types renamed (docs/spec/foxglove.md sections 3 and 4).
+Lichtblick and older versions of Studio have a table of panels by their IDs, and a binary tree of areas. The present
+Foxglove app has one tree that contains the panels, and other names for some types of panels.
 """
 
 from __future__ import annotations
@@ -22,14 +22,17 @@ _RENAMED = {
     "DiagnosticSummary": "DiagnosticsSummary",
     "RosOut": "Log",
 }
-"""Types of panels that the present Foxglove app calls otherwise."""
+"""Types of panels with another name in the present Foxglove app."""
 
 _TITLES = ("lichtblickPanelTitle", "foxglovePanelTitle")
-"""Where Lichtblick keeps the title of a panel, and where Studio before it did."""
+"""Keys of the title of a panel in Lichtblick and in older versions of Studio."""
 
 
 def render(app: str, robot: str = "", namespace: str = "") -> str:
-    """The file for an application of `APPS`, as JSON text; `namespace`: of the whole suite."""
+    """The layout file for an application of `APPS`, as JSON text; `namespace` is that of the whole suite.
+
+    Raises KeyError for an unknown application.
+    """
     return json.dumps(APPS[app](describe(robot, namespace)), indent=1, ensure_ascii=False) + "\n"
 
 
@@ -46,14 +49,14 @@ def _lichtblick(root: Node) -> dict[str, Any]:
 
 
 def _mosaic(node: Node, configs: dict[str, Any]) -> Any:
-    """The area's node in the tree; what its panels are goes into `configs`."""
+    """The area as a node of the binary tree; the configurations of its panels are added to `configs`."""
     if isinstance(node, Panel):
         panel = f"{node.kind}!{node.key}"
         configs[panel] = dict(node.config) | (dict.fromkeys(_TITLES, node.title) if node.title else {})
         return panel
     if isinstance(node, Tabs):
         panel = f"Tab!{node.key}"
-        configs[panel] = {}  # its place in the table is before those of its tabs
+        configs[panel] = {}  # reserves its place in the table before the panels of its tabs
         tabs = [{"title": title, "layout": _mosaic(part, configs)} for title, part in node.tabs]
         configs[panel] = {"activeTabIdx": 0, "tabs": tabs}
         return panel

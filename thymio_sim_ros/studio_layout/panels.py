@@ -1,4 +1,4 @@
-"""What a layout is made of: panels, split areas and tabs, without either application's names for them."""
+"""Parts of a layout, independent of the application: panels, split areas and tabs."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ __all__ = ["Node", "Panel", "Split", "Tabs", "panels_of"]
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """One panel: `kind` is Lichtblick's name of its type, `key` its own name, unique in the layout.
+    """A panel: `kind` is Lichtblick's name of its type, `key` its own name, unique in the layout.
 
-    `config` is what both applications read, `newer` what only the present Foxglove app knows.
+    `config` is its configuration in both applications, `newer` has additional keys for the present Foxglove app.
     """
 
     kind: str
@@ -25,7 +25,7 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class Split:
-    """Areas side by side (`row`) or one above the other (`column`), each with its share of 100."""
+    """Areas side by side (`row`) or one above the other (`column`), each with its share in percent."""
 
     direction: Literal["row", "column"]
     parts: tuple[tuple[float, Node], ...]
@@ -33,7 +33,7 @@ class Split:
 
 @dataclass(frozen=True, slots=True)
 class Tabs:
-    """Areas of which one is seen at a time, each with its title."""
+    """Areas of which one is visible at a time, each with its title."""
 
     key: str
     tabs: tuple[tuple[str, Node], ...]

@@ -1,4 +1,4 @@
-"""The layout of one robot: which panels, on which topics, services and parameters.
+"""The layout of one robot: its panels with their topics, services and parameters.
 
 Source: docs/spec/foxglove.md sections 3 and 4.
 """
@@ -19,7 +19,7 @@ _BUTTONS = ("forward", "left", "center", "right", "backward")
 _GREEN, _GRAY = "#68e24a", "#a0a0a0"
 _HIDDEN = {"visible": False}
 
-# Speeds of teleop: half of what a Thymio can do, and a turn in six seconds.
+# Speeds of the teleop panel: half of the largest speed of a Thymio, and one revolution in six seconds.
 _SPEED_M_S, _TURN_RAD_S, _TELEOP_HZ = 0.1, 1.0, 10
 _WINDOW_S = 20
 
@@ -34,11 +34,11 @@ _FRAMES = (
     "ground_right_link",
     *(f"proximity_{name}_link" for name in _PROXIMITY),
 )
-"""Frames whose axes would hide the robot."""
+"""Frames that are not shown: their axes would hide the robot."""
 
 
 class Names:
-    """Names of one robot in a suite; `robot` is empty where it is the only one, `namespace` that of the suite."""
+    """Names of one robot in a suite; `robot` is empty if it is the only one, `namespace` is that of the suite."""
 
     def __init__(self, robot: str = "", namespace: str = "") -> None:
         self._prefix = f"{robot}/" if robot else ""
@@ -58,7 +58,7 @@ class Names:
 
 
 def describe(robot: str = "", namespace: str = "") -> Node:
-    """The whole layout; `robot`: its name, empty for the only robot of a playground; `namespace`: of the suite."""
+    """The whole layout; `robot` is empty for the only robot of a playground, `namespace` is that of the suite."""
     names = Names(robot, namespace)
     left = Split("column", ((62, _scene(names)), (38, _drive(names))))
     tabs = Tabs(

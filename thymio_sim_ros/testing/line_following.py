@@ -1,4 +1,4 @@
-"""Following a painted track: how far the ground sensors strayed from its middle, and how much of it was driven."""
+"""Check of line following: distance of the ground sensors from the center line, and driven length of the track."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from thymio_sim_ros.testing.thymio import Thymio
 __all__ = ["TrackLine", "followed_line"]
 
 SENSOR_CENTER: Point = (robot_constants.GROUND_SENSORS[0][0], 0.0)
-"""The middle between the ground sensors, in the robot's frame."""
+"""Center between the ground sensors in the frame of the robot, in m."""
 
 _SENSOR_OFFSET_M = robot_constants.GROUND_SENSORS[0][1]
-"""How far each of them is from there."""
+"""Distance of each ground sensor from that center."""
 
 EVERY = 5
-"""Ticks from one look at the robot to the next: at full speed 1 cm."""
+"""Ticks between two samples: 1 cm at full speed."""
 
 _TIE_M = 0.01
 _MAX_JUMP_M = 0.1
-"""Where pieces of a track cross, those that are as near as this are text apart by what was driven before: a robot does
-not leap so far."""
+"""Where segments of a track cross, several may be nearest within `_TIE_M`. The segment that continues the driven
+distance is chosen: a robot does not advance more than `_MAX_JUMP_M` between two samples."""
 
 
 class TrackLine:
-    """The middle of a track, as pieces from point to point."""
+    """Center line of a track, as segments between points."""
 
     def __init__(self, points: Sequence[Point], *, closed: bool) -> None:
         self.closed = closed
@@ -43,7 +43,7 @@ class TrackLine:
 
     @classmethod
     def of(cls, playground: Playground, name: str = "") -> tuple[TrackLine, Track]:
-        """The only track of a playground, or the one of a name; ValueError with the tracks there are."""
+        """Return the only track of a playground, or the one of a name. Raises ValueError with the known names."""
         tracks = {shape.name: shape.shape for shape in playground.shapes if isinstance(shape.shape, Track)}
         if name not in tracks and (name or len(tracks) != 1):
             wanted = f"no track '{name}'" if name else f"{len(tracks)} tracks, name one of them"

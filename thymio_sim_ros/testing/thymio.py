@@ -141,7 +141,7 @@ class Thymio:
         return self.record.events
 
     def emit(self, event: str, *args: int) -> None:
-        """An event arrives from the Aseba network, as if somebody else had emitted it; all robots hear it."""
+        """Send an event to all robots, as if another node of the Aseba network had emitted it."""
         __tracebackhide__ = True
         self.stage.emit(event, args)
 
@@ -159,19 +159,19 @@ class Thymio:
     @property
     def variables(self) -> dict[str, int | tuple[int, ...]]:
         """All variables of its program and of the robot by name."""
-        return {name: self[name] for name in self._machine().device.variables()}
+        return {name: self[name] for name in self._machine().device.variables.addresses()}
 
     def __getitem__(self, variable: str) -> int | tuple[int, ...]:
         """A variable: a number, or the numbers of an array."""
         device = self._machine().device
         self._check_variable(device, variable)
-        words = device.get_variable(variable)
+        words = device.variables.get(variable)
         return words[0] if len(words) == 1 else words
 
     def __setitem__(self, variable: str, value: int | Sequence[int]) -> None:
         device = self._machine().device
         self._check_variable(device, variable)
-        device.set_variable(variable, [value] if isinstance(value, int) else value)
+        device.variables.set(variable, [value] if isinstance(value, int) else value)
 
     # --- what people do to it ---
 
@@ -191,7 +191,7 @@ class Thymio:
             self.run(seconds)
 
     def clap(self, loudness: int = 200) -> None:
-        """Clap beside it, as loud as mic.intensity tells: 0…255."""
+        """Clap beside it; `loudness` is in units of mic.intensity, 0…255."""
         self.post(Clap(loudness))
 
     def tap(self) -> None:
@@ -240,7 +240,7 @@ class Thymio:
         return machine
 
     def _check_variable(self, device: AsebaDevice, variable: str) -> None:
-        names = device.variables()
+        names = device.variables.addresses()
         if variable not in names:
             near = difflib.get_close_matches(variable, names, 3)
             hint = f"; did you mean {' or '.join(near)}?" if near else ""

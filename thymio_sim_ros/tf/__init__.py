@@ -1,9 +1,10 @@
-"""tf2 for students: the classes of `tf2_ros` and the functions of `tf_transformations`, also where only wheels are.
+"""tf2 for students: the classes of `tf2_ros` and the functions of `tf_transformations`, also without these packages.
 
     from thymio_sim_ros.tf import Buffer, TransformListener, euler_from_quaternion
 
-Where `tf2_ros` or `tf_transformations` is installed, the names are theirs, so that the same line works on a real ROS
-installation; elsewhere they are ours, with the same names, arguments and exceptions.
+If `tf2_ros`, `tf2_geometry_msgs` or `tf_transformations` is installed, as on a complete ROS installation, the names
+refer to the package. Otherwise, as with the ROS wheels, they refer to this project's implementation with the same
+arguments and exceptions. Programs need no change.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A buffer of transforms with the times and messages of ROS, and what fills and feeds it: the classes of `tf2_ros`."""
+"""The classes of `tf2_ros`: a buffer of transforms, its listener, and broadcasters."""
 
 from __future__ import annotations
 
@@ -32,40 +32,41 @@ TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCA
 
 
 class Buffer:
-    """Transforms of the last 10 s, or of `cache_time`; filled by a TransformListener or by hand.
+    """Transforms of the last 10 s, or of `cache_time`; filled by a TransformListener or by `set_transform`.
 
-    Safe to use from several threads. `time` is a time of rclpy or a stamp; `Time()` is the latest time at which all
-    transforms on the way are known.
+    Thread-safe. `time` is a time of rclpy or a stamp; `Time()` means the latest time at which all transforms between
+    two frames are known. `timeout` is measured on the clock of the node and is only useful if another thread fills the
+    buffer.
     """
 
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
-        """`node`: whose clock times of waiting are measured by; wall time without one."""
+        """`node` provides the clock for time-outs; wall time is used without it."""
         self._core = BufferCore(CACHE_NS if cache_time is None else cache_time.nanoseconds)
         self._clock = Clock() if node is None else node.get_clock()
         self._changed = threading.Condition()
         self._waiting: dict[Future, Callable[[], bool]] = {}
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Keep a transform. TransformException for one that cannot be, or is too old."""
+        """Store a transform. Raises TransformException if it is invalid or too old."""
         self._store([_placed(transform)], authority, is_static=False)
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
-        """Keep a transform that holds always."""
+        """Store a transform that is valid at any time. Raises TransformException if it is invalid."""
         self._store([_placed(transform)], authority, is_static=True)
 
     def clear(self) -> None:
-        """Forget all but static transforms."""
+        """Drop all transforms except static ones."""
         with self._changed:
             self._core.clear()
 
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Time | TimeMessage, timeout: Duration = NOW
     ) -> TransformStamped:
-        """Where `source_frame` is in `target_frame`; waits for it so long.
+        """Return the pose of `source_frame` in `target_frame`; wait until it is known, at most for `timeout`.
 
-        LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException.
+        Raises LookupException, ConnectivityException, ExtrapolationException or InvalidArgumentException.
         """
-        return self._found(lambda: self._core.lookup(target_frame, source_frame, _ns(time)), timeout)
+        return self._wait_and_lookup(lambda: self._core.lookup(target_frame, source_frame, _ns(time)), timeout)
 
     def lookup_transform_full(
         self,
@@ -76,8 +77,11 @@ class Buffer:
         fixed_frame: str,
         timeout: Duration = NOW,
     ) -> TransformStamped:
-        """Where `source_frame` was at one time in `target_frame` at another; `fixed_frame` does not move."""
-        return self._found(
+        """Return the pose of `source_frame` at one time in `target_frame` at another time.
+
+        `fixed_frame` is a frame that does not move in between. Raises the exceptions of `lookup_transform`.
+        """
+        return self._wait_and_lookup(
             lambda: self._core.lookup_full(target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame),
             timeout,
         )
@@ -85,7 +89,7 @@ class Buffer:
     async def lookup_transform_async(
         self, target_frame: str, source_frame: str, time: Time | TimeMessage
     ) -> TransformStamped:
-        """The same as a coroutine that waits until it is there."""
+        """Wait until the transform is known and return it. Raises the exceptions of `lookup_transform`."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform(target_frame, source_frame, time)
 
@@ -97,7 +101,7 @@ class Buffer:
         source_time: Time | TimeMessage,
         fixed_frame: str,
     ) -> TransformStamped:
-        """The same between two times."""
+        """Wait until the transform between two times is known and return it; see `lookup_transform_full`."""
         times = (target_frame, target_time, source_frame, source_time, fixed_frame)
         await self.wait_for_transform_full_async(*times)
         return self.lookup_transform_full(*times)
@@ -110,8 +114,11 @@ class Buffer:
         timeout: Duration = NOW,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
-        """Whether there is a transform, at the latest after so long; with the reason if that is wanted."""
-        return self._answer(
+        """Whether a transform is known, after waiting at most for `timeout`.
+
+        With `return_debug_tuple` the result is a pair with the reason, which is empty if the transform is known.
+        """
+        return self._wait_and_check(
             lambda: self._core.lookup(target_frame, source_frame, _ns(time)), timeout, return_debug_tuple
         )
 
@@ -125,15 +132,15 @@ class Buffer:
         timeout: Duration = NOW,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
-        """The same between two times."""
-        return self._answer(
+        """Whether a transform between two times is known; see `can_transform` and `lookup_transform_full`."""
+        return self._wait_and_check(
             lambda: self._core.lookup_full(target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame),
             timeout,
             return_debug_tuple,
         )
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> Future:
-        """A future that is done, with True, once there is a transform."""
+        """Return a future whose result is True as soon as the transform is known."""
         return self._future(lambda: self._core.lookup(target_frame, source_frame, _ns(time)))
 
     def wait_for_transform_full_async(
@@ -144,7 +151,7 @@ class Buffer:
         source_time: Time | TimeMessage,
         fixed_frame: str,
     ) -> Future:
-        """The same between two times."""
+        """Return a future whose result is True as soon as the transform between two times is known."""
         return self._future(
             lambda: self._core.lookup_full(target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame)
         )
@@ -152,7 +159,10 @@ class Buffer:
     def transform(
         self, object_stamped: Any, target_frame: str, timeout: Duration = NOW, new_type: type | None = None
     ) -> Any:
-        """A PointStamped, PoseStamped or Vector3Stamped in another frame. TypeException for another message."""
+        """Transform a PointStamped, PoseStamped or Vector3Stamped to another frame at the time of its header.
+
+        Raises TypeException for another message, and the exceptions of `lookup_transform`.
+        """
         header = object_stamped.header
         act = _transformer(object_stamped, new_type)
         return act(object_stamped, self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout))
@@ -166,7 +176,7 @@ class Buffer:
         timeout: Duration = NOW,
         new_type: type | None = None,
     ) -> Any:
-        """The same at another time."""
+        """Transform a message to another frame at another time; see `transform` and `lookup_transform_full`."""
         header = object_stamped.header
         act = _transformer(object_stamped, new_type)
         found = self.lookup_transform_full(
@@ -175,76 +185,76 @@ class Buffer:
         return act(object_stamped, found)
 
     def all_frames_as_string(self) -> str:
-        """A line for each frame with a parent."""
+        """One line for each frame with a parent."""
         with self._changed:
             return self._core.as_text()
 
     def all_frames_as_yaml(self) -> str:
-        """For each frame its parent, who sends it, how often, and how much is kept."""
+        """Parent, broadcaster, rate and stored times of each frame, in the format of tf2's view_frames."""
         with self._changed:
             return self._core.as_yaml()
 
     def _store(self, transforms: Iterable[StampedTransform], authority: str, *, is_static: bool) -> None:
-        """Keep all that can be kept; the first fault is raised then."""
-        fault = None
+        """Store all valid transforms, complete the futures that waited for them, and then raise the first error."""
+        first_error = None
         with self._changed:
             for placed in transforms:
                 try:
                     self._core.set_transform(placed, authority, is_static=is_static)
                 except TransformException as error:
-                    fault = fault or error
+                    first_error = first_error or error
             self._changed.notify_all()
-            done = [future for future, is_there in self._waiting.items() if future.cancelled() or is_there()]
+            done = [future for future, is_known in self._waiting.items() if future.cancelled() or is_known()]
             for future in done:
                 del self._waiting[future]
         for future in done:
             future.set_result(True)
-        if fault is not None:
-            raise fault
+        if first_error is not None:
+            raise first_error
 
-    def _found(self, look: Callable[[], StampedTransform], timeout: Duration) -> TransformStamped:
+    def _wait_and_lookup(self, lookup: Callable[[], StampedTransform], timeout: Duration) -> TransformStamped:
         with self._changed:
-            self._wait(look, timeout)
-            return _message(look())
+            self._wait(lookup, timeout)
+            return _message(lookup())
 
-    def _answer(
-        self, look: Callable[[], StampedTransform], timeout: Duration, is_explained: bool
+    def _wait_and_check(
+        self, lookup: Callable[[], StampedTransform], timeout: Duration, with_reason: bool
     ) -> bool | tuple[bool, str]:
         with self._changed:
-            self._wait(look, timeout)
+            self._wait(lookup, timeout)
             try:
-                look()
+                lookup()
             except TransformException as error:
-                return (False, str(error)) if is_explained else False
-        return (True, "") if is_explained else True
+                return (False, str(error)) if with_reason else False
+        return (True, "") if with_reason else True
 
-    def _wait(self, look: Callable[[], StampedTransform], timeout: Duration) -> None:
-        """Until there is a transform, or so much time has passed on the clock."""
+    def _wait(self, lookup: Callable[[], StampedTransform], timeout: Duration) -> None:
+        """Wait until the transform is known or the time-out has elapsed; the lock is released meanwhile."""
         end_ns = self._clock.now().nanoseconds + timeout.nanoseconds
-        while timeout.nanoseconds > 0 and not _is_there(look):
+        while timeout.nanoseconds > 0 and not _is_known(lookup):
             left_s = (end_ns - self._clock.now().nanoseconds) / 1e9
-            if left_s <= 0.0 or left_s > timeout.nanoseconds / 1e9 + 3.0:  # time went back
+            if left_s <= 0.0 or left_s > timeout.nanoseconds / 1e9 + 3.0:  # elapsed, or the clock jumped backwards
                 return
             self._changed.wait(min(left_s, POLL_S))
 
-    def _future(self, look: Callable[[], StampedTransform]) -> Future:
+    def _future(self, lookup: Callable[[], StampedTransform]) -> Future:
         future = Future()
         with self._changed:
-            if not _is_there(look):
-                self._waiting[future] = lambda: _is_there(look)
+            if not _is_known(lookup):
+                self._waiting[future] = lambda: _is_known(lookup)
                 return future
         future.set_result(True)
         return future
 
 
 POLL_S = 0.05
-"""Wall time between two looks at a clock that may be a simulator's."""
+"""Wall time between two readings of the clock, which may be simulated."""
 
 
 class TransformListener:
-    """Fills a buffer with what is sent on `/tf` and `/tf_static`; empties it when the node's time goes back.
+    """Fills a buffer with the transforms on `/tf` and `/tf_static`; clears it when the node's time jumps backwards.
 
-    With `spin_thread`, messages come in while the node's callbacks wait for a transform.
+    With `spin_thread`, a thread with its own node receives messages, also while callbacks of `node` are waiting.
     """
 
     def __init__(
@@ -260,51 +270,51 @@ class TransformListener:
     ) -> None:
         self.buffer, self.node = buffer, node
         self._warn = ThrottledLog(node)
-        self._own: Node | None = None
+        self._spin_node: Node | None = None
         if spin_thread:
-            self._own = Node(
+            self._spin_node = Node(
                 f"{node.get_name()}_tf_listener",
                 context=node.context,
                 namespace=node.get_namespace(),
                 enable_rosout=False,
                 start_parameter_services=False,
             )
-        host, group = self._own or node, ReentrantCallbackGroup()
+        endpoint_node, group = self._spin_node or node, ReentrantCallbackGroup()
         kind = tf2_messages.TFMessage
-        self.tf_sub = host.create_subscription(
+        self.tf_sub = endpoint_node.create_subscription(
             kind, tf_topic, self.callback, qos or DYNAMIC, callback_group=group, raw=True
         )
-        self.tf_static_sub = host.create_subscription(
+        self.tf_static_sub = endpoint_node.create_subscription(
             kind, tf_static_topic, self.static_callback, static_qos or STATIC, callback_group=group, raw=True
         )
         self._jumps = node.get_clock().create_jump_callback(
             JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True),
             post_callback=self._on_jump,
         )
-        if self._own is not None:
+        if self._spin_node is not None:
             self.executor = SingleThreadedExecutor(context=node.context)
-            self.executor.add_node(self._own)
+            self.executor.add_node(self._spin_node)
             self.dedicated_listener_thread = threading.Thread(target=self._spin, name="tf_listener", daemon=True)
             self.dedicated_listener_thread.start()
 
     def callback(self, data: bytes) -> None:
-        """What came on `/tf`."""
+        """Store the transforms of a serialized message of `/tf`."""
         self._on_transforms(data, is_static=False)
 
     def static_callback(self, data: bytes) -> None:
-        """What came on `/tf_static`."""
+        """Store the transforms of a serialized message of `/tf_static`."""
         self._on_transforms(data, is_static=True)
 
     def unregister(self) -> None:
-        """Listen no more."""
+        """Destroy the subscriptions, and the thread if there is one."""
         self._jumps.unregister()
-        if self._own is None:
+        if self._spin_node is None:
             self.node.destroy_subscription(self.tf_sub)
             self.node.destroy_subscription(self.tf_static_sub)
             return
         self.executor.shutdown(timeout_sec=1.0)
         self.dedicated_listener_thread.join(timeout=1.0)
-        self._own.destroy_node()
+        self._spin_node.destroy_node()
 
     def _spin(self) -> None:
         try:
@@ -331,25 +341,25 @@ class TransformListener:
 
 
 class TransformBroadcaster:
-    """Sends transforms on `/tf`."""
+    """Publishes transforms on `/tf`."""
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf", qos or DYNAMIC)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
-        """One transform, or several at once."""
+        """Publish one transform, or several in one message."""
         self.pub_tf.publish(_encoded(_several(transform)))
 
 
 class StaticTransformBroadcaster:
-    """Sends transforms that hold always on `/tf_static`; who comes later hears all of them."""
+    """Publishes static transforms on `/tf_static`, transient local: late subscribers receive all of them."""
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf_static", qos or TRANSIENT_LOCAL)
         self._sent: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
-        """One transform, or several; those of the same child replace those before."""
+        """Publish one transform or several; they replace earlier ones of the same child frame."""
         self._sent |= {one.child_frame_id: one for one in _several(transform)}
         self.pub_tf.publish(_encoded(self._sent.values()))
 
@@ -385,9 +395,9 @@ def _ns(time: Time | TimeMessage) -> int:
     return int(time.nanoseconds if isinstance(time, Time) else Time.from_msg(time).nanoseconds)
 
 
-def _is_there(look: Callable[[], StampedTransform]) -> bool:
+def _is_known(lookup: Callable[[], StampedTransform]) -> bool:
     try:
-        look()
+        lookup()
     except TransformException:
         return False
     return True
@@ -398,5 +408,5 @@ def _transformer(message: Any, new_type: type | None) -> Callable[[Any, Transfor
     if kind not in TRANSFORMERS or new_type not in (None, kind):
         known = ", ".join(one.__name__ for one in TRANSFORMERS)
         wanted = f" as {new_type.__name__}" if new_type not in (None, kind) and new_type is not None else ""
-        raise TypeException(f"{kind.__name__}{wanted} found, expected one of {known}")
+        raise TypeException(f"found {kind.__name__}{wanted}, expected one of {known}")
     return TRANSFORMERS[kind]

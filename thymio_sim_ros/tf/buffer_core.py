@@ -1,8 +1,9 @@
-"""A tree of frames over time: kept, interpolated, composed. It knows no node and no message.
+"""A tree of frames over time, without nodes and messages: transforms are stored, interpolated and composed.
 
-Its rules are those of tf2: a frame has one parent at a time; between two transforms of the same parent translations are
-interpolated linearly and rotations on the shortest great circle; beyond the first and the last nothing is guessed; time
-0 stands for the latest time at which all transforms on the way are known. Times are integer nanoseconds.
+The rules are those of tf2: a frame has one parent at a time; between two transforms to the same parent, translations
+are interpolated linearly and rotations along the shortest arc (slerp); before the first and after the last transform
+there is no extrapolation; time 0 means the latest time at which all transforms between two frames are known. Times are
+integer nanoseconds.
 """
 
 from __future__ import annotations
@@ -28,40 +29,41 @@ Vector: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
 
 CACHE_NS = 10_000_000_000
-"""How long transforms are kept, counted back from a frame's latest one, as tf2 does."""
+"""Default time for which transforms are kept, counted back from the latest one of a frame, as in tf2."""
 LATEST_NS = 0
+"""Time that stands for the latest common time."""
 NORM_TOLERANCE = 1e-2
-"""How far the squared length of a quaternion may be from 1."""
+"""Largest deviation of the squared norm of a quaternion from 1."""
 _DEPTH = 1000
-"""Frames on the way to a root; more are a loop."""
+"""Largest depth of the tree; a longer chain of parents is a loop."""
 
 
 class OldDataError(TransformException):
-    """A transform that is older than all that is kept, or a second one for the same time."""
+    """A transform is too old to be kept, or is a second one for the same time."""
 
 
 @dataclass(frozen=True, slots=True)
 class RigidTransform:
-    """A rotation, then a translation: a unit quaternion x, y, z, w, and m."""
+    """A rotation by a unit quaternion x, y, z, w, followed by a translation in m."""
 
     translation: Vector = (0.0, 0.0, 0.0)
     rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
     def __mul__(self, other: RigidTransform) -> RigidTransform:
-        """What `other` does, and then this."""
+        """The composition: `other` is applied first."""
         x, y, z = self.rotate(other.translation)
         dx, dy, dz = self.translation
         return RigidTransform((x + dx, y + dy, z + dz), quaternion_product(self.rotation, other.rotation))
 
     def inverse(self) -> RigidTransform:
-        """The way back."""
+        """The inverse transform."""
         x, y, z, w = self.rotation
         back = RigidTransform(rotation=(-x, -y, -z, w))
         dx, dy, dz = back.rotate(self.translation)
         return RigidTransform((-dx, -dy, -dz), back.rotation)
 
     def rotate(self, vector: Vector) -> Vector:
-        """A vector after the rotation alone."""
+        """Rotate a vector, without translation: v + 2 w (q × v) + 2 q × (q × v), where q is the vector part."""
         qx, qy, qz, qw = self.rotation
         x, y, z = vector
         tx, ty, tz = 2 * (qy * z - qz * y), 2 * (qz * x - qx * z), 2 * (qx * y - qy * x)
@@ -71,17 +73,17 @@ class RigidTransform:
             z + qw * tz + qx * ty - qy * tx,
         )
 
-    def moved(self, point: Vector) -> Vector:
-        """A point after both."""
+    def apply(self, point: Vector) -> Vector:
+        """Rotate and translate a point."""
         x, y, z = self.rotate(point)
         dx, dy, dz = self.translation
         return (x + dx, y + dy, z + dz)
 
     def interpolate(self, other: RigidTransform, part: float) -> RigidTransform:
-        """A part 0…1 of the way to another."""
+        """Interpolate to another transform by a fraction `part` in 0…1."""
         (x, y, z), (u, v, w) = self.translation, other.translation
-        place = (x + part * (u - x), y + part * (v - y), z + part * (w - z))
-        return RigidTransform(place, slerp(self.rotation, other.rotation, part))
+        translation = (x + part * (u - x), y + part * (v - y), z + part * (w - z))
+        return RigidTransform(translation, slerp(self.rotation, other.rotation, part))
 
 
 IDENTITY = RigidTransform()
@@ -89,7 +91,7 @@ IDENTITY = RigidTransform()
 
 @dataclass(frozen=True, slots=True)
 class StampedTransform:
-    """A frame `child` in another, at a time; `motion` takes coordinates of the child to those of `frame`."""
+    """The pose of `child` in `frame` at a time; `motion` converts coordinates in `child` to those in `frame`."""
 
     stamp_ns: int
     frame: str
@@ -99,7 +101,7 @@ class StampedTransform:
 
 @dataclass(slots=True)
 class _Cache:
-    """All that is known of one frame: by time, the oldest first; or one that holds always."""
+    """The transforms of one frame, oldest first, or its single static transform."""
 
     is_static: bool
     authority: str
@@ -107,7 +109,7 @@ class _Cache:
 
 
 class BufferCore:
-    """Transforms of the last `cache_ns` of each frame."""
+    """The transforms of all frames; those of the last `cache_ns` of each frame."""
 
     def __init__(self, cache_ns: int = CACHE_NS) -> None:
         self._cache_ns = cache_ns
@@ -115,7 +117,7 @@ class BufferCore:
         self._frames: dict[str, None] = {}
 
     def set_transform(self, placed: StampedTransform, authority: str = "unknown", *, is_static: bool = False) -> None:
-        """Keep a transform. InvalidArgumentException for one that cannot be, OldDataError for one that is too old."""
+        """Store a transform. Raises InvalidArgumentException if invalid, OldDataError if too old or repeated."""
         placed = _checked(placed)
         self._frames |= {placed.frame: None, placed.child: None}
         cache = self._caches.get(placed.child)
@@ -129,24 +131,25 @@ class BufferCore:
         at = bisect.bisect_left(kept, placed.stamp_ns, key=_STAMP)
         if kept and kept[-1].stamp_ns > placed.stamp_ns + self._cache_ns:
             raise OldDataError(
-                f"the transform of {placed.child} at time {_s(placed.stamp_ns)} is left out: the latest one is at"
+                f"the transform of {placed.child} at time {_s(placed.stamp_ns)} is too old: the latest one is at"
                 f" {_s(kept[-1].stamp_ns)}, and only {self._cache_ns / 1e9:g} s are kept"
             )
         if at < len(kept) and kept[at].stamp_ns == placed.stamp_ns:
-            raise OldDataError(f"a second transform of {placed.child} at time {_s(placed.stamp_ns)} is left out")
+            raise OldDataError(f"a transform of {placed.child} at time {_s(placed.stamp_ns)} exists already")
         kept.insert(at, placed)
         del kept[: bisect.bisect_left(kept, kept[-1].stamp_ns - self._cache_ns, key=_STAMP)]
 
     def clear(self) -> None:
-        """Forget all that changes; what is static stays."""
+        """Drop all transforms except static ones."""
         for cache in self._caches.values():
             if not cache.is_static:
                 cache.kept.clear()
 
     def lookup(self, target: str, source: str, time_ns: int = LATEST_NS) -> StampedTransform:
-        """Where `source` is in `target`: takes coordinates of source to target.
+        """Return the pose of `source` in `target`, which converts coordinates in `source` to coordinates in `target`.
 
-        InvalidArgumentException, LookupException, ConnectivityException, ExtrapolationException.
+        Both frames are followed to their ancestors at that time; the result is composed at the first common ancestor.
+        Raises InvalidArgumentException, LookupException, ConnectivityException or ExtrapolationException.
         """
         for role, name in (("target_frame", target), ("source_frame", source)):
             self._check_known(name, role)
@@ -155,34 +158,37 @@ class BufferCore:
             return StampedTransform(latest, target, source, IDENTITY)
         if time_ns == LATEST_NS:
             time_ns = self._latest_common_ns(target, source)
-        up, its_error = self._chain(source, time_ns)
-        down, error = self._chain(target, time_ns)
-        meeting = next((name for name in up if name in down), None)
-        if meeting is None:
+        up, source_error = self._chain(source, time_ns)
+        down, target_error = self._chain(target, time_ns)
+        common = next((name for name in up if name in down), None)
+        if common is None:
             way = f"when looking up transform from frame [{source}] to frame [{target}]"
-            for found in (its_error, error):
+            for found in (source_error, target_error):
                 if found:
                     raise ExtrapolationException(f"{found}, {way}")
             raise self._unconnected(target, source)
-        return StampedTransform(time_ns, target, source, down[meeting].inverse() * up[meeting])
+        return StampedTransform(time_ns, target, source, down[common].inverse() * up[common])
 
     def lookup_full(self, target: str, target_ns: int, source: str, source_ns: int, fixed: str) -> StampedTransform:
-        """Where `source` was at a time in `target` at another time; `fixed` does not move in between."""
+        """Return the pose of `source` at one time in `target` at another time; `fixed` does not move in between.
+
+        Raises the exceptions of `lookup`.
+        """
         self._check_known(fixed, "fixed_frame")
         first, second = self.lookup(fixed, source, source_ns), self.lookup(target, fixed, target_ns)
         return StampedTransform(second.stamp_ns, target, source, second.motion * first.motion)
 
     def frames(self) -> tuple[str, ...]:
-        """Every frame that was named, in order of appearance."""
+        """All frames, in order of appearance."""
         return tuple(self._frames)
 
     def parent_of(self, frame: str) -> str | None:
-        """The parent that a frame has now."""
+        """The latest parent of a frame, None if it has none."""
         cache = self._caches.get(frame)
         return cache.kept[-1].frame if cache is not None and cache.kept else None
 
     def as_text(self) -> str:
-        """A line for each frame with a parent, as tf2 writes it."""
+        """One line for each frame with a parent, in the format of tf2."""
         return "".join(
             f"Frame {name} exists with parent {self.parent_of(name)}.\n"
             for name in self._frames
@@ -190,7 +196,7 @@ class BufferCore:
         )
 
     def as_yaml(self) -> str:
-        """What tf2's view_frames draws: for each frame its parent, who sends it, how often and how much is kept."""
+        """Parent, broadcaster, rate and stored times of each frame, in the format of tf2's view_frames."""
         parts = []
         for name, cache in self._caches.items():
             if cache.kept:
@@ -208,7 +214,7 @@ class BufferCore:
         _check_name(name, f"passed as {role}")
         if name not in self._frames:
             known = ", ".join(sorted(self._frames)) or "none"
-            raise LookupException(f'"{name}" passed as {role} does not exist; frames there are: {known}')
+            raise LookupException(f'"{name}" passed as {role} does not exist; known frames: {known}')
 
     def _unconnected(self, target: str, source: str) -> ConnectivityException:
         return ConnectivityException(
@@ -217,53 +223,56 @@ class BufferCore:
         )
 
     def _parents(self, frame: str) -> Iterator[tuple[str, _Cache]]:
-        """A frame and those above it as they are now, each with what is known of it."""
+        """A frame and its latest ancestors without the root, with their caches. Raises LookupException for a loop."""
         for _ in range(_DEPTH):
             cache = self._caches.get(frame)
             if cache is None or not cache.kept:
                 return
             yield frame, cache
             frame = cache.kept[-1].frame
-        raise LookupException(f"the tree of frames has a loop at '{frame}'")
+        raise LookupException(f"the frames have a loop at '{frame}'")
 
     def _latest_ns(self, frame: str) -> int:
         return next((cache.kept[-1].stamp_ns for _, cache in self._parents(frame) if not cache.is_static), LATEST_NS)
 
     def _latest_common_ns(self, target: str, source: str) -> int:
-        """The earliest of the latest times on the way; 0 if all of it is static."""
+        """The earliest of the latest times of all transforms between two frames; 0 if all are static."""
         ways = [list(self._parents(target)), list(self._parents(source))]
         above = [[name for name, _ in way] + [way[-1][1].kept[-1].frame] if way else [] for way in ways]
         names = [above[0] or [target], above[1] or [source]]
-        meeting = next((name for name in names[1] if name in names[0]), None)
-        if meeting is None:
+        common = next((name for name in names[1] if name in names[0]), None)
+        if common is None:
             raise self._unconnected(target, source)
-        on_the_way = [way[: names[side].index(meeting)] for side, way in enumerate(ways)]
-        stamps = [cache.kept[-1].stamp_ns for way in on_the_way for _, cache in way if not cache.is_static]
+        between = [way[: names[side].index(common)] for side, way in enumerate(ways)]
+        stamps = [cache.kept[-1].stamp_ns for way in between for _, cache in way if not cache.is_static]
         return min(stamps, default=LATEST_NS)
 
     def _chain(self, frame: str, time_ns: int) -> tuple[dict[str, RigidTransform], str]:
-        """Every frame above one at a time, and what takes its coordinates there; why it ends early, or nothing."""
+        """The ancestors of a frame at a time, with the transforms that convert its coordinates to theirs.
+
+        Also returns the reason if the chain ends because of a missing transform, otherwise an empty string.
+        """
         motion, found = IDENTITY, {frame: IDENTITY}
         for _ in range(_DEPTH):
             cache = self._caches.get(frame)
             if cache is None:
                 return found, ""
-            placed, error = _at(cache, time_ns)
+            placed, error = _transform_at(cache, time_ns)
             if placed is None:
                 return found, error
             frame, motion = placed.frame, placed.motion * motion
             found[frame] = motion
-        raise LookupException(f"the tree of frames has a loop at '{frame}'")
+        raise LookupException(f"the frames have a loop at '{frame}'")
 
 
 _STAMP = attrgetter("stamp_ns")
 
 
-def _at(cache: _Cache, time_ns: int) -> tuple[StampedTransform | None, str]:
-    """What is known of a frame at a time, or why nothing is."""
+def _transform_at(cache: _Cache, time_ns: int) -> tuple[StampedTransform | None, str]:
+    """The transform of a frame at a time, interpolated; None and the reason if there is none."""
     kept: Sequence[StampedTransform] = cache.kept
     if not kept:
-        return None, "Lookup would require extrapolation: nothing is kept since time went back"
+        return None, "Lookup would require extrapolation: no transform has been received since the buffer was cleared"
     if cache.is_static or time_ns == LATEST_NS:
         return kept[-1], ""
     first, last = kept[0].stamp_ns, kept[-1].stamp_ns
@@ -283,27 +292,27 @@ def _at(cache: _Cache, time_ns: int) -> tuple[StampedTransform | None, str]:
     if later.stamp_ns == time_ns:
         return later, ""
     earlier = kept[after - 1]
-    if earlier.frame != later.frame:
+    if earlier.frame != later.frame:  # another parent: transforms to different parents cannot be interpolated
         return earlier, ""
     part = (time_ns - earlier.stamp_ns) / (later.stamp_ns - earlier.stamp_ns)
     return replace(earlier, stamp_ns=time_ns, motion=earlier.motion.interpolate(later.motion, part)), ""
 
 
 def _checked(placed: StampedTransform) -> StampedTransform:
-    """The same without a slash before its names; InvalidArgumentException for one that is no transform."""
+    """Remove leading slashes of the frame names. Raises InvalidArgumentException for an invalid transform."""
     frame, child = placed.frame.removeprefix("/"), placed.child.removeprefix("/")
     for role, name in (("frame_id", frame), ("child_frame_id", child)):
         if not name:
-            raise InvalidArgumentException(f"a transform of '{child}' in '{frame}' has no {role}")
+            raise InvalidArgumentException(f"the transform of '{child}' in '{frame}' has an empty {role}")
     if frame == child:
-        raise InvalidArgumentException(f"a transform of '{child}' in itself")
+        raise InvalidArgumentException(f"the transform of '{child}' has the same frame as frame_id")
     numbers = (*placed.motion.translation, *placed.motion.rotation)
     if not all(map(math.isfinite, numbers)):
-        raise InvalidArgumentException(f"the transform of '{child}' in '{frame}' has a number that is not finite")
+        raise InvalidArgumentException(f"the transform of '{child}' in '{frame}' has a value that is NaN or infinite")
     squared = sum(part * part for part in placed.motion.rotation)
     if abs(squared - 1.0) > NORM_TOLERANCE:
         raise InvalidArgumentException(
-            f"the transform of '{child}' in '{frame}' has a quaternion of length {math.sqrt(squared):.3g}, expected 1"
+            f"the transform of '{child}' in '{frame}' has a quaternion of norm {math.sqrt(squared):.3g}, expected 1"
         )
     return replace(placed, frame=frame, child=child)
 
@@ -316,7 +325,7 @@ def _check_name(name: str, what: str) -> None:
 
 
 def quaternion_product(one: Quaternion, other: Quaternion) -> Quaternion:
-    """The rotation `other`, then `one`; x, y, z, w."""
+    """The product of two quaternions x, y, z, w: the rotation `other` is applied first."""
     x, y, z, w = one
     a, b, c, d = other
     return (
@@ -328,7 +337,11 @@ def quaternion_product(one: Quaternion, other: Quaternion) -> Quaternion:
 
 
 def slerp(one: Quaternion, other: Quaternion, part: float) -> Quaternion:
-    """A part 0…1 of the shortest way between two unit quaternions."""
+    """Interpolate between two unit quaternions along the shortest arc, by a fraction `part` in 0…1.
+
+    q and -q are the same rotation: with a negative cosine the second one is negated. For very small angles, linear
+    interpolation avoids the division by a sine near 0. The result is normalized.
+    """
     cosine = sum(p * q for p, q in zip(one, other, strict=True))
     sign = -1.0 if cosine < 0.0 else 1.0
     angle = math.acos(min(1.0, abs(cosine)))

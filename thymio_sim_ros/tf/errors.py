@@ -1,4 +1,4 @@
-"""What can go wrong with transforms, by the names that tf2 gives it."""
+"""Exceptions of transforms, with the names of tf2."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ __all__ = [
 
 
 class TransformException(ThymioSimError):  # noqa: N818  # as tf2 has it
-    """Any of them."""
+    """Base of the errors of transforms."""
 
 
 class LookupException(TransformException):
-    """A frame that nobody has sent."""
+    """A frame is not known."""
 
 
 class ConnectivityException(TransformException):
-    """Two frames that no chain of transforms connects."""
+    """Two frames are not connected by transforms."""
 
 
 class ExtrapolationException(TransformException):
-    """A time before the first or after the last transform that is kept."""
+    """A time is before the first or after the last transform in the buffer."""
 
 
 class InvalidArgumentException(TransformException):
-    """A name that no frame can have."""
+    """A frame name or a transform is invalid."""
 
 
 class TimeoutException(TransformException):
-    """Nothing came in time."""
+    """A time-out elapsed."""
 
 
 class TypeException(ThymioSimError):  # noqa: N818  # as tf2 has it
-    """A message that cannot be transformed."""
+    """A message type cannot be transformed."""

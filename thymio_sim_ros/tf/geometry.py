@@ -1,4 +1,4 @@
-"""Messages of geometry_msgs in another frame: what `tf2_geometry_msgs` does."""
+"""Transformation of messages of geometry_msgs to another frame, like `tf2_geometry_msgs`."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ __all__ = [
 
 
 def transform_of(transform: TransformStamped) -> RigidTransform:
-    """What a message says."""
+    """The rigid transform of a message."""
     t, q = transform.transform.translation, transform.transform.rotation
     return RigidTransform((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
 
 
 def do_transform_point(point: PointStamped, transform: TransformStamped) -> PointStamped:
-    """A point in the frame of the transform's header."""
-    x, y, z = transform_of(transform).moved((point.point.x, point.point.y, point.point.z))
+    """Transform a point to the frame of the transform's header."""
+    x, y, z = transform_of(transform).apply((point.point.x, point.point.y, point.point.z))
     return PointStamped(header=transform.header, point=Point(x=x, y=y, z=z))
 
 
 def do_transform_vector3(vector3: Vector3Stamped, transform: TransformStamped) -> Vector3Stamped:
-    """A direction in that frame: turned, not translated."""
+    """Rotate a vector to the frame of the transform's header, without translation."""
     x, y, z = transform_of(transform).rotate((vector3.vector.x, vector3.vector.y, vector3.vector.z))
     return Vector3Stamped(header=transform.header, vector=Vector3(x=x, y=y, z=z))
 
 
 def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
-    """A pose, without a header, in that frame."""
+    """Transform a pose without a header to the frame of the transform's header."""
     p, q = pose.position, pose.orientation
     moved = transform_of(transform) * RigidTransform((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
     (x, y, z), (qx, qy, qz, qw) = moved.translation, moved.rotation
@@ -55,7 +55,7 @@ def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
 
 
 def do_transform_pose_stamped(pose: PoseStamped, transform: TransformStamped) -> PoseStamped:
-    """A pose in that frame."""
+    """Transform a pose to the frame of the transform's header."""
     return PoseStamped(header=transform.header, pose=do_transform_pose(pose.pose, transform))
 
 
@@ -64,4 +64,4 @@ TRANSFORMERS: Mapping[type, Callable[[Any, TransformStamped], Any]] = {
     Vector3Stamped: do_transform_vector3,
     PoseStamped: do_transform_pose_stamped,
 }
-"""What `Buffer.transform` can transform."""
+"""Functions for the message types that `Buffer.transform` accepts."""

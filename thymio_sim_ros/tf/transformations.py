@@ -1,7 +1,9 @@
 """Rotations as matrices, quaternions and angles: the functions of `tf_transformations` that students use.
 
-Quaternions are x, y, z, w; matrices are homogeneous, 4 by 4; angles are in rad. `axes` says about which axes angles
-turn, and in which order: `sxyz` (static frame, x first) is roll, pitch, yaw; `r…` turns about axes that turn along.
+Quaternions have shape (4,) and the order x, y, z, w; matrices are homogeneous and have shape (4, 4); angles are in rad.
+`axes` is the convention of Euler angles: the axes in the order of the rotations, about a static frame (`s…`) or about
+a frame that rotates along (`r…`). The default `sxyz` is roll, pitch, yaw. Functions that take a matrix raise ValueError
+for another shape than (4, 4) or (3, 3), those with `axes` for an unknown convention.
 """
 
 from __future__ import annotations
@@ -47,24 +49,24 @@ _EPSILON = 4.0 * np.finfo(float).eps
 
 
 def identity_matrix() -> Array:
-    """The 4 by 4 matrix that changes nothing."""
+    """The identity matrix, shape (4, 4)."""
     return np.identity(4)
 
 
 def translation_matrix(direction: Numbers) -> Array:
-    """The matrix of a translation by x, y, z."""
+    """The matrix of a translation x, y, z, shape (4, 4)."""
     matrix = np.identity(4)
     matrix[:3, 3] = direction[:3]
     return matrix
 
 
 def translation_from_matrix(matrix: npt.ArrayLike) -> Array:
-    """The translation x, y, z of a matrix."""
+    """The translation x, y, z of a matrix, shape (3,)."""
     return _matrix(matrix)[:3, 3].copy()
 
 
 def rotation_matrix(angle: float, direction: Numbers, point: Numbers | None = None) -> Array:
-    """The matrix of a turn about an axis through the origin or a point."""
+    """The matrix of a rotation about an axis through the origin or a point."""
     matrix = quaternion_matrix(quaternion_about_axis(angle, direction))
     if point is not None:
         place = np.array(point[:3], dtype=float)
@@ -73,13 +75,15 @@ def rotation_matrix(angle: float, direction: Numbers, point: Numbers | None = No
 
 
 def rotation_from_matrix(matrix: npt.ArrayLike) -> tuple[float, Array, Array]:
-    """Angle, direction and a point of the axis of a matrix that turns."""
+    """Angle, direction (shape (3,)) and a point (shape (4,), homogeneous) of the axis of a rotation matrix."""
     whole = _matrix(matrix)
     x, y, z, w = quaternion_from_matrix(whole)
     length = math.sqrt(x * x + y * y + z * z)
     angle = 2.0 * math.atan2(length, w)
     direction = np.array([x, y, z]) / length if length > _EPSILON else np.array([0.0, 0.0, 1.0])
     shift = whole[:3, 3]
+    # A point p of the axis satisfies (I - R) p = t. I - R is singular along the axis; adding the projection on the
+    # axis makes it regular and selects the point nearest to the origin.
     along = np.identity(3) - whole[:3, :3] + np.outer(direction, direction)
     point = (
         np.append(np.linalg.solve(along, shift - direction * (direction @ shift)), 1.0)
@@ -90,7 +94,7 @@ def rotation_from_matrix(matrix: npt.ArrayLike) -> tuple[float, Array, Array]:
 
 
 def concatenate_matrices(*matrices: npt.ArrayLike) -> Array:
-    """The product of matrices: the last one acts first."""
+    """The product of matrices: the last one is applied first."""
     product = np.identity(4)
     for matrix in matrices:
         product = product @ _matrix(matrix)
@@ -109,7 +113,7 @@ def compose_matrix(
     translate: Numbers | None = None,
     perspective: Numbers | None = None,
 ) -> Array:
-    """The matrix that scales, shears (xy, xz, yz), turns by roll, pitch, yaw and translates, in this order."""
+    """The matrix that scales, shears (xy, xz, yz), rotates by roll, pitch, yaw and translates, in this order."""
     matrix = np.identity(4)
     if perspective is not None:
         matrix[3, :] = perspective[:4]
@@ -128,18 +132,18 @@ def compose_matrix(
 
 
 def is_same_transform(matrix0: npt.ArrayLike, matrix1: npt.ArrayLike) -> bool:
-    """Whether two matrices do the same."""
+    """Whether two matrices are the same transform, within rounding."""
     one, other = _matrix(matrix0), _matrix(matrix1)
     return bool(np.allclose(one / one[3, 3], other / other[3, 3]))
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Array:
-    """The matrix of three turns."""
+    """The matrix of three Euler angles."""
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 
 def euler_from_matrix(matrix: npt.ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
-    """The three angles of a matrix; where the middle one leaves the others open, the last is 0."""
+    """The Euler angles of a matrix. If the axes are aligned (gimbal lock), the last angle is 0."""
     is_rotating, (i, j, k) = _order(axes)
     m = _matrix(matrix)[:3, :3]
     if i == k:
@@ -163,12 +167,12 @@ def euler_from_matrix(matrix: npt.ArrayLike, axes: str = "sxyz") -> tuple[float,
 
 
 def euler_from_quaternion(quaternion: Numbers, axes: str = "sxyz") -> tuple[float, float, float]:
-    """The three angles of a quaternion: roll, pitch, yaw unless `axes` says otherwise."""
+    """The Euler angles of a quaternion: roll, pitch, yaw by default."""
     return euler_from_matrix(quaternion_matrix(quaternion), axes)
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Array:
-    """The quaternion of three angles: roll, pitch, yaw unless `axes` says otherwise."""
+    """The quaternion of Euler angles: roll, pitch, yaw by default."""
     is_rotating, order = _order(axes)
     angles = (ak, aj, ai) if is_rotating else (ai, aj, ak)
     found = np.array([0.0, 0.0, 0.0, 1.0])
@@ -178,13 +182,13 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -
 
 
 def quaternion_about_axis(angle: float, axis: Numbers) -> Array:
-    """The quaternion of a turn about an axis."""
+    """The quaternion of a rotation about an axis of any length."""
     direction = unit_vector(axis[:3])
     return np.append(direction * math.sin(angle / 2.0), math.cos(angle / 2.0))
 
 
 def quaternion_matrix(quaternion: Numbers) -> Array:
-    """The matrix of a quaternion of any length; one without length changes nothing."""
+    """The matrix of a quaternion of any norm; the identity for norm 0."""
     x, y, z, w = (float(part) for part in quaternion[:4])
     squared = x * x + y * y + z * z + w * w
     matrix = np.identity(4)
@@ -200,7 +204,11 @@ def quaternion_matrix(quaternion: Numbers) -> Array:
 
 
 def quaternion_from_matrix(matrix: npt.ArrayLike) -> Array:
-    """The quaternion of a matrix, with w >= 0."""
+    """The unit quaternion of a matrix, with w >= 0.
+
+    Each product of two of its parts follows from the matrix. The row of products with the largest part, divided by that
+    part, is the quaternion; the largest one is used because the division by a small number amplifies rounding errors.
+    """
     m = _matrix(matrix)[:3, :3]
     squares = np.array([
         1.0 + m[0, 0] - m[1, 1] - m[2, 2],
@@ -208,7 +216,7 @@ def quaternion_from_matrix(matrix: npt.ArrayLike) -> Array:
         1.0 - m[0, 0] - m[1, 1] + m[2, 2],
         1.0 + m[0, 0] + m[1, 1] + m[2, 2],
     ])  # fmt: skip
-    largest = int(np.argmax(squares))  # of 4 x², 4 y², 4 z², 4 w²: dividing by it loses least
+    largest = int(np.argmax(squares))  # of 4 x², 4 y², 4 z², 4 w²
     products = np.empty((4, 4))
     for one, other in ((0, 1), (0, 2), (1, 2)):
         rest = 3 - one - other
@@ -221,7 +229,7 @@ def quaternion_from_matrix(matrix: npt.ArrayLike) -> Array:
 
 
 def quaternion_multiply(quaternion1: Numbers, quaternion0: Numbers) -> Array:
-    """The product of two quaternions: the turn `quaternion0`, then `quaternion1`."""
+    """The product of two quaternions: the rotation `quaternion0` is applied first."""
     x, y, z, w = quaternion1[:4]
     a, b, c, d = quaternion0[:4]
     return np.array([
@@ -233,12 +241,12 @@ def quaternion_multiply(quaternion1: Numbers, quaternion0: Numbers) -> Array:
 
 
 def quaternion_conjugate(quaternion: Numbers) -> Array:
-    """The quaternion with its vector part the other way round."""
+    """The conjugate of a quaternion: x, y, z are negated."""
     return np.array(quaternion[:4], dtype=float) * (-1.0, -1.0, -1.0, 1.0)
 
 
 def quaternion_inverse(quaternion: Numbers) -> Array:
-    """The quaternion that undoes another of any length but 0."""
+    """The inverse of a quaternion of any norm except 0."""
     conjugate = quaternion_conjugate(quaternion)
     inverse: Array = conjugate / (conjugate @ conjugate)
     return inverse
@@ -247,7 +255,10 @@ def quaternion_inverse(quaternion: Numbers) -> Array:
 def quaternion_slerp(
     quat0: Numbers, quat1: Numbers, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> Array:
-    """A fraction 0…1 of the way from one quaternion to another; `spin` half turns more."""
+    """Interpolate between two quaternions by a fraction in 0…1 (slerp), with `spin` additional half turns.
+
+    With `shortestpath`, `quat1` is negated if that makes the arc shorter.
+    """
     one: Array = unit_vector(quat0[:4])
     other: Array = unit_vector(quat1[:4])
     if fraction == 0.0:
@@ -268,7 +279,7 @@ def quaternion_slerp(
 
 
 def random_quaternion(rand: Numbers | None = None) -> Array:
-    """A quaternion of which each is as likely as any other, from three numbers 0…1."""
+    """A random rotation, uniformly distributed, from three uniform random numbers in 0…1."""
     first, second, third = np.random.rand(3) if rand is None else rand[:3]
     inner, outer = math.sqrt(1.0 - first), math.sqrt(first)
     one, other = 2.0 * math.pi * second, 2.0 * math.pi * third
@@ -276,7 +287,7 @@ def random_quaternion(rand: Numbers | None = None) -> Array:
 
 
 def vector_norm(data: npt.ArrayLike, axis: int | None = None, out: Any = None) -> Any:
-    """The length of a vector, or of the vectors along an axis."""
+    """The norm of a vector, or of the vectors along an axis; with `out` stored there."""
     norm = np.linalg.norm(np.asarray(data, dtype=float), axis=axis)
     if out is None:
         return norm
@@ -285,7 +296,7 @@ def vector_norm(data: npt.ArrayLike, axis: int | None = None, out: Any = None) -
 
 
 def unit_vector(data: npt.ArrayLike, axis: int | None = None, out: Any = None) -> Any:
-    """A vector of length 1 in the same direction, or each of the vectors along an axis."""
+    """A vector of length 1 in the same direction, or each vector along an axis; with `out` stored there."""
     found = np.array(data, dtype=float)
     norm = np.linalg.norm(found) if axis is None or found.ndim == 1 else np.linalg.norm(found, axis=axis, keepdims=True)
     if out is None:
@@ -295,26 +306,29 @@ def unit_vector(data: npt.ArrayLike, axis: int | None = None, out: Any = None) -
 
 
 def _matrix(matrix: npt.ArrayLike) -> Array:
-    """As 4 by 4 numbers; one of 3 by 3 is a rotation."""
+    """Convert to shape (4, 4); a matrix of shape (3, 3) is a rotation. Raises ValueError for another shape."""
     found = np.asarray(matrix, dtype=float)
     if found.shape == (3, 3):
         whole = np.identity(4)
         whole[:3, :3] = found
         return whole
     if found.shape != (4, 4):
-        raise ValueError(f"a matrix of shape {found.shape} found, expected 4 by 4")
+        raise ValueError(f"found a matrix of shape {found.shape}, expected (4, 4) or (3, 3)")
     return found
 
 
 def _order(axes: str) -> tuple[bool, tuple[int, int, int]]:
-    """Whether axes turn along, and their numbers in the order in which static axes are turned about."""
+    """Whether the frame rotates along, and the numbers of the axes in the order of the equivalent static rotations.
+
+    Raises ValueError for an unknown convention.
+    """
     letters = [_AXES.get(letter, -1) for letter in axes[1:]]
     if axes[:1] not in ("s", "r") or len(letters) != 3 or -1 in letters or letters[1] in (letters[0], letters[2]):
-        raise ValueError(f"axes {axes!r} found, expected s or r and three of xyz, such as 'sxyz' or 'rzyx'")
+        raise ValueError(f"found axes {axes!r}, expected s or r and three of xyz, such as 'sxyz' or 'rzyx'")
     i, j, k = letters
     return (True, (k, j, i)) if axes[0] == "r" else (False, (i, j, k))
 
 
 def _parity(i: int, j: int, k: int) -> float:
-    """1 for axes in the order x, y, z, x, …, -1 for the other one."""
+    """1 for axes in cyclic order x, y, z, otherwise -1."""
     return 1.0 if (j - i) % 3 == 1 and (k - j) % 3 == 1 else -1.0

@@ -1,10 +1,10 @@
 """The open connections of a server: their maximum number, their time limits, and which one is evicted at the limit.
 
 Bookkeeping only, without sockets and clock. A connection that waits for its client is closed when the time limit of its
-phase is over. When all slots are in use, a new connection gets the slot of one that has waited for some time: first of
-the address with the most connections, then by phase, the oldest first. No single address can therefore block others,
-and among connections of one address those with requests win. Until a slot can be freed, new connections wait in the
-queue of the kernel.
+phase is over. When all slots are in use, a new connection gets the slot of one that has been idle for some time: first
+of the address with the most connections, then by phase, then the oldest. No single address can therefore block others,
+and among the connections of one address those with requests are kept. Until a slot can be freed, new connections wait
+in the queue of the kernel.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ __all__ = ["MIN_WAIT_S", "TIME_LIMIT_S", "ConnectionSlot", "Connections", "Phase
 
 
 class Phase(IntEnum):
-    """What a connection does; those that may lose their slot to a newcomer first, in the order in which they do."""
+    """State of a connection, in the order in which connections are evicted; `ANSWERING` is never evicted."""
 
     SILENT = 0
     """Its client has sent nothing yet."""
     IDLE = 1
     """Its last request has been answered."""
     READING = 2
-    """A part of a request has come."""
+    """A part of a request has been received."""
     STALLED = 3
-    """Its client does not read what it asked for."""
+    """Its client does not read the answer."""
     ANSWERING = 4
-    """An answer is being made or sent."""
+    """An answer is being created or sent."""
 
 
 TIME_LIMIT_S = {

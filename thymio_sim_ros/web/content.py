@@ -1,10 +1,11 @@
-"""The documents of the page's server: a request path → a document, or None.
+"""The documents of the page's server, by the path of the request.
 
 Each document is read and compressed once for each version of its file. Thread-safe.
 """
 
 from __future__ import annotations
 
+import functools
 import gzip
 import hashlib
 import re
@@ -13,10 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from thymio_sim_ros.playground_index import PlaygroundIndex
+from thymio_sim_ros.sim.playground import declarations
+from thymio_sim_ros.sim.shapes import all_shapes
 
 __all__ = ["TYPES", "Content", "Document"]
 
-# The platform's own table may give another type, and browsers refuse a module with a wrong one.
+# Not the table of the platform: it may have other types, and browsers reject a module with a wrong type.
 TYPES = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -33,13 +36,13 @@ TYPES = {
 _UNKNOWN_TYPE = "application/octet-stream"
 _COMPRESSED = frozenset({".html", ".css", ".js", ".mjs", ".json", ".svg", ".wasm"})
 _HASHED = re.compile(r".+-[\w-]{8}\.\w+")
-"""How the build names files whose content never changes under their name."""
+"""Names of files with a hash of their content, which therefore never changes."""
 _PLAYGROUNDS, _PLAYGROUND_ENDING = "playgrounds", ".json"
 
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """One answer: `compressed` is the body in gzip, None where that is not worthwhile; `tag` changes with the body."""
+    """The body of an answer; `compressed` is the body in gzip, None if not smaller; `tag` is a hash of the body."""
 
     body: bytes
     media_type: str
@@ -49,10 +52,13 @@ class Document:
 
 
 class Content:
-    """The built page in a folder, the shipped playgrounds as `/playgrounds/NAME.json`, and `/config.json`."""
+    """The built page in a folder, the shipped playgrounds as `/playgrounds/NAME.json`, and two documents of its own.
+
+    `/config.json` is given, `/shapes.json` declares the installed shapes.
+    """
 
     def __init__(self, folder: Path | None, config: bytes) -> None:
-        """`folder` is None where the page has not been built."""
+        """`folder` has the built page, None if it has not been built; `config` is the JSON text of `/config.json`."""
         self._folder = None if folder is None else folder.resolve()
         self._config = _document(config, ".json")
         self._index = PlaygroundIndex()
@@ -65,7 +71,7 @@ class Content:
         return self._folder is not None
 
     def find(self, path: str) -> Document | None:
-        """The document of a request's path as it came, still with its escapes; None: there is none.
+        """The document of a request path, which still has its escapes; None if there is none.
 
         Raises PlaygroundError for a shipped playground that cannot be read.
         """
@@ -74,9 +80,16 @@ class Content:
             return None
         if names == ("config.json",):
             return self._config
+        if names == ("shapes.json",):
+            return self._shapes
         if len(names) == 2 and names[0] == _PLAYGROUNDS and names[1].endswith(_PLAYGROUND_ENDING):
             return self._playground(names[1].removesuffix(_PLAYGROUND_ENDING))
         return self._file(names or ("index.html",))
+
+    @functools.cached_property
+    def _shapes(self) -> Document:
+        """The declarations of the installed shapes, with those of plug-ins."""
+        return _document(declarations.as_json(all_shapes()).encode(), ".json")
 
     def _playground(self, name: str) -> Document | None:
         text = self._index.text(name)
@@ -93,8 +106,8 @@ class Content:
         path = self._folder.joinpath(*names)
         try:
             real = path.resolve(strict=True)
-            # A link leads out of the folder only to a file of the same name and folders, as colcon's --symlink-install
-            # makes them.
+            # Links out of the folder are followed only to a file of the same relative path: colcon's --symlink-install
+            # creates such links.
             if not real.is_relative_to(self._folder) and real.parts[-len(names) :] != names:
                 return None
             status = real.stat()
@@ -106,13 +119,13 @@ class Content:
                 is_hashed = len(names) > 1 and _HASHED.fullmatch(names[-1]) is not None
                 document = _document(real.read_bytes(), path.suffix, is_immutable=is_hashed)
                 known = self._files[path] = (version, document)
-        except (OSError, ValueError):  # a name that no file can have; a file that cannot be read
+        except (OSError, ValueError):  # not a possible name of a file, or not readable
             return None
         return known[1]
 
 
 def _names(path: str) -> tuple[str, ...] | None:
-    """Folders and file of a path, without escapes; None for what cannot be a path in the page's folder."""
+    """Folders and file of a path, without escapes; None if the path is not inside the folder of the page."""
     if not path.startswith("/"):
         return None
     if path == "/":

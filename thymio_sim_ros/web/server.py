@@ -1,6 +1,6 @@
 """HTTP for the page, on aiohttp: GET and HEAD of documents, with limits, time-outs and headers that protect the page.
 
-Everything here runs in one event loop; documents are found by two helper threads, since a playground takes a while.
+Everything runs in one event loop, except that two helper threads read documents: a playground may take some time.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ from thymio_sim_ros.web.settings import Settings
 __all__ = ["Report", "serve"]
 
 Report = Callable[[str, str], None]
-"""Called with a kind of problem and a sentence."""
+"""Called with a kind of problem and its description."""
 
 BACKLOG = 1024
-"""Connections that the kernel accepts while the event loop is busy."""
+"""Connections that the kernel queues until they are accepted."""
 SEND_BUFFER = 131_072
-"""Bytes that the kernel keeps for a client that does not read; by default these are megabytes."""
+"""Bytes that the kernel buffers for a client that does not read; by default these are megabytes."""
 MAX_AHEAD = 65_536
 """Bytes that a client may send while its request is answered: further requests, or an unread body."""
 _CLOSE_S = 0.3
 _SWEEP_S = 0.5
 _RETRY_S = 0.02
-_TURNS = 6
-"""Turns of the event loop from the arrival of a request to the beginning of its answer, and some more."""
+_ITERATIONS = 6
+"""Iterations of the event loop from the arrival of a request to the beginning of its answer, and some more."""
 _CHUNK = 32_768
-"""Bytes that are written in one turn of the event loop: what a client does not read is not copied as a whole, and large
-answers do not hold up small ones."""
+"""Bytes that are written in one iteration of the event loop: data that a client does not read is not copied as a whole,
+and large answers do not delay small ones."""
 _NEVER_S = 1e6
 _TEXT = "text/plain; charset=utf-8"
 _HASH_LIFETIME_S = 365 * 24 * 3600
 _METHODS = "GET, HEAD"
 _GZIP = re.compile(r"(?:^|,)\s*gzip\s*(?:;\s*q=(?!0(?:\.0*)?\s*(?:,|$))[\d.]+\s*)?(?:,|$)")
-"""In `Accept-Encoding`, unless it says `q=0`."""
+"""Matches gzip in `Accept-Encoding`, unless its quality is 0."""
 _HOST = re.compile(r"(?P<name>[a-z0-9_.-]+|\[[0-9a-f:.]+\])(?::\d{1,5})?", re.IGNORECASE)
 _COMMON = {
     "Server": "thymio-sim",
@@ -70,7 +70,7 @@ class _Connection(web.RequestHandler):
         self._ahead = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """The connection is there."""
+        """Connect the slot with the transport."""
         plain = cast(asyncio.Transport, transport)
         descriptor = plain.get_extra_info("socket").fileno()
         self._slot.close = plain.abort
@@ -85,7 +85,7 @@ class _Connection(web.RequestHandler):
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Pass bytes on, unless there are too many before the answer."""
+        """Pass bytes on; close the connection if the client sends too many before its answer is complete."""
         slot = self._slot
         if slot.phase in (Phase.SILENT, Phase.IDLE):
             self._connections.set_phase(slot, Phase.READING)
@@ -97,26 +97,26 @@ class _Connection(web.RequestHandler):
         super().data_received(data)
 
     def eof_received(self) -> None:
-        """The client sends nothing more: end what waits for it."""
+        """Close the connection if no answer is being created: the client sends no more bytes."""
         if self._slot.phase < Phase.STALLED:
             self.force_close()
 
     def pause_writing(self) -> None:
-        """The client reads more slowly than it is answered."""
+        """Note that the client reads more slowly than the answer is sent."""
         super().pause_writing()
         self._connections.set_phase(self._slot, Phase.STALLED)
 
     def resume_writing(self) -> None:
-        """The client reads again."""
+        """Note that the client reads again."""
         super().resume_writing()
         self._connections.set_phase(self._slot, Phase.ANSWERING)
 
     def start_answer(self) -> None:
-        """A request is complete."""
+        """Note that a request is complete."""
         self._connections.set_phase(self._slot, Phase.ANSWERING)
 
     async def finish_response(self, *arguments: Any, **options: Any) -> Any:
-        """Send an answer; afterwards the client may ask again."""
+        """Send an answer; afterwards the client may send another request."""
         try:
             return await super().finish_response(*arguments, **options)
         finally:
@@ -139,7 +139,7 @@ class _Connection(web.RequestHandler):
 
 
 class _Page:
-    """Requests → responses."""
+    """Creates the responses to requests."""
 
     def __init__(self, content: Content, settings: Settings, report: Report, pool: ThreadPoolExecutor) -> None:
         self._content = content
@@ -152,7 +152,9 @@ class _Page:
         cast(_Connection, request.protocol).start_answer()
         host = request.headers.get("Host")
         if host is not None and not self._settings.is_allowed_host(_host_name(host)):
-            self._report("host", "refused a page under another name of this computer; see allowed_hosts of web_ui")
+            self._report(
+                "host", "request with another name of this computer rejected; see parameter allowed_hosts of web_ui"
+            )
             return _text(403, "This address is not one of this server's. Open it by localhost.")
         if request.method not in ("GET", "HEAD"):
             response = _text(405, "Only GET and HEAD are answered.", {"Allow": _METHODS})
@@ -210,7 +212,7 @@ class _Acceptor:
         """Accept the connections of a listening socket, until it is cancelled."""
         loop = asyncio.get_running_loop()
         listener.setblocking(False)
-        listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)  # accepted ones get it from here
+        listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)  # accepted sockets inherit it
         listener.listen(BACKLOG)
         while True:
             try:
@@ -220,7 +222,7 @@ class _Acceptor:
                 await asyncio.sleep(_SWEEP_S)
                 continue
             while self._connections.is_full:
-                self._report("full", "there are as many connections as there may be; more have to wait")
+                self._report("full", "the maximum number of connections is reached; more have to wait")
                 await self._make_room()
             slot = self._connections.add(str(peer[0]))
             try:
@@ -236,7 +238,7 @@ class _Acceptor:
             await asyncio.sleep(_RETRY_S)
             return
         since_s = slot.since_s
-        for _ in range(_TURNS):
+        for _ in range(_ITERATIONS):
             await asyncio.sleep(0)
         self._connections.evict(slot, since_s)
 
@@ -247,7 +249,7 @@ class _Acceptor:
             slot,
             self._report,
             loop=asyncio.get_running_loop(),
-            keepalive_timeout=_NEVER_S,  # `connections` closes what is idle
+            keepalive_timeout=_NEVER_S,  # `connections` closes idle connections
             access_log=None,
             logger=self._log,
             lingering_time=0,
@@ -257,9 +259,9 @@ class _Acceptor:
 async def serve(
     listeners: Iterable[socket], content: Content, settings: Settings, report: Report, stop: asyncio.Event
 ) -> None:
-    """Serve on listening sockets, owned by the server from now on, until `stop` is set."""
+    """Serve on listening sockets, which the server then owns, until `stop` is set."""
     loop = asyncio.get_running_loop()
-    loop.set_exception_handler(lambda _loop, context: report(_kind(context), _sentence(context)))
+    loop.set_exception_handler(lambda _loop, context: report(_kind(context), _description(context)))
     connections = Connections(settings.max_connections, loop.time)
     log = logging.getLogger(__name__)
     log.setLevel(logging.CRITICAL)  # invalid requests are not logged; internal errors go to `report`
@@ -280,7 +282,7 @@ async def serve(
 
 
 def _is_ready(descriptor: int, events: int) -> bool:
-    """Whether the kernel has one of these events for an open socket."""
+    """Whether one of these `poll` events is pending for an open socket."""
     poll = select.poll()
     poll.register(descriptor, events)
     return bool(poll.poll(0))
@@ -295,15 +297,15 @@ def _text(status: int, text: str, headers: Mapping[str, str] | None = None) -> w
 
 
 def _host_name(host: str) -> str | None:
-    """The name or number in a Host header, without brackets and port; None for what is none."""
+    """The name or address in a Host header, without brackets and port; None if it is invalid."""
     match = _HOST.fullmatch(host)
     return None if match is None else match["name"].strip("[]").lower()
 
 
 def _policy(host: str, foxglove_port: int) -> str:
-    """What the page may load and connect to: this server, and the bridge on the same host."""
+    """The Content-Security-Policy: the page may load from this server and connect to the bridge on the same host."""
     name = _host_name(host)
-    # A policy cannot name an IPv6 number.
+    # A policy cannot contain an IPv6 address.
     bridge = f"ws://{name}:{foxglove_port} wss://{name}:{foxglove_port}" if name and ":" not in name else "ws: wss:"
     return (
         f"default-src 'self'; script-src 'self'; connect-src 'self' {bridge}; img-src 'self' data: blob:; "
@@ -322,5 +324,5 @@ def _kind(context: Mapping[str, Any]) -> str:
     return type(context.get("exception")).__name__
 
 
-def _sentence(context: Mapping[str, Any]) -> str:
+def _description(context: Mapping[str, Any]) -> str:
     return f"{context.get('message', 'a connection failed')}: {context.get('exception')}"

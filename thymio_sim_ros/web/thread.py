@@ -1,4 +1,4 @@
-"""The thread of the page's server."""
+"""The page's server in its own thread."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from thymio_sim_ros.web.settings import Settings
 
 __all__ = ["PageThread", "Settings"]
 
-_REPORT_EVERY_S = 60.0
-_END_S = 3.0
-"""Longest time for ending; the thread is a daemon's."""
+_REPORT_PERIOD_S = 60.0
+_CLOSE_TIMEOUT_S = 3.0
+"""Longest time that `close` waits; the thread is a daemon."""
 
 
 class PageThread:
-    """A running server. The port is bound when the constructor returns; `port` is the one really taken.
+    """A running server. The port is bound when the constructor returns; `port` is the actual port.
 
-    Raises OSError when the address cannot be used. `warn` gets one line for each kind of problem, at most one a minute;
-    it is called in the server's thread.
+    `warn` is called in the server's thread, at most once a minute for each kind of problem.
     """
 
     def __init__(
         self, content: Content, settings: Settings, *, address: str, port: int, warn: Callable[[str], None]
     ) -> None:
+        """Start serving. Raises OSError if the address and port cannot be used."""
         self._content = content
         self._settings = settings
         self._warn = warn
@@ -43,17 +43,17 @@ class PageThread:
         self._thread.start()
 
     def close(self) -> None:
-        """End the server and its connections; twice does no harm."""
+        """Stop the server and its connections; a second call has no effect."""
         if self._is_closed:
             return
         self._is_closed = True
-        with contextlib.suppress(RuntimeError):  # it has ended by itself
+        with contextlib.suppress(RuntimeError):  # the loop has ended because of an error
             self._loop.call_soon_threadsafe(self._stop.set)
-        self._thread.join(_END_S)
+        self._thread.join(_CLOSE_TIMEOUT_S)
 
     def _run(self) -> None:
         try:
-            # Here, so that the start of everything else does not wait for it.
+            # Imported in this thread, so that it does not delay the start of other nodes.
             from thymio_sim_ros.web.server import serve
 
             self._loop.run_until_complete(
@@ -69,6 +69,6 @@ class PageThread:
 
     def _report(self, kind: str, text: str) -> None:
         now_s = time.monotonic()
-        if now_s - self._reported_s.get(kind, -_REPORT_EVERY_S) >= _REPORT_EVERY_S:
+        if now_s - self._reported_s.get(kind, -_REPORT_PERIOD_S) >= _REPORT_PERIOD_S:
             self._reported_s[kind] = now_s
             self._warn(f"page: {text} (not repeated for a minute)")

@@ -7,11 +7,11 @@ export function storageOrMap(browsers) {
   try {
     return browsers();
   } catch {
-    /** @type {Map<string, string>} */ const kept = new Map();
+    /** @type {Map<string, string>} */ const values = new Map();
     return {
-      getItem: (key) => kept.get(key) ?? null,
-      setItem: (key, value) => void kept.set(key, value),
-      removeItem: (key) => void kept.delete(key),
+      getItem: (key) => values.get(key) ?? null,
+      setItem: (key, value) => void values.set(key, value),
+      removeItem: (key) => void values.delete(key),
     };
   }
 }

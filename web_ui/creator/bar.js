@@ -16,21 +16,21 @@ export function bar(t, model) {
   const undo = button("undo", () => model.undo());
   const redo = button("redo", () => model.redo());
   const camera = button("camera", () => model.toggleCamera());
-  camera.append(t("bar.cameraWord"));
+  camera.append(t("bar.cameraLabel"));
   const size = h("select", { "aria-label": t("bar.grid"), "data-verb": "grid" });
   size.append(...GRID_SIZES.map((meters) => h("option", { value: meters }, `${meters * 100} cm`)));
   size.addEventListener("change", () => model.setGrid({ size: Number(size.value) }));
   const on = h("select", { "aria-label": t("bar.snap"), "data-verb": "snap" });
   on.append(...["lines", "centers"].map((choice) => h("option", { value: choice }, t(`bar.${choice}`))));
   on.addEventListener("change", () => model.setGrid({ on: /** @type {"lines" | "centers"} */ (on.value) }));
-  const output = h("output", { class: "told" });
+  const output = h("output", { class: "status" });
   const element = h(
     "div",
     { class: "creator-bar", role: "toolbar", "aria-label": t("bar") },
     undo,
     redo,
     camera,
-    h("span", { class: "grid-word" }, t("bar.gridWord")),
+    h("span", { class: "grid-word" }, t("bar.gridLabel")),
     size,
     on,
     output,
@@ -42,7 +42,7 @@ export function bar(t, model) {
     render() {
       const { history, placing, grid, cameraOn } = model;
       undo.disabled = history.past.length === 0 && (placing?.points.length ?? 0) === 0;
-      redo.disabled = history.future.length === 0 && (placing?.takenBack.length ?? 0) === 0;
+      redo.disabled = history.future.length === 0 && (placing?.undonePoints.length ?? 0) === 0;
       setAttribute(camera, "aria-pressed", String(cameraOn));
       size.value = String(grid.size);
       on.value = grid.on;

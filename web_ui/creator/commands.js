@@ -130,7 +130,8 @@ export function grounded(playground, kind) {
   const old = groundOf(playground);
   if ((old?.kind ?? "none") === kind) return playground;
   const others = playground.items.filter((item) => item !== old);
-  if (kind === "none") return { ...playground, items: others };
+  const wanted = kindNamed(kind);
+  if (wanted === undefined) return { ...playground, items: others };
   const {
     size_x_m: x = 1,
     size_y_m: y = 1,
@@ -143,7 +144,9 @@ export function grounded(playground, kind) {
       ? { side_m: round(Math.min(x, y) / (1 + Math.SQRT2)) }
       : { size_x_m: round(across), size_y_m: round(across) };
   const name = freeName({ ...playground, items: others }, "ground");
-  const ground = /** @type {Item} */ (Object.freeze({ color: "#f3efe4", ...rest, kind, name, ...size }));
+  const values = { ...wanted.sample, color: "#f3efe4", ...rest, ...size };
+  const own = Object.fromEntries(Object.entries(values).filter(([key]) => key in wanted.fields));
+  const ground = /** @type {Item} */ (Object.freeze({ kind, name, ...own }));
   return { ...playground, items: [ground, ...others] };
 }
 

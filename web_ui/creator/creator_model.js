@@ -4,7 +4,7 @@
 import { isOnGround, findProblem } from "../playground/validation.js";
 import * as commands from "./commands.js";
 import { History } from "./history.js";
-import { canTurn, changed, middleOf, moved, turned } from "./place.js";
+import { middleOf } from "./place.js";
 import { Placing } from "./placing.js";
 import { Selecting } from "./selecting.js";
 import { rounded } from "./snap.js";
@@ -76,7 +76,7 @@ export class CreatorModel {
       }
       this.selected = null;
       this.placing = new Placing(this, kind, values);
-      this.report({ word: this.placing.isPath ? "tell.path" : "tell.placing", values: { kind } });
+      this.report({ word: this.placing.isPath ? "status.path" : "status.placing", values: { kind } });
     }
     this.changed();
   }
@@ -87,7 +87,7 @@ export class CreatorModel {
     this.selecting.cancel();
     this.placing = null;
     this.selected = name;
-    if (name !== null) this.report({ word: "tell.selected", values: { name } });
+    if (name !== null) this.report({ word: "status.selected", values: { name } });
     this.changed();
   }
 
@@ -120,32 +120,13 @@ export class CreatorModel {
    * Replace the playground and record the step in the history.
    *
    * @param {Playground} next
-   * @param {Phrase} did
+   * @param {Phrase} change
    * @param {string} [series]
    */
-  do(next, did, series) {
-    this.history.do(next, did, series);
+  do(next, change, series) {
+    this.history.do(next, change, series);
     if (this.item === null) this.selected = null;
     this.changed();
-  }
-
-  /**
-   * Replace the named item; returns whether that was possible.
-   *
-   * @param {string} name
-   * @param {Item} item
-   * @param {Phrase} did
-   * @param {string} [series]
-   */
-  replace(name, item, did, series) {
-    const problem = this.problemOf(item, name);
-    if (problem !== null) {
-      this.report(problem);
-      return false;
-    }
-    if (this.selected === name) this.selected = item.name;
-    this.do(commands.replaced(this.playground, name, item), did, series);
-    return true;
   }
 
   /**
@@ -155,20 +136,7 @@ export class CreatorModel {
    * @returns {Phrase | null}
    */
   edit(values) {
-    if (this.placing !== null) return this.placing.edit(values);
-    const { item } = this;
-    if (item === null) return null;
-    const next = changed(item, values);
-    const problem = this.problemOf(next, item.name);
-    if (problem !== null && !(problem.word === "problem.outside" && !this.#wasInside(item))) return problem;
-    this.selected = next.name;
-    this.do(commands.replaced(this.playground, item.name, next), { word: "did.changed", values: { name: next.name } });
-    return null;
-  }
-
-  /** An item that is already outside the ground may be changed there. @param {Item} item */
-  #wasInside(item) {
-    return isOnGround(commands.othersOf(this.playground, item.name), item);
+    return (this.placing ?? this.selecting).edit(values);
   }
 
   /**
@@ -180,96 +148,51 @@ export class CreatorModel {
    */
   nudge(x, y, { far = false, fine = false } = {}) {
     const step = fine ? FINE_M : this.grid.size * (far ? 5 : 1);
-    if (this.placing !== null) return this.placing.nudge(x * step, y * step);
-    const { item } = this;
-    if (item === null) return;
-    const next = moved(item, x * step, y * step);
-    const did = { word: "did.moved", values: { name: item.name } };
-    if (this.replace(item.name, next, did, `move ${item.name}`)) this.tellPlace(next);
+    (this.placing ?? this.selecting).nudge(x * step, y * step);
   }
 
   /** Turn the item being placed or selected, counter-clockwise. @param {number} steps @param {boolean} [fine] */
   turn(steps, fine = false) {
-    const angle = steps * (fine ? FINE_TURN : TURN);
-    if (this.placing !== null) return this.placing.turn(angle);
-    const { item } = this;
-    if (item === null || !canTurn(item)) return;
-    const next = turned(item, angle);
-    const did = { word: "did.turned", values: { name: item.name } };
-    if (this.replace(item.name, next, did, `turn ${item.name}`)) this.tellPlace(next);
+    (this.placing ?? this.selecting).turn(steps * (fine ? FINE_TURN : TURN));
   }
 
   /** @param {Item} item @param {Phrase | null} [problem] */
-  tellPlace(item, problem = null) {
+  reportPlace(item, problem = null) {
     const [x, y] = middleOf(item);
     const degrees = Math.round(((item.yaw_rad ?? 0) * 180) / Math.PI);
-    this.report(problem ?? { word: "tell.at", values: { x: centimeters(x), y: centimeters(y), degrees } });
-  }
-
-  remove() {
-    const { item } = this;
-    if (item === null) return;
-    const did = { word: "did.removed", values: { name: item.name } };
-    this.do(commands.removed(this.playground, item.name), did);
-    this.report(did);
-  }
-
-  /** Duplicate the selected item and select the copy; it is placed farther away if the position is occupied. */
-  duplicate() {
-    const { item } = this;
-    if (item === null) return;
-    let copy = commands.copyOf(this.playground, item);
-    const { items } = this.playground;
-    for (let far = 1; far < 8 && findProblem(items, copy) !== null; far++) copy = moved(copy, 0.05, -0.05);
-    const problem = findProblem(items, copy);
-    if (problem !== null) return this.report(problem);
-    this.selected = copy.name;
-    const did = { word: "did.copied", values: { name: copy.name } };
-    this.do(commands.added(this.playground, copy), did);
-    this.report(did);
-  }
-
-  /** Bring the selected item forward or send it backward. @param {number} by */
-  raise(by) {
-    const { item } = this;
-    if (item === null) return;
-    const did = { word: "did.raised", values: { name: item.name } };
-    const next = commands.raised(this.playground, item.name, by);
-    if (next === this.playground) return;
-    this.do(next, did);
-    this.report(did);
+    this.report(problem ?? { word: "status.at", values: { x: centimeters(x), y: centimeters(y), degrees } });
   }
 
   /**
    * Replace the whole playground: title, ground, or another file. Returns null: it is always accepted.
    *
    * @param {Playground} next
-   * @param {Phrase} did
+   * @param {Phrase} change
    */
-  replacePlayground(next, did) {
+  replacePlayground(next, change) {
     this.selecting.cancel();
-    this.do(next, did);
+    this.do(next, change);
     return null;
   }
 
   undo() {
     if (this.placing?.undoPoint()) return;
     this.selecting.cancel();
-    this.#say("tell.undone", this.history.undo());
+    this.#reportStep("status.undone", this.history.undo());
   }
 
   redo() {
     if (this.placing?.redoPoint()) return;
     this.selecting.cancel();
-    this.#say("tell.redone", this.history.redo());
+    this.#reportStep("status.redone", this.history.redo());
   }
 
-  /** @param {string} word @param {Phrase | null} did */
-  #say(word, did) {
-    if (did === null) return this.report({ word: "tell.nothing" });
+  /** @param {string} word @param {Phrase | null} change */
+  #reportStep(word, change) {
+    if (change === null) return this.report({ word: "status.nothing" });
     if (this.item === null) this.selected = null;
     this.placing?.refresh();
-    this.report({ word, values: { did: did.word, ...did.values } });
+    this.report({ word, values: { change: change.word, ...change.values } });
     this.changed();
   }
 
@@ -278,7 +201,7 @@ export class CreatorModel {
     if (this.selecting.ghost !== null) this.selecting.cancel();
     else if (this.placing !== null) {
       this.placing = null;
-      this.report({ word: "tell.cancelled" });
+      this.report({ word: "status.cancelled" });
     } else if (this.selected !== null) this.selected = null;
     else return false;
     this.changed();
@@ -287,7 +210,7 @@ export class CreatorModel {
 
   toggleCamera() {
     this.cameraOn = !this.cameraOn;
-    this.report({ word: this.cameraOn ? "tell.cameraOn" : "tell.cameraOff" });
+    this.report({ word: this.cameraOn ? "status.cameraOn" : "status.cameraOff" });
     this.changed();
   }
 

@@ -1,4 +1,4 @@
-// An editing session of the creator: the model, the world drawn from it, and the draft kept by the browser.
+// An editing session of the creator: the model, the world drawn from it, and the draft that the browser stores.
 // It outlives the panels, which are rebuilt when the language changes.
 
 import { Markers } from "../playground/markers.js";
@@ -39,7 +39,7 @@ export class CreatorSession {
     this.markers = new Markers((uri) => this.pictures.get(uri));
     const isSaved = draft === null || storage.getItem(SAVED_KEY) === "true";
     /** @type {Playground | null} as last saved */ this.saved = isSaved ? this.model.playground : null;
-    this.kept = this.model.playground;
+    this.stored = this.model.playground;
     /** @type {{ of: Playground, as: Playground, same: boolean } | null} cache of the last comparison */ this.compared = null;
     this.timer = 0;
     /** @type {{ of: Playground["items"], dragged: string | undefined, world: State } | null} cache of the last drawn world */
@@ -100,12 +100,12 @@ export class CreatorSession {
    * Open another playground; undo restores the previous one.
    *
    * @param {Playground} playground
-   * @param {Phrase} did
+   * @param {Phrase} change
    */
-  replacePlayground(playground, did) {
+  replacePlayground(playground, change) {
     this.model.selected = null;
     this.model.placing = null;
-    this.model.replacePlayground(playground, did);
+    this.model.replacePlayground(playground, change);
     this.saved = playground;
     this.#changed();
   }
@@ -113,24 +113,24 @@ export class CreatorSession {
   /** Store the draft in the browser now. */
   keep() {
     clearTimeout(this.timer);
-    if (this.kept === this.model.playground) return;
+    if (this.stored === this.model.playground) return;
     this.#store();
   }
 
   #store() {
-    this.kept = this.model.playground;
+    this.stored = this.model.playground;
     try {
       this.storage.setItem(DRAFT_KEY, this.text);
       this.storage.setItem(SAVED_KEY, String(!this.isUnsaved));
     } catch {
       this.storage.removeItem(DRAFT_KEY); // too large: no draft is better than an outdated one
-      this.model.report({ word: "tell.noDraft" });
+      this.model.report({ word: "status.noDraft" });
     }
   }
 
   #changed() {
     this.sketched = null;
-    if (this.model.playground !== this.kept) {
+    if (this.model.playground !== this.stored) {
       clearTimeout(this.timer);
       this.timer = Number(setTimeout(() => this.keep(), KEEP_AFTER_MS));
     }

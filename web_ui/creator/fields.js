@@ -1,16 +1,16 @@
 // Form controls, one per kind of field. Each has an element and updates it when values change elsewhere.
 
 import { h, renew, setText } from "../panels/dom.js";
-import { shown, taken, unitOf } from "./units.js";
+import { toDisplay, toFile, unitOf } from "./units.js";
 
-/** @typedef {import("../playground/rules.js").Field} Field */
+/** @typedef {import("../playground/declarations.js").DeclaredField} Field */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /** @typedef {(values: Record<string, any>) => Phrase | null} Commit  returns the problem, or null */
 /** @typedef {{ element: HTMLElement, update: (values: Record<string, any>) => void }} Control */
 /**
  * @typedef {object} Setting
- * @property {import("../i18n/index.js").Translate} t
- * @property {(phrase: Phrase) => string} say
+ * @property {import("./labels.js").Labels} labels
+ * @property {string} [kind]   of the edited item
  * @property {Commit} commit
  * @property {() => readonly string[]} doors   names of the doors that a plate can open
  * @property {(file: File) => Promise<string | null>} readPicture
@@ -19,72 +19,75 @@ import { shown, taken, unitOf } from "./units.js";
 let serial = 0;
 
 /**
- * A labeled control with space for an error message.
+ * A labeled input with space for an error message.
  *
- * @param {string} label
+ * @param {Setting} setting
+ * @param {string} key
  * @param {HTMLElement} input
  * @param {string} [unit]
  */
-function labeled(label, input, unit = "") {
+function labeled({ labels, kind = "", commit }, key, input, unit = "") {
   const id = `field-${++serial}`;
   input.id = id;
   const problem = h("small", { class: "problem", id: `${id}-problem`, role: "alert", hidden: true });
   input.setAttribute("aria-describedby", problem.id);
+  const label = labels.field(kind, key);
   const title = unit === "" ? label : `${label} (${unit})`;
   const element = h("div", { class: "field" }, h("label", { for: id }, title), input, problem);
+  /** @param {string | null} text */
+  const report = (text) => {
+    problem.hidden = text === null;
+    setText(problem, text ?? "");
+    input.setAttribute("aria-invalid", String(text !== null));
+  };
   return {
     element,
-    /** @param {string | null} text */
-    report(text) {
-      problem.hidden = text === null;
-      setText(problem, text ?? "");
-      input.setAttribute("aria-invalid", String(text !== null));
+    report,
+    /** Change the value, and show why it was rejected. @param {any} value */
+    apply(value) {
+      const rejected = commit({ [key]: value });
+      report(rejected === null ? null : labels.text(rejected));
     },
   };
 }
 
 /** @param {Setting} setting @param {string} key @param {Field} field @returns {Control} */
-function numberControl({ t, say, commit }, key, { rule }) {
-  const { unit, step } = unitOf(rule.unit);
+function numberControl(setting, key, field) {
+  const { unit, step } = unitOf(field.unit);
   const input = h("input", { type: "number", step: "any", inputmode: "decimal", "data-field": key });
-  const { element, report } = labeled(t(`field.${key}`), input, unit);
+  const { element, report, apply } = labeled(setting, key, input, unit);
   let value = NaN;
-  const take = () => {
-    const wanted = taken(input.valueAsNumber, rule.unit);
-    const [low, high] = [rule.low ?? -Infinity, rule.high ?? Infinity];
-    if (!(wanted >= low && wanted <= high)) {
-      return report(t("problem.range", { low: shown(low, rule.unit), high: shown(high, rule.unit), unit }));
-    }
-    const problem = commit({ [key]: wanted });
-    report(problem === null ? null : say(problem));
+  const applyInput = () => {
+    const wanted = toFile(input.valueAsNumber, field.unit);
+    const [low, high] = [field.low ?? -Infinity, field.high ?? Infinity];
+    if (wanted >= low && wanted <= high) return apply(wanted);
+    const limits = { low: toDisplay(low, field.unit), high: toDisplay(high, field.unit), unit };
+    report(setting.labels.t("problem.range", limits));
   };
-  input.addEventListener("change", take);
+  input.addEventListener("change", applyInput);
   input.addEventListener("keydown", (event) => {
     if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
     event.preventDefault(); // the browser's default step is 1 in any unit
     input.value = String(Math.round((input.valueAsNumber + (event.key === "ArrowUp" ? step : -step)) * 1e4) / 1e4);
-    take();
+    applyInput();
   });
   return {
     element,
     update(values) {
       if (values[key] === value) return;
       value = values[key];
-      input.value = value === null || value === undefined ? "" : String(shown(value, rule.unit));
+      input.value = value === null || value === undefined ? "" : String(toDisplay(value, field.unit));
       report(null);
     },
   };
 }
 
 /** @param {Setting} setting @param {string} key @param {string} type  of the input element @returns {Control} */
-function textControl({ t, say, commit }, key, type) {
+function textControl(setting, key, type) {
   const input = h("input", { type, "data-field": key, autocomplete: "off", spellcheck: "false" });
-  const { element, report } = labeled(t(`field.${key}`), input);
+  const { element, report, apply } = labeled(setting, key, input);
   let value = "";
-  input.addEventListener("change", () => {
-    const problem = commit({ [key]: input.value });
-    report(problem === null ? null : say(problem));
-  });
+  input.addEventListener("change", () => apply(input.value));
   return {
     element,
     update(values) {
@@ -97,28 +100,25 @@ function textControl({ t, say, commit }, key, type) {
 }
 
 /** @param {Setting} setting @param {string} key @returns {Control} */
-function flagControl({ t, commit }, key) {
+function flagControl({ labels, kind = "", commit }, key) {
   const input = h("input", { type: "checkbox", "data-field": key });
   input.addEventListener("change", () => commit({ [key]: input.checked }));
   return {
-    element: h("label", { class: "check" }, input, t(`field.${key}`)),
+    element: h("label", { class: "check" }, input, labels.field(kind, key)),
     update: (values) => (input.checked = values[key] === true),
   };
 }
 
 /** Selects the door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
-function doorControl({ t, say, commit, doors }, key) {
+function doorControl(setting, key) {
   const select = h("select", { "data-field": key });
-  const { element, report } = labeled(t(`field.${key}`), select);
-  select.addEventListener("change", () => {
-    const problem = commit({ [key]: select.value });
-    report(problem === null ? null : say(problem));
-  });
+  const { element, apply } = labeled(setting, key, select);
+  select.addEventListener("change", () => apply(select.value));
   let listed = "";
   return {
     element,
     update(values) {
-      const names = doors();
+      const names = setting.doors();
       if (names.join() !== listed) {
         listed = names.join();
         select.replaceChildren(...names.map((name) => h("option", { value: name }, name)));
@@ -136,17 +136,18 @@ function doorControl({ t, say, commit, doors }, key) {
  * @param {Field} field
  * @returns {Control}
  */
-function pointsControl({ t, say, commit }, key, { rule }) {
+function pointsControl({ labels, kind = "", commit }, key, field) {
+  const { t } = labels;
   const list = h("ol", { class: "points" });
   const problem = h("small", { class: "problem", role: "alert", hidden: true });
   const summary = h("summary");
   const element = h("details", { class: "field-points" }, summary, list, problem);
   /** @type {[number, number][]} */ let points = [];
   /** @param {[number, number][]} next */
-  const take = (next) => {
-    const found = commit({ [key]: next });
-    problem.hidden = found === null;
-    setText(problem, found === null ? "" : say(found));
+  const apply = (next) => {
+    const rejected = commit({ [key]: next });
+    problem.hidden = rejected === null;
+    setText(problem, rejected === null ? "" : labels.text(rejected));
   };
   /** @param {number} index @param {number} axis */
   const coordinate = (index, axis) => {
@@ -155,12 +156,12 @@ function pointsControl({ t, say, commit }, key, { rule }) {
       type: "number",
       step: "any",
       "aria-label": label,
-      value: shown(points[index][axis], "m"),
+      value: toDisplay(points[index][axis], "m"),
     });
     input.addEventListener("change", () => {
       if (Number.isNaN(input.valueAsNumber)) return;
-      const value = taken(input.valueAsNumber, "m");
-      take(points.map((point, at) => (at === index ? (axis === 0 ? [value, point[1]] : [point[0], value]) : point)));
+      const value = toFile(input.valueAsNumber, "m");
+      apply(points.map((point, at) => (at === index ? (axis === 0 ? [value, point[1]] : [point[0], value]) : point)));
     });
     return input;
   };
@@ -172,8 +173,8 @@ function pointsControl({ t, say, commit }, key, { rule }) {
         type: "button",
         class: "plain",
         "aria-label": t("field.removePoint", { number: index + 1 }),
-        disabled: points.length <= (rule.fewest ?? 0),
-        onclick: () => take(points.filter((_, at) => at !== index)),
+        disabled: points.length <= (field.fewest ?? 0),
+        onclick: () => apply(points.filter((_, at) => at !== index)),
       },
       "×",
     );
@@ -185,7 +186,7 @@ function pointsControl({ t, say, commit }, key, { rule }) {
       if (values[key] === points) return;
       points = values[key] ?? [];
       element.hidden = points.length === 0;
-      setText(summary, `${t(`field.${key}`)} (${points.length})`);
+      setText(summary, `${labels.field(kind, key)} (${points.length})`);
       renew(
         list,
         points.map((_, index) => row(index)),
@@ -195,16 +196,15 @@ function pointsControl({ t, say, commit }, key, { rule }) {
 }
 
 /** Replaces the image. @param {Setting} setting @param {string} key @returns {Control} */
-function imageControl({ t, say, commit, readPicture }, key) {
+function imageControl(setting, key) {
   const input = h("input", { type: "file", accept: "image/png,image/jpeg,image/svg+xml", "data-field": key });
-  const { element, report } = labeled(t(`field.${key}`), input);
+  const { element, report, apply } = labeled(setting, key, input);
   input.addEventListener("change", async () => {
     const file = input.files?.[0];
     if (file === undefined) return;
-    const uri = await readPicture(file);
-    if (uri === null) return report(t("problem.picture", { name: file.name }));
-    const problem = commit({ [key]: uri });
-    report(problem === null ? null : say(problem));
+    const uri = await setting.readPicture(file);
+    if (uri === null) report(setting.labels.t("problem.picture", { name: file.name }));
+    else apply(uri);
   });
   return { element, update: () => {} };
 }
@@ -217,15 +217,16 @@ function imageControl({ t, say, commit, readPicture }, key) {
  * @param {Field} field
  * @returns {Control}
  */
-function groupControl(setting, key, { rule }) {
+function groupControl(setting, key, field) {
   /** @type {Record<string, any> | null} */ let group = null;
   const input = h("input", { type: "checkbox", "data-field": key });
-  const inner = Object.entries(rule.fields ?? {}).map(([name, field]) =>
-    control({ ...setting, commit: (values) => setting.commit({ [key]: { ...group, ...values } }) }, name, field),
+  const inner = Object.entries(field.fields ?? {}).map(([name, member]) =>
+    control({ ...setting, commit: (values) => setting.commit({ [key]: { ...group, ...values } }) }, name, member),
   );
   const box = h("div", { class: "fields inner" }, ...inner.flatMap((one) => (one === null ? [] : [one.element])));
   input.addEventListener("change", () => setting.commit({ [key]: input.checked ? (group ?? {}) : null }));
-  const element = h("div", { class: "group" }, h("label", { class: "check" }, input, setting.t(`field.${key}`)), box);
+  const label = setting.labels.field(setting.kind ?? "", key);
+  const element = h("div", { class: "group" }, h("label", { class: "check" }, input, label), box);
   return {
     element,
     update(values) {
@@ -238,6 +239,9 @@ function groupControl(setting, key, { rule }) {
   };
 }
 
+/** Fields that an object has while it is movable. */
+export const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
+
 /**
  * Edits whether an object is movable, and its mass.
  *
@@ -247,14 +251,15 @@ function groupControl(setting, key, { rule }) {
  */
 export function loadControl(setting, fields) {
   const input = h("input", { type: "checkbox", "data-field": "movable" });
-  const inner = ["mass_kg", "friction", "restitution"].map((key) => numberControl(setting, key, fields[key]));
+  const keys = LOAD_KEYS.filter((key) => key in fields);
+  const inner = keys.map((key) => numberControl(setting, key, fields[key]));
   const box = h("div", { class: "fields inner" }, ...inner.map(({ element }) => element));
   input.addEventListener("change", () => {
-    const fixed = { mass_kg: null, friction: fields.friction.defaultValue, restitution: fields.restitution.defaultValue };
-    setting.commit(input.checked ? { mass_kg: 0.1 } : fixed);
+    const fixed = Object.fromEntries(keys.map((key) => [key, fields[key].default]));
+    setting.commit(input.checked ? { mass_kg: 0.1 } : { ...fixed, mass_kg: null });
   });
   return {
-    element: h("div", { class: "group" }, h("label", { class: "check" }, input, setting.t("field.movable")), box),
+    element: h("div", { class: "group" }, h("label", { class: "check" }, input, setting.labels.t("field.movable")), box),
     update(values) {
       input.checked = (values.mass_kg ?? null) !== null;
       box.hidden = !input.checked;
@@ -272,12 +277,12 @@ export function loadControl(setting, fields) {
  * @returns {Control | null}
  */
 export function control(setting, key, field) {
-  const { type } = field.rule;
+  const { type } = field;
   if (key === "door") return doorControl(setting, key);
   if (type === "number") return numberControl(setting, key, field);
   if (type === "flag") return flagControl(setting, key);
   if (type === "points") return pointsControl(setting, key, field);
   if (type === "image") return imageControl(setting, key);
   if (type === "object") return groupControl(setting, key, field);
-  return textControl(setting, key, key === "color" ? "color" : "text");
+  return textControl(setting, key, field.format === "color" ? "color" : "text");
 }

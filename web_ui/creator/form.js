@@ -1,11 +1,10 @@
 // The form with all values of the item being placed or selected.
 
 import { h, icon, renew, setText } from "../panels/dom.js";
-import { kindNamed } from "../playground/kinds/index.js";
-import { needed, RULES } from "../playground/rules.js";
+import { kindNamed, ROBOT } from "../playground/kinds/index.js";
 import { valuesOf } from "../playground/parts.js";
 import { canTurn } from "./place.js";
-import { control, loadControl } from "./fields.js";
+import { control, LOAD_KEYS, loadControl } from "./fields.js";
 import { CREATOR_ICONS } from "./icons.js";
 
 /** @typedef {import("./fields.js").Setting} Setting */
@@ -13,20 +12,20 @@ import { CREATOR_ICONS } from "./icons.js";
 
 /** These fields come first: name and position. */
 const FIRST = ["name", "x_m", "y_m"];
-const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
 
 /** @param {Omit<Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */
 export function itemForm(setting, model) {
-  const { t } = setting;
+  const { labels } = setting;
+  const { t } = labels;
   const title = h("h3");
   const fields = h("div", { class: "fields" });
   const verbs = [
-    { icon: "turnLeft", word: "verb.turnLeft", act: () => model.turn(1) },
-    { icon: "turnRight", word: "verb.turnRight", act: () => model.turn(-1) },
-    { icon: "copy", word: "verb.copy", act: () => model.duplicate() },
-    { icon: "over", word: "verb.over", act: () => model.raise(1) },
-    { icon: "under", word: "verb.under", act: () => model.raise(-1) },
-    { icon: "remove", word: "verb.remove", act: () => model.remove() },
+    { icon: "turnLeft", word: "action.turnLeft", act: () => model.turn(1) },
+    { icon: "turnRight", word: "action.turnRight", act: () => model.turn(-1) },
+    { icon: "copy", word: "action.copy", act: () => model.selecting.duplicate() },
+    { icon: "over", word: "action.over", act: () => model.selecting.raise(1) },
+    { icon: "under", word: "action.under", act: () => model.selecting.raise(-1) },
+    { icon: "remove", word: "action.remove", act: () => model.selecting.remove() },
   ].map((verb) => ({
     ...verb,
     button: h(
@@ -54,17 +53,19 @@ export function itemForm(setting, model) {
 
   /** @param {string} kind @param {boolean} placing */
   const build = (kind, placing) => {
-    const own = kindNamed(kind)?.fields ?? {};
-    const all = { ...(placing ? {} : { name: needed(RULES.name) }), ...own };
-    const full = { ...setting, commit: model.edit.bind(model) };
+    const { fields: own = {}, points = [], path, isRelative } = kindNamed(kind) ?? {};
+    const all = { name: ROBOT.fields.name, ...own };
+    const fromPointer = ["name", ...(points.length > 1 ? points.flat() : []), ...(isRelative ? [] : [path])];
+    const full = { ...setting, kind, commit: model.edit.bind(model) };
+    const isMovable = own.mass_kg?.nullable === true;
     /** @param {[string, any]} entry */
     const rank = ([key]) => (FIRST.includes(key) ? FIRST.indexOf(key) : FIRST.length);
     const ordered = Object.entries(all).sort((one, other) => rank(one) - rank(other));
     controls = ordered.flatMap(([key, field]) => {
-      if (LOAD_KEYS.includes(key) || (placing && (key === "points_m" || key === "name" || isEnd(key)))) return [];
+      if ((isMovable && LOAD_KEYS.includes(key)) || (placing && fromPointer.includes(key))) return [];
       return control(full, key, field) ?? [];
     });
-    if ("mass_kg" in own) controls.push(loadControl(full, own));
+    if (isMovable) controls.push(loadControl(full, own));
   };
 
   return {
@@ -83,8 +84,8 @@ export function itemForm(setting, model) {
       setText(
         title,
         placing === null
-          ? `${t(`kind.${shown.kind}`)} – ${shown.name}`
-          : t("form.new", { kind: t(`kind.${shown.kind}`) }),
+          ? `${labels.kind(shown.kind)} – ${shown.name}`
+          : t("form.new", { kind: labels.kind(shown.kind) }),
       );
       const values = valuesOf(shown);
       for (const one of controls) one.update(values);
@@ -96,9 +97,4 @@ export function itemForm(setting, model) {
       }
     },
   };
-}
-
-/** While a wall or door is placed, its end points come from the pointer. @param {string} key */
-function isEnd(key) {
-  return /^(start|end|opened|closed)_/.test(key);
 }

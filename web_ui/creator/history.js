@@ -2,7 +2,7 @@
 
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
-/** @typedef {{ before: Playground, after: Playground, did: Phrase, series: string }} Step */
+/** @typedef {{ before: Playground, after: Playground, change: Phrase, series: string }} Step */
 
 export class History {
   /** @param {Playground} start */
@@ -16,16 +16,16 @@ export class History {
    * Record a new playground. Consecutive steps of one series count as one step.
    *
    * @param {Playground} next
-   * @param {Phrase} did      description of the step, announced on undo
+   * @param {Phrase} change      description of the step, announced on undo
    * @param {string} [series]
    */
-  do(next, did, series = "") {
+  do(next, change, series = "") {
     if (next === this.present) return;
     const last = this.past.at(-1);
     const goesOn = series !== "" && last?.series === series && last.after === this.present;
     const before = goesOn ? last.before : this.present;
     if (goesOn) this.past.pop();
-    this.past.push({ before, after: next, did, series });
+    this.past.push({ before, after: next, change, series });
     this.future = [];
     this.present = next;
   }
@@ -36,7 +36,7 @@ export class History {
     if (step === undefined) return null;
     this.future.push({ ...step, series: "" });
     this.present = step.before;
-    return step.did;
+    return step.change;
   }
 
   /** Redo; returns the description of the step, or null if there is none. @returns {Phrase | null} */
@@ -45,6 +45,6 @@ export class History {
     if (step === undefined) return null;
     this.past.push(step);
     this.present = step.after;
-    return step.did;
+    return step.change;
   }
 }

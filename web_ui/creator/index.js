@@ -1,274 +1,128 @@
-// Panels of the playground creator: tools over the view, the form beside it, the bar below it. All of them act on the
-// session.
+// The creator of playgrounds on the page: tools over the view, the form beside it, the bar below it. Each part has its own
+// module and acts on the session.
 
 import "./creator.css";
 
+import WORDS from "../i18n/creator.texts.js";
 import { translator } from "../i18n/index.js";
-import { download } from "../editor/download.js";
-import { faultView, foreignView } from "../panels/fault.js";
-import { fileButton, h, icon, lock, setText } from "../panels/dom.js";
-import { parse } from "../playground/document.js";
-import { lacksGround, itemsOffGround } from "../playground/validation.js";
-import { kindNamed } from "../playground/kinds/index.js";
-import { Fault } from "../playground/rules.js";
-import { textOf } from "../browser/text_file.js";
+import { h } from "../panels/dom.js";
 import { bar } from "./bar.js";
-import { newPlayground, withGround } from "./commands.js";
+import { CreatorSession } from "./creator_session.js";
+import { filePanel } from "./file_panel.js";
 import { itemForm } from "./form.js";
-import { CREATOR_ICONS } from "./icons.js";
+import { groundWarnings } from "./ground_warnings.js";
+import { itemList } from "./item_list.js";
 import { watchCreatorKeys } from "./keys.js";
+import { Labels } from "./labels.js";
 import { palette } from "./palette.js";
+import { placingHint } from "./placing_hint.js";
 import { watchCreatorPointer } from "./pointer.js";
 import { readPicture } from "./read_picture.js";
 import { sheetForm } from "./sheet.js";
-import { itemList } from "./item_list.js";
-import { WORDS } from "./words/index.js";
-import { CreatorSession } from "./creator_session.js";
 
 export { CreatorSession, WORDS };
 
-/** Expectations that only a file of another kind violates. */
-const OF_ANOTHER_KIND = ["fault.json", "fault.object", "fault.format"];
-
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
-/**
- * @typedef {object} Creator
- * @property {{ stage: HTMLElement, side: HTMLElement, footer: HTMLElement }} elements
- * @property {(offline: string) => void} render   once per frame: applies pointer moves and updates the panels; `offline` says
- * why the simulator cannot be reached, else it is empty
- * @property {(phrase: Phrase) => void} report
- * @property {(fault: HTMLElement[] | null) => void} refuse   shows the errors of a file; null clears them
- * @property {(file: File) => void} open   opens a playground file
- * @property {() => void} destroy
- */
 
-/**
- * Translate a phrase, including kinds and nested descriptions of steps.
- *
- * @param {import("../i18n/index.js").Translate} t
- * @param {Phrase} phrase
- */
-export function inWords(t, { word, values = {} }) {
-  const filled = { ...values };
-  if (typeof values.kind === "string" && kindNamed(values.kind) !== undefined) filled.kind = t(`kind.${values.kind}`);
-  if (typeof values.did === "string") filled.did = t(values.did, values);
-  return t(word, filled);
-}
-
-/**
- * @param {object} options
- * @param {CreatorSession} options.session
- * @param {string} options.language
- * @param {import("../i18n/index.js").Translate} options.pageText
- * @param {import("../scene/index.js").SceneView} options.scene
- * @param {(text: string) => void} options.announce
- * @param {() => void} options.tryIt
- * @param {() => void} options.close
- * @returns {Creator}
- */
-export function createCreator({ session, language, pageText, scene, announce, tryIt, close }) {
-  const t = translator(language, WORDS);
-  const { model } = session;
-  const { canvas } = scene;
-  const stage = /** @type {HTMLElement} */ (canvas.parentElement);
-  /** @param {Phrase} phrase */
-  const say = (phrase) => inWords(t, phrase);
-  const setting = {
-    t,
-    say,
-    doors: () => model.playground.items.filter(({ kind }) => kind === "door").map(({ name }) => name),
-    readPicture,
-  };
-  const tools = palette({ t, model, canvas });
-  const below = bar(t, model);
-  const form = itemForm(setting, model);
-  const sheet = sheetForm(setting, model);
-  const list = itemList(t, model);
-  const fault = h("div", { class: "fault", role: "alert", hidden: true });
-  const warning = h("p", { class: "warning", hidden: true });
-  const groundless = h(
-    "div",
-    { class: "warning", role: "status", hidden: true },
-    h("p", {}, t("warn.noGround")),
-    h(
-      "button",
-      {
-        type: "button",
-        "data-verb": "ground",
-        onclick: () => model.replacePlayground(withGround(model.playground), { word: "did.ground" }),
+export class Creator {
+  /**
+   * @param {object} options
+   * @param {CreatorSession} options.session
+   * @param {string} options.language
+   * @param {import("../i18n/index.js").Translate} options.pageText
+   * @param {import("../scene/index.js").SceneView} options.scene
+   * @param {(text: string) => void} options.announce
+   * @param {() => void} options.tryIt
+   * @param {() => void} options.close
+   */
+  constructor({ session, language, pageText, scene, announce, tryIt, close }) {
+    const { model } = session;
+    const { canvas } = scene;
+    const stage = /** @type {HTMLElement} */ (canvas.parentElement);
+    const t = translator(language, WORDS);
+    const labels = new Labels(language, t);
+    this.model = model;
+    this.scene = scene;
+    this.announce = announce;
+    this.labels = labels;
+    const setting = {
+      labels,
+      doors: () => model.playground.items.filter(({ kind }) => kind === "door").map(({ name }) => name),
+      readPicture,
+    };
+    const report = this.report.bind(this);
+    this.files = filePanel({ session, labels, pageText, scene, report, announce, tryIt, close });
+    this.bar = bar(t, model);
+    const form = itemForm(setting, model);
+    const sheet = sheetForm(setting, model);
+    const list = itemList(labels, model);
+    const warnings = groundWarnings(t, model);
+    const tools = palette({ labels, model, canvas });
+    const hints = placingHint({ labels, model, canvas });
+    this.parts = [tools, hints, this.bar, warnings, form, sheet, list];
+    this.elements = {
+      stage: h("div", { class: "creator-stage" }, tools.element, hints.element),
+      side: h(
+        "div",
+        { class: "creator", role: "region", "aria-label": t("creator") },
+        ...this.files.elements,
+        ...warnings.elements,
+        form.element,
+        sheet.element,
+        list.element,
+        h("p", { class: "keys" }, t("keys")),
+      ),
+      footer: this.bar.element,
+    };
+    this.pointer = watchCreatorPointer({ stage, canvas, model, scene });
+    this.removeKeys = watchCreatorKeys({
+      stage,
+      canvas,
+      around: [this.elements.side, tools.element, this.bar.element],
+      model,
+      editFields: () => {
+        form.render();
+        form.focus();
       },
-      t("warn.addGround"),
-    ),
-  );
-  const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
-  const name = h("strong", { class: "name" });
-  const hint = h("p", { class: "hint building-hint" });
-  /** Run an action, then return the keyboard focus to the view. @param {() => void} act */
-  const thenFocusView = (act) => () => {
-    act();
-    canvas.focus();
-  };
-  const finish = h(
-    "button",
-    { type: "button", class: "finish", onclick: thenFocusView(() => model.placing?.finish()) },
-    icon(CREATOR_ICONS.done),
-    t("hint.finish"),
-  );
-  const cancel = h(
-    "button",
-    { type: "button", class: "cancel", onclick: thenFocusView(() => model.cancel()) },
-    t("hint.cancel"),
-  );
-  const hints = h("div", { class: "building-hints" }, hint, finish, cancel);
-
-  /** @param {HTMLElement[] | null} reported */
-  const refuse = (reported) => {
-    fault.hidden = reported === null;
-    fault.replaceChildren(...(reported ?? []));
-    if (reported !== null) announce(fault.textContent ?? "");
-  };
-  /** @param {File} file */
-  const open = async (file) => {
-    refuse(null);
-    const content = await textOf(file);
-    if (content === null) return refuse(faultView(pageText, pageText("file.notText", { name: file.name }), null));
-    try {
-      session.replacePlayground(parse(content), { word: "did.opened", values: { name: file.name } });
-      refuse(null);
-      scene.reframe();
-      scene.setView("home");
-      report({ word: "did.opened", values: { name: file.name } });
-    } catch (error) {
-      if (!(error instanceof Fault)) throw error;
-      const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${say(error.expected)}`;
-      const headline = t("file.refused", { name: file.name });
-      const isWhole = error.key === "" || error.key === "format";
-      if (isWhole && OF_ANOTHER_KIND.includes(error.expected.word)) refuse(foreignView(pageText, headline, text));
-      else refuse(faultView(pageText, headline, { text, line: null, column: null }));
-    }
-  };
-  const save = () => {
-    download(session.fileName, session.text, "application/json");
-    session.noteSaved();
-    report({ word: "tell.saved", values: { name: session.fileName } });
-  };
-  const fresh = () => {
-    session.replacePlayground(newPlayground(t("new.title")), { word: "did.new" });
-    refuse(null);
-    scene.reframe();
-    scene.setView("home");
-    report({ word: "did.new" });
-  };
-  const trying = h(
-    "button",
-    { type: "button", class: "primary", id: "creator-try", "data-drives": "", title: t("file.tryHelp"), onclick: tryIt },
-    t("file.try"),
-  );
-  const side = h(
-    "div",
-    { class: "creator", role: "region", "aria-label": t("creator") },
-    h(
-      "div",
-      { class: "creator-head" },
-      name,
-      unsaved,
-      h("button", { type: "button", class: "leave", onclick: close }, t("file.close")),
-    ),
-    h(
-      "div",
-      { class: "row" },
-      trying,
-      h(
-        "button",
-        { type: "button", id: "creator-save", title: t("file.saveHelp"), onclick: save },
-        icon(CREATOR_ICONS.save),
-        t("file.save"),
-      ),
-      fileButton({
-        id: "creator-file",
-        label: t("file.open"),
-        help: t("file.openHelp"),
-        accept: ".json",
-        open: (file) => void open(file),
-      }),
-      h(
-        "button",
-        { type: "button", id: "creator-new", title: t("file.newHelp"), onclick: fresh },
-        icon(CREATOR_ICONS.fresh),
-        t("file.new"),
-      ),
-    ),
-    fault,
-    warning,
-    groundless,
-    form.element,
-    sheet.element,
-    list.element,
-    h("p", { class: "keys" }, t("keys")),
-  );
-
-  /** @param {Phrase} phrase */
-  function report(phrase) {
-    const text = say(phrase);
-    below.report(text);
-    announce(text);
+    });
+    this.canvasLabel = canvas.getAttribute("aria-label") ?? "";
+    canvas.setAttribute("aria-label", t("canvas"));
   }
 
-  /** @type {import("../playground/document.js").Playground | null} */ let checked = null;
-  const pointers = watchCreatorPointer({ stage, canvas, model, scene });
-  const removeKeys = watchCreatorKeys({
-    stage,
-    canvas,
-    around: [side, tools.element, below.element],
-    model,
-    editFields: () => {
-      form.render();
-      form.focus();
-    },
-  });
-  const label = canvas.getAttribute("aria-label") ?? "";
-  canvas.setAttribute("aria-label", t("canvas"));
-  const onStage = h("div", { class: "creator-stage" }, tools.element, hints);
+  /**
+   * Call once per frame: applies pointer moves and updates the panels.
+   *
+   * @param {string} offline  why the simulator cannot be reached, else empty
+   */
+  render(offline) {
+    this.pointer.flush();
+    this.scene.camera.controls.enabled = this.model.cameraOn;
+    this.files.render(offline);
+    for (const part of this.parts) part.render();
+  }
 
-  return {
-    elements: { stage: onStage, side, footer: below.element },
-    report,
-    refuse,
-    open: (file) => void open(file),
-    render(offline) {
-      lock(trying, offline);
-      pointers.flush();
-      scene.camera.controls.enabled = model.cameraOn;
-      setText(name, model.playground.title || t("new.title"));
-      unsaved.hidden = !session.isUnsaved;
-      if (model.playground !== checked) {
-        checked = model.playground;
-        const outside = itemsOffGround(checked.items).map((item) => item.name);
-        warning.hidden = outside.length === 0;
-        groundless.hidden = !lacksGround(checked.items);
-        setText(warning, outside.length === 0 ? "" : t("warn.outside", { names: outside.join(", ") }));
-      }
-      const { placing } = model;
-      const problem = model.ghost?.problem ?? null;
-      const word = placing === null ? "" : placing.isPath ? `hint.${placing.kind}` : "hint.placing";
-      setText(
-        hint,
-        problem !== null ? say(problem) : word === "" ? "" : say({ word, values: { kind: placing?.kind ?? "" } }),
-      );
-      hint.classList.toggle("taken", problem !== null);
-      hints.hidden = hint.textContent === "";
-      finish.hidden = placing?.kind !== "track" || placing.points.length < 2;
-      cancel.hidden = placing === null;
-      for (const part of [tools, below, form, sheet, list]) part.render();
-    },
-    destroy() {
-      pointers.destroy();
-      removeKeys();
-      scene.camera.controls.enabled = true;
-      canvas.setAttribute("aria-label", label);
-      onStage.remove();
-      side.remove();
-      below.element.remove();
-    },
-  };
+  /** Show and announce a message. @param {Phrase} phrase */
+  report(phrase) {
+    const text = this.labels.text(phrase);
+    this.bar.report(text);
+    this.announce(text);
+  }
+
+  /** Show the errors of a file; null clears them. @param {HTMLElement[] | null} fault */
+  refuse(fault) {
+    this.files.refuse(fault);
+  }
+
+  /** Open a playground file. @param {File} file */
+  open(file) {
+    this.files.open(file);
+  }
+
+  destroy() {
+    this.pointer.destroy();
+    this.removeKeys();
+    this.scene.camera.controls.enabled = true;
+    this.scene.canvas.setAttribute("aria-label", this.canvasLabel);
+    for (const element of Object.values(this.elements)) element.remove();
+  }
 }

@@ -2,11 +2,11 @@
 
 import { h, setAttribute, setText } from "../panels/dom.js";
 
-/** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
-export function itemList(t, model) {
+/** @param {import("./labels.js").Labels} labels @param {import("./creator_model.js").CreatorModel} model */
+export function itemList(labels, model) {
   const summary = h("summary");
-  const list = h("ul", { class: "things" });
-  const element = h("details", { class: "things-list" }, summary, list);
+  const list = h("ul", { class: "items" });
+  const element = h("details", { class: "item-list" }, summary, list);
   /** @type {readonly import("../playground/parts.js").Item[] | null} */ let shown = null;
   /** @type {{ name: string, button: HTMLElement }[]} */ let rows = [];
   return {
@@ -19,13 +19,13 @@ export function itemList(t, model) {
           name,
           button: h(
             "button",
-            { type: "button", class: "plain", "data-thing": name, onclick: () => model.select(name) },
+            { type: "button", class: "plain", "data-item": name, onclick: () => model.select(name) },
             name,
-            h("small", {}, t(`kind.${kind}`)),
+            h("small", {}, labels.kind(kind)),
           ),
         }));
         list.replaceChildren(...rows.map(({ button }) => h("li", {}, button)));
-        setText(summary, t("things", { count: items.length }));
+        setText(summary, labels.t("items", { count: items.length }));
       }
       for (const { name, button } of rows) setAttribute(button, "aria-pressed", String(name === model.selected));
     },

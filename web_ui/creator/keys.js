@@ -106,7 +106,7 @@ function act(model, event, editFields) {
   if (travel(model, event)) return true;
   if (ctrlKey || metaKey) {
     if (key !== "d") return false;
-    model.duplicate();
+    model.selecting.duplicate();
     return true;
   }
   if (key in STEPS) model.nudge(...STEPS[key], { far: shiftKey, fine: altKey });
@@ -115,13 +115,13 @@ function act(model, event, editFields) {
   else if (key === " " && placing !== null) placing.put();
   else if (key === "Enter") {
     if (placing === null) editFields();
-    else if (placing.kind === "track" && placing.points.length > 1) placing.finish();
+    else if (placing.pathKey !== undefined && placing.points.length > 1) placing.finish();
     else placing.put();
   } else if (key === "Backspace" && placing !== null) placing.undoPoint();
-  else if (key === "Delete" || key === "Backspace") model.remove();
+  else if (key === "Delete" || key === "Backspace") model.selecting.remove();
   else if (key === "n") model.selectNext(shiftKey ? -1 : 1);
-  else if (key === "PageUp") model.raise(1);
-  else if (key === "PageDown") model.raise(-1);
+  else if (key === "PageUp") model.selecting.raise(1);
+  else if (key === "PageDown") model.selecting.raise(-1);
   else return false;
   return true;
 }

@@ -2,9 +2,10 @@
 
 import { h, icon, setAttribute } from "../panels/dom.js";
 import { CREATOR_ICONS } from "./icons.js";
+import { kindNamed, shapeKinds } from "../playground/kinds/index.js";
 import { readPicture } from "./read_picture.js";
 
-/** In display order. */
+/** In display order; those of plug-ins come before the robot. */
 const TOOLS = [
   "select",
   "rectangle",
@@ -17,16 +18,16 @@ const TOOLS = [
   "u_figure",
   "door",
   "activation",
-  "robot",
 ];
 
 /**
  * @param {object} options
- * @param {import("../i18n/index.js").Translate} options.t
+ * @param {import("./labels.js").Labels} options.labels
  * @param {import("./creator_model.js").CreatorModel} options.model
  * @param {HTMLElement} options.canvas   gets the focus so that keys act on the view
  */
-export function palette({ t, model, canvas }) {
+export function palette({ labels, model, canvas }) {
+  const { t } = labels;
   const file = h("input", {
     type: "file",
     accept: "image/png,image/jpeg,image/svg+xml",
@@ -34,32 +35,40 @@ export function palette({ t, model, canvas }) {
     id: "creator-picture",
     "aria-label": t("field.image"),
   });
+  /** The kind whose image is chosen by the file input, and its field. */
+  let wanted = { kind: "picture", key: "image" };
   file.addEventListener("change", async () => {
     const chosen = file.files?.[0];
     file.value = "";
     if (chosen === undefined) return;
     const image = await readPicture(chosen);
     if (image === null) return model.report({ word: "problem.picture", values: { name: chosen.name } });
-    model.choose("picture", { image });
+    model.choose(wanted.kind, { [wanted.key]: image });
     canvas.focus();
   });
-  const buttons = TOOLS.map((tool) => ({
+  const added = shapeKinds().flatMap(({ name }) => (TOOLS.includes(name) ? [] : [name]));
+  const buttons = [...TOOLS, ...added, "robot"].map((tool) => ({
     tool,
     button: h(
       "button",
       {
         type: "button",
-        title: t(`tool.${tool}`),
-        "aria-label": t(`tool.${tool}`),
+        title: labels.tool(tool),
+        "aria-label": labels.tool(tool),
         "data-tool": tool,
         onclick: () => choose(tool),
       },
-      icon(CREATOR_ICONS[tool]),
+      icon(CREATOR_ICONS[tool] ?? CREATOR_ICONS.plugin),
     ),
   }));
   /** @param {string} tool */
   function choose(tool) {
-    if (tool === "picture") return file.click();
+    const fields = kindNamed(tool)?.fields ?? {};
+    const key = Object.keys(fields).find((name) => fields[name].type === "image" && fields[name].required);
+    if (key !== undefined) {
+      wanted = { kind: tool, key };
+      return file.click();
+    }
     model.choose(tool === "select" ? null : tool);
     canvas.focus();
   }

@@ -3,6 +3,7 @@
 import { placed, wrapped } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { outlinesOf, valuesOf } from "../playground/parts.js";
+import { poseOf } from "../playground/primitives.js";
 import { tidy } from "../playground/document.js";
 import { rounded } from "./snap.js";
 
@@ -19,9 +20,9 @@ export function middleOf(item) {
   const kind = kindNamed(item.kind);
   const values = valuesOf(item);
   if (kind === undefined) return [0, 0];
-  if (item.kind === "wall" || kind.points.length === 0) return middle(pointsOf(item));
-  const [x, y] = kind.points[0];
-  return [values[x], values[y]];
+  if (kind.placement !== "center") return middle(pointsOf(item));
+  const [x, y] = kind.points[0] ?? [];
+  return [values[x] ?? 0, values[y] ?? 0]; // a kind without coordinates stays where it is
 }
 
 /** @param {Item} item @param {number} dx @param {number} dy */
@@ -33,7 +34,7 @@ export function moved(item, dx, dy) {
     next[x] = rounded(values[x] + dx);
     next[y] = rounded(values[y] + dy);
   }
-  if (kind?.path !== undefined && !kind.relative) {
+  if (kind?.path !== undefined && !kind.isRelative) {
     next[kind.path] = values[kind.path].map((/** @type {Point} */ [x, y]) => [rounded(x + dx), rounded(y + dy)]);
   }
   return changed(item, next);
@@ -48,7 +49,7 @@ export function movedTo(item, [x, y]) {
 /** Whether turning has an effect on an item. @param {Item} item */
 export function canTurn(item) {
   const kind = kindNamed(item.kind);
-  return kind !== undefined && ("yaw_rad" in kind.fields || item.kind === "wall" || kind.points.length === 0);
+  return kind !== undefined && ("yaw_rad" in kind.fields || kind.placement !== "center");
 }
 
 /** Turn an item about its center, counter-clockwise. @param {Item} item @param {number} angle */
@@ -65,7 +66,7 @@ export function turned(item, angle) {
   /** @type {Record<string, any>} */ const next = {};
   if ("yaw_rad" in kind.fields) next.yaw_rad = roundAngle(values.yaw_rad + angle);
   for (const [keyX, keyY] of kind.points) [next[keyX], next[keyY]] = about([values[keyX], values[keyY]]);
-  if (kind.path !== undefined && !kind.relative) next[kind.path] = values[kind.path].map(about);
+  if (kind.path !== undefined && !kind.isRelative) next[kind.path] = values[kind.path].map(about);
   return changed(item, next);
 }
 
@@ -77,7 +78,7 @@ export function pointsOf(item) {
   const single =
     kind.points.length > 1 ? kind.points.map(([x, y]) => /** @type {Point} */ ([values[x], values[y]])) : [];
   if (kind.path === undefined) return single;
-  return kind.relative ? placed(poseOf(values), values[kind.path]) : values[kind.path];
+  return kind.isRelative ? placed(poseOf(values), values[kind.path]) : values[kind.path];
 }
 
 /** Move one control point of an item. @param {Item} item @param {number} index @param {Point} place */
@@ -90,7 +91,7 @@ export function withPoint(item, index, place) {
     return changed(item, { [keyX]: x, [keyY]: y });
   }
   const values = valuesOf(item);
-  const own = kind.relative ? inFrame(poseOf(values), [x, y]) : [x, y];
+  const own = kind.isRelative ? inFrame(poseOf(values), [x, y]) : [x, y];
   return changed(item, {
     [kind.path]: values[kind.path].map((/** @type {Point} */ point, /** @type {number} */ at) =>
       at === index ? own : point,
@@ -114,11 +115,6 @@ export function yawOf(item) {
 export function roundAngle(angle) {
   const degrees = (wrapped(angle) * 180) / Math.PI;
   return (Math.round(degrees * 1000) / 1000) * (Math.PI / 180) + 0;
-}
-
-/** @param {Record<string, any>} values */
-function poseOf({ x_m, y_m, yaw_rad }) {
-  return { x: x_m, y: y_m, yaw: yaw_rad };
 }
 
 /** @param {{ x: number, y: number, yaw: number }} pose @param {Point} place @returns {Point} */

@@ -16,10 +16,17 @@ const SAME_PX = 8;
 const ASIDE_M = 0.15;
 
 export class Placing {
-  /** @param {import("./creator_model.js").CreatorModel} model @param {string} kind @param {Record<string, any>} values */
+  /**
+   * @param {import("./creator_model.js").CreatorModel} model
+   * @param {string} kind
+   * @param {Record<string, any>} values
+   */
   constructor(model, kind, values) {
     this.model = model;
     this.kind = kind;
+    const { sample = {}, placement = "center" } = kindNamed(kind) ?? {};
+    /** Whether the item needs several points. */
+    this.isPath = placement !== "center";
     const { playground } = model;
     const ground = groundOf(playground);
     /** @type {Point} current position */
@@ -27,11 +34,11 @@ export class Placing {
     /** Tolerance for the same point, in meters. */
     this.same = SAME_M;
     /** @type {Point[]} points of the path so far */ this.points = [];
-    /** @type {Point[]} removed points, for redo */ this.takenBack = [];
+    /** @type {Point[]} removed points, for redo */ this.undonePoints = [];
     /** @type {Item} values of the next item; its position is ignored */
     this.pattern = Object.freeze({
       kind,
-      ...kindNamed(kind)?.fresh,
+      ...sample,
       ...this.#own(kind),
       ...values,
       name: this.#name(),
@@ -52,9 +59,10 @@ export class Placing {
     this.place = free ?? places[0];
   }
 
-  /** Whether the item needs several points. */
-  get isPath() {
-    return (kindNamed(this.kind)?.clicks ?? 1) > 1;
+  /** The key of the points of a path of any length; undefined for other items. */
+  get pathKey() {
+    const kind = kindNamed(this.kind);
+    return kind?.placement === "path" ? kind.path : undefined;
   }
 
   /**
@@ -85,9 +93,9 @@ export class Placing {
 
   /** Complete the path. @param {boolean} [closed] */
   finish(closed = false) {
-    if (this.kind !== "track") return;
+    if (this.pathKey === undefined) return;
     if (this.points.length < 2) return this.model.report({ word: "problem.twoPoints" });
-    const item = changed(this.pattern, { points_m: this.points, ...(closed ? { closed: true } : {}) });
+    const item = changed(this.pattern, { [this.pathKey]: this.points, ...(closed ? { closed: true } : {}) });
     const problem = this.model.problemOf(item, item.name);
     if (problem !== null) return this.model.report(problem);
     this.points = [];
@@ -98,15 +106,15 @@ export class Placing {
   undoPoint() {
     const point = this.points.pop();
     if (point === undefined) return false;
-    this.takenBack.push(point);
-    this.model.report({ word: "tell.pointBack", values: { count: this.points.length } });
+    this.undonePoints.push(point);
+    this.model.report({ word: "status.pointBack", values: { count: this.points.length } });
     this.model.changed();
     return true;
   }
 
   /** @returns {boolean} */
   redoPoint() {
-    const point = this.takenBack.pop();
+    const point = this.undonePoints.pop();
     if (point === undefined) return false;
     this.points.push(point);
     this.model.changed();
@@ -120,7 +128,7 @@ export class Placing {
     const { ghost } = this;
     const at =
       ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
-    this.model.tellPlace(at, ghost?.problem);
+    this.model.reportPlace(at, ghost?.problem);
     this.model.changed();
   }
 
@@ -128,7 +136,7 @@ export class Placing {
   turn(angle) {
     if (this.isPath || !canTurn(this.pattern)) return;
     this.pattern = turned(this.#whole(), angle);
-    this.model.tellPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
+    this.model.reportPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
     this.model.changed();
   }
 
@@ -165,18 +173,23 @@ export class Placing {
     const { model, points, place } = this;
     const last = points.at(-1);
     if (last !== undefined && distance(last, place) < this.same) return this.finish();
-    if (this.kind === "track" && points.length > 2 && distance(points[0], place) < this.same) return this.finish(true);
+    if (this.#canClose && points.length > 2 && distance(points[0], place) < this.same) return this.finish(true);
     const item = this.#pathTo(place);
     const problem = item === null ? null : model.problemOf(item, item.name);
     if (problem !== null) return model.report(problem);
-    if (this.kind === "wall" && item !== null) {
+    if (this.pathKey === undefined && item !== null) {
       this.points = [place]; // the next wall starts where this one ends
       return this.#add(item);
     }
     points.push(place);
-    this.takenBack = [];
-    model.report({ word: "tell.point", values: { count: points.length } });
+    this.undonePoints = [];
+    model.report({ word: "status.point", values: { count: points.length } });
     model.changed();
+  }
+
+  /** Whether a click on the first point closes the path. */
+  get #canClose() {
+    return this.pathKey !== undefined && kindNamed(this.kind)?.fields.closed?.type === "flag";
   }
 
   /**
@@ -190,18 +203,18 @@ export class Placing {
     if (last === undefined) return null;
     const all = distance(last, place) < SAME_M ? this.points : [...this.points, place];
     if (all.length < 2) return null;
-    if (this.kind === "track") return changed(this.pattern, { points_m: all });
+    if (this.pathKey !== undefined) return changed(this.pattern, { [this.pathKey]: all });
     return changed(this.pattern, { start_x_m: last[0], start_y_m: last[1], end_x_m: place[0], end_y_m: place[1] });
   }
 
   /** @param {Item} item */
   #add(item) {
     const { model } = this;
-    const did = { word: "did.added", values: { name: item.name } };
-    model.do(added(model.playground, item), did);
-    this.takenBack = [];
+    const change = { word: "change.added", values: { name: item.name } };
+    model.do(added(model.playground, item), change);
+    this.undonePoints = [];
     this.refresh();
-    model.report(did);
+    model.report(change);
   }
 
   /** The pattern with coordinates, which some functions need. */
@@ -226,7 +239,8 @@ export class Placing {
     const { playground } = this.model;
     const ground = groundOf(playground);
     if (kind === "picture" && ground !== null) {
-      return { size_x_m: ground.size_x_m ?? rounded(ground.side_m * (1 + Math.SQRT2)) };
+      const size = ground.size_x_m ?? rounded((ground.side_m ?? 0) * (1 + Math.SQRT2));
+      return size > 0 ? { size_x_m: size } : {};
     }
     const door = [...playground.items].reverse().find((item) => item.kind === "door");
     return kind === "activation" && door !== undefined ? { door: door.name } : {};

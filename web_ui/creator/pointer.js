@@ -5,7 +5,7 @@ import { atHeight } from "../move/placed_bodies.js";
 import { WheelSteps } from "./wheel.js";
 
 /** @typedef {import("./creator_model.js").CreatorModel} CreatorModel */
-/** @typedef {{ clientX: number, clientY: number, altKey: boolean }} Spot */
+/** @typedef {{ clientX: number, clientY: number, altKey: boolean }} PointerPosition */
 
 /** A pointer released within this distance has clicked. */
 const CLICK_PX = 6;
@@ -20,21 +20,21 @@ const CLICK_PX = 6;
  */
 export function watchCreatorPointer({ stage, canvas, model, scene }) {
   const ending = new AbortController();
-  /** @type {Spot | null} */ let latest = null;
+  /** @type {PointerPosition | null} */ let latest = null;
   /** @type {{ id: number, x: number, y: number, isDrag: boolean, click: boolean } | null} */ let down = null;
   const wheel = new WheelSteps();
 
   const flush = () => {
     model.pixel = scene.pixelSize;
     if (latest === null) return;
-    const spot = latest;
+    const position = latest;
     latest = null;
-    const ray = scene.rayOf(spot);
+    const ray = scene.rayOf(position);
     const place = atHeight(ray, 0);
     model.pointer = place === null ? null : [place.x, place.y];
-    if (down?.isDrag) model.selecting.drag(ray, spot.altKey);
+    if (down?.isDrag) model.selecting.drag(ray, position.altKey);
     else if (model.placing !== null && place !== null) {
-      model.placing.hover([place.x, place.y], spot.altKey);
+      model.placing.hover([place.x, place.y], position.altKey);
       model.changed();
     }
   };
@@ -93,7 +93,7 @@ export function watchCreatorPointer({ stage, canvas, model, scene }) {
     if (!turns && model.cameraOn) return;
     event.stopPropagation();
     event.preventDefault();
-    const steps = wheel.take(event);
+    const steps = wheel.add(event);
     if (steps !== 0) model.turn(-steps, event.altKey);
   });
   return { flush, destroy: () => ending.abort() };

@@ -1,16 +1,18 @@
-// Selecting existing items: drag them, turn them by the ring, move their points. A dragged item is shown as a ghost
-// until it is released.
+// Selecting existing items: drag them, turn them by the ring, move their points; edit, copy, restack and remove them. A
+// dragged item is shown as a ghost until it is released.
 
 import { atHeight } from "../move/placed_bodies.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { valuesOf } from "../playground/parts.js";
-import { replaced } from "./commands.js";
+import { findProblem, isOnGround } from "../playground/validation.js";
+import { added, copyOf, othersOf, raised, removed, replaced } from "./commands.js";
 import { handleAt, hasKnob, itemAt } from "./pick.js";
-import { middleOf, movedTo, pointsOf, turned, withPoint } from "./place.js";
+import { canTurn, changed, middleOf, moved, movedTo, pointsOf, turned, withPoint } from "./place.js";
 import { snapped } from "./snap.js";
 
 /** @typedef {import("../playground/parts.js").Item} Item */
 /** @typedef {import("../playground/geometry.js").Point} Point */
+/** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /** @typedef {import("./pick.js").Ray} Ray */
 /** @typedef {import("./pick.js").Handle} Handle */
 
@@ -20,7 +22,7 @@ export class Selecting {
   /** @param {import("./creator_model.js").CreatorModel} model */
   constructor(model) {
     this.model = model;
-    /** @type {{ item: Item, handle: Handle, from: Point, z: number } | null} */ this.grip = null;
+    /** @type {{ item: Item, handle: Handle, from: Point, z: number } | null} */ this.grabbed = null;
     /** @type {import("./creator_model.js").Ghost | null} */ this.ghost = null;
   }
 
@@ -32,14 +34,14 @@ export class Selecting {
     const { item } = model;
     const handle = item === null ? null : handleAt(item, ray, model.pixel);
     if (item !== null && handle !== null) {
-      this.grip = { item, handle, from: ground, z: 0 };
+      this.grabbed = { item, handle, from: ground, z: 0 };
       return true;
     }
     const found = itemAt(model.playground.items, ray);
     if (found === null || hasKnob(found)) return false; // drags on the ground move the camera; a click selects it
     model.select(found.name);
     const z = heightOf(found) / 2;
-    this.grip = { item: found, handle: { type: "middle" }, from: pointOn(ray, z) ?? ground, z };
+    this.grabbed = { item: found, handle: { type: "middle" }, from: pointOn(ray, z) ?? ground, z };
     return true;
   }
 
@@ -50,35 +52,124 @@ export class Selecting {
 
   /** @param {Ray} ray @param {boolean} free  whether the grid is ignored */
   drag(ray, free) {
-    const { model, grip } = this;
-    if (grip === null) return;
-    const place = pointOn(ray, grip.z);
+    const { model, grabbed } = this;
+    if (grabbed === null) return;
+    const place = pointOn(ray, grabbed.z);
     if (place === null) return;
-    const item = dragged(grip, place, model.gridFor(free));
-    this.ghost = item === grip.item ? null : { item, problem: model.problemOf(item, item.name) };
+    const item = dragged(grabbed, place, model.gridFor(free));
+    this.ghost = item === grabbed.item ? null : { item, problem: model.problemOf(item, item.name) };
     model.changed();
   }
 
   /** Pointer up: apply the change, or restore the item if the position is invalid. */
   drop() {
-    const { model, ghost, grip } = this;
+    const { model, ghost, grabbed } = this;
     this.cancel();
-    if (ghost === null || grip === null) return;
+    if (ghost === null || grabbed === null) return;
     if (ghost.problem !== null) return model.report(ghost.problem);
     const word =
-      grip.handle.type === "ring" ? "did.turned" : grip.handle.type === "point" ? "did.changed" : "did.moved";
+      grabbed.handle.type === "ring" ? "change.turned" : grabbed.handle.type === "point" ? "change.changed" : "change.moved";
     model.do(replaced(model.playground, ghost.item.name, ghost.item), { word, values: { name: ghost.item.name } });
-    model.tellPlace(ghost.item);
+    model.reportPlace(ghost.item);
+  }
+
+  /**
+   * Change values of the selected item; returns the problem, or null.
+   *
+   * @param {Record<string, any>} values
+   * @returns {Phrase | null}
+   */
+  edit(values) {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return null;
+    const next = changed(item, values);
+    const problem = model.problemOf(next, item.name);
+    const others = othersOf(model.playground, item.name);
+    const wasOutside = !isOnGround(others, item); // there it may be changed
+    if (problem !== null && !(problem.word === "problem.outside" && wasOutside)) return problem;
+    model.selected = next.name;
+    model.do(replaced(model.playground, item.name, next), { word: "change.changed", values: { name: next.name } });
+    return null;
+  }
+
+  /** Move the selected item. @param {number} dx @param {number} dy */
+  nudge(dx, dy) {
+    const { item } = this.model;
+    if (item !== null) this.#replace(item, moved(item, dx, dy), "moved");
+  }
+
+  /** Turn the selected item, counter-clockwise. @param {number} angle */
+  turn(angle) {
+    const { item } = this.model;
+    if (item !== null && canTurn(item)) this.#replace(item, turned(item, angle), "turned");
+  }
+
+  remove() {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return;
+    const change = { word: "change.removed", values: { name: item.name } };
+    model.do(removed(model.playground, item.name), change);
+    model.report(change);
+  }
+
+  /** Duplicate the selected item and select the copy; it is placed farther away if the position is occupied. */
+  duplicate() {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return;
+    let copy = copyOf(model.playground, item);
+    const { items } = model.playground;
+    for (let far = 1; far < 8 && findProblem(items, copy) !== null; far++) copy = moved(copy, 0.05, -0.05);
+    const problem = findProblem(items, copy);
+    if (problem !== null) return model.report(problem);
+    model.selected = copy.name;
+    const change = { word: "change.copied", values: { name: copy.name } };
+    model.do(added(model.playground, copy), change);
+    model.report(change);
+  }
+
+  /** Bring the selected item forward or send it backward. @param {number} by */
+  raise(by) {
+    const { model } = this;
+    const { item } = model;
+    if (item === null) return;
+    const change = { word: "change.raised", values: { name: item.name } };
+    const next = raised(model.playground, item.name, by);
+    if (next === model.playground) return;
+    model.do(next, change);
+    model.report(change);
+  }
+
+  /**
+   * Replace an item if its new position is free. Consecutive steps of one kind count as one.
+   *
+   * @param {Item} item
+   * @param {Item} next
+   * @param {"moved" | "turned"} step
+   */
+  #replace(item, next, step) {
+    const { model } = this;
+    const problem = model.problemOf(next, item.name);
+    if (problem !== null) return model.report(problem);
+    const change = { word: `change.${step}`, values: { name: item.name } };
+    model.do(replaced(model.playground, item.name, next), change, `${step} ${item.name}`);
+    model.reportPlace(next);
   }
 
   cancel() {
-    this.grip = null;
+    this.grabbed = null;
     this.ghost = null;
     this.model.changed();
   }
 }
 
-/** @param {NonNullable<Selecting["grip"]>} grip @param {Point} place @param {import("./snap.js").Grid | null} grid */
+/**
+ * @param {NonNullable<Selecting["grabbed"]>} grabbed
+ * @param {Point} place
+ * @param {import("./snap.js").Grid | null} grid
+ */
 function dragged({ item, handle, from }, place, grid) {
   const [x, y] = middleOf(item);
   if (handle.type === "ring") {
@@ -91,8 +182,7 @@ function dragged({ item, handle, from }, place, grid) {
     return withPoint(item, handle.index, snapped([px + dx, py + dy], grid));
   }
   if (Math.hypot(dx, dy) < 1e-4) return item;
-  const isPath = kindNamed(item.kind)?.points.length === 0 || item.kind === "wall";
-  if (!isPath) return movedTo(item, snapped([x + dx, y + dy], grid));
+  if (kindNamed(item.kind)?.placement === "center") return movedTo(item, snapped([x + dx, y + dy], grid));
   const [[firstX, firstY]] = pointsOf(item); // a path keeps its first point on the grid, not its center
   const [toX, toY] = snapped([firstX + dx, firstY + dy], grid);
   return movedTo(item, [x + toX - firstX, y + toY - firstY]);

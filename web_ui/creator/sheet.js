@@ -3,29 +3,37 @@
 import { h } from "../panels/dom.js";
 import { grounded, groundOf, titled } from "./commands.js";
 import { control } from "./fields.js";
-import { kindNamed } from "../playground/kinds/index.js";
-import { needed, RULES } from "../playground/rules.js";
+import { BUILT_IN } from "../playground/declarations.js";
+import { kindNamed, shapeKinds } from "../playground/kinds/index.js";
+import { fits } from "../playground/rules.js";
 import { valuesOf } from "../playground/parts.js";
 
 /** @typedef {import("./fields.js").Control} Control */
 
-const GROUNDS = ["rectangle", "octagon", "none"];
 /** Fields of the ground that are shown here; the others appear when it is selected. */
 const GROUND_KEYS = ["size_x_m", "size_y_m", "side_m", "color", "walls"];
 
-/** @param {Omit<import("./fields.js").Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */
+/** The usual ground comes first. @param {string} kind */
+const rank = (kind) => (kind === "rectangle" ? 0 : 1);
+
+/**
+ * @param {Omit<import("./fields.js").Setting, "commit">} setting
+ * @param {import("./creator_model.js").CreatorModel} model
+ */
 export function sheetForm(setting, model) {
-  const { t } = setting;
+  const { t } = setting.labels;
   /** @param {Record<string, any>} values */
   const title = (values) => {
-    if (!RULES.line.pattern?.test(values.title ?? values.description ?? "")) return { word: "problem.line" };
-    return model.replacePlayground(titled(model.playground, values), { word: "did.titled" });
+    if (!fits(BUILT_IN.titles.title, values.title ?? values.description ?? "")) return { word: "problem.line" };
+    return model.replacePlayground(titled(model.playground, values), { word: "change.titled" });
   };
-  const titles = ["title", "description"].map((key) => control({ ...setting, commit: title }, key, needed(RULES.line)));
+  const titles = Object.entries(BUILT_IN.titles).map(([key, field]) => control({ ...setting, commit: title }, key, field));
   const select = h("select", { id: "creator-ground", "data-field": "ground" });
-  select.append(...GROUNDS.map((kind) => h("option", { value: kind }, t(`ground.${kind}`))));
+  const grounds = shapeKinds().filter(({ group }) => group === "ground");
+  const names = [...grounds.map(({ name }) => name).sort((one, other) => rank(one) - rank(other)), "none"];
+  select.append(...names.map((name) => h("option", { value: name }, setting.labels.ground(name))));
   select.addEventListener("change", () =>
-    model.replacePlayground(grounded(model.playground, select.value), { word: "did.ground" }),
+    model.replacePlayground(grounded(model.playground, select.value), { word: "change.ground" }),
   );
   const fields = h("div", { class: "fields" });
   const element = h(

@@ -18,12 +18,12 @@ export function unitOf(unit = "") {
 }
 
 /** Convert a number of the file to its display unit. @param {number} value @param {string} [unit] */
-export function shown(value, unit) {
+export function toDisplay(value, unit) {
   return Math.round(value * unitOf(unit).factor * SHOWN) / SHOWN + 0;
 }
 
 /** Convert an entered number to the unit of the file. @param {number} value @param {string} [unit] */
-export function taken(value, unit) {
+export function toFile(value, unit) {
   const { factor } = unitOf(unit);
   return unit === "rad" ? value / factor : Math.round((value / factor) * EXACT) / EXACT + 0;
 }

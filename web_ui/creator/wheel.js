@@ -13,8 +13,12 @@ export class WheelSteps {
     this.rest = 0;
   }
 
-  /** Whole steps of an event; positive: toward the user. @param {{ deltaY: number, deltaMode: number }} event */
-  take({ deltaY, deltaMode }) {
+  /**
+   * Add an event; returns the whole steps that it completes. Positive: toward the user.
+   *
+   * @param {{ deltaY: number, deltaMode: number }} event
+   */
+  add({ deltaY, deltaMode }) {
     const far = Math.abs(deltaY);
     if (deltaMode !== PIXELS) return Math.sign(deltaY) * Math.max(1, Math.round(far / LINES_PER_NOTCH));
     if (far >= LEAST_NOTCH_PX) return Math.sign(deltaY) * Math.max(1, Math.round(far / NOTCH_PX));

@@ -92,7 +92,7 @@ export function readAesl(text) {
   for (const part of scan(text)) {
     if (part.kind === "open") {
       if (depth === 0) {
-        if (rootSeen) throw new AeslError(text, part.from, `found a second root <${part.name}>, expected one`);
+        if (rootSeen) throw new AeslError(text, part.from, `found a second root element <${part.name}>, expected one root element`);
         rootSeen = true;
         if (part.name !== "network") throw new AeslError(text, part.from, `found <${part.name}>, expected <network>`);
         aesl.root = { from: part.from, to: text.length, inner: part.to, empty: part.closed };
@@ -126,7 +126,7 @@ export function readAesl(text) {
     if (depth < 2) listed = null;
     if (depth < 2 && !(part.kind === "open" && part.name === "node")) node = null;
   }
-  if (!rootSeen) throw new AeslError(text, text.length, "found the end, expected <network>");
+  if (!rootSeen) throw new AeslError(text, text.length, "found the end of the file, expected <network>");
   for (const each of aesl.nodes) each.code = each.units.map(({ character }) => character).join("");
   return aesl;
 }
@@ -245,7 +245,7 @@ function entry(text, part, attribute, least, greatest) {
   const attributes = attributesOf(text, part);
   const { name, [attribute]: number } = attributes;
   for (const [wanted, found] of Object.entries({ name, [attribute]: number })) {
-    if (found === undefined) throw new AeslError(text, part.from, `<${part.name}> has no ${wanted}`);
+    if (found === undefined) throw new AeslError(text, part.from, `<${part.name}>: found no attribute ${wanted}, expected one`);
   }
   const value = Number(number.value);
   if (!/^[+-]?\d+$/.test(number.value.trim()) || value < least || value > greatest) {

@@ -1,7 +1,7 @@
 // Browser storage of the editor: recent files, and one draft per tab.
 
 /**
- * @typedef {object} Kept
+ * @typedef {object} StoredFile
  * @property {string} name
  * @property {string} text
  * @property {number} time        milliseconds since 1970
@@ -11,9 +11,9 @@
 
 const RECENT_KEY = "editor.recent";
 const DRAFT_KEY = "editor.draft.";
-export const KEPT_FILES = 10;
+export const MAX_FILES = 10;
 /** A browser allows about 5 million characters per page. */
-export const KEPT_CHARACTERS = 1_000_000;
+export const MAX_CHARACTERS = 1_000_000;
 
 export class FileStore {
   /** @param {KeyValueStore} storage */
@@ -21,28 +21,28 @@ export class FileStore {
     this.storage = storage;
   }
 
-  /** Recent files, newest first. @returns {Kept[]} */
+  /** Recent files, newest first. @returns {StoredFile[]} */
   recent() {
     return this.#read(RECENT_KEY) ?? [];
   }
 
-  /** @param {Kept} file  replaces an older file of the same name, but no unsaved text */
-  remember(file) {
-    let room = KEPT_CHARACTERS;
+  /** @param {StoredFile} file  replaces an older file of the same name, but no unsaved text */
+  addRecent(file) {
+    let room = MAX_CHARACTERS;
     const others = this.recent().filter(
       ({ name, text, unsaved }) => name !== file.name || (text !== file.text && (unsaved || file.unsaved)),
     );
-    const kept = [file, ...others].slice(0, KEPT_FILES).filter(({ text }) => (room -= text.length) >= 0);
+    const kept = [file, ...others].slice(0, MAX_FILES).filter(({ text }) => (room -= text.length) >= 0);
     while (!this.#write(RECENT_KEY, kept) && kept.length > 0) kept.pop(); // storage full: drop the oldest
   }
 
-  /** @param {string} tab @returns {Kept | null} */
+  /** @param {string} tab @returns {StoredFile | null} */
   draft(tab) {
     return this.#read(DRAFT_KEY + tab);
   }
 
-  /** @param {string} tab @param {Kept | null} draft  null removes the draft */
-  keepDraft(tab, draft) {
+  /** @param {string} tab @param {StoredFile | null} draft  null removes the draft */
+  storeDraft(tab, draft) {
     if (draft === null) this.storage.removeItem(DRAFT_KEY + tab);
     else this.#write(DRAFT_KEY + tab, draft);
   }

@@ -7,7 +7,7 @@ import { h, setAttribute, setText } from "../panels/dom.js";
 /** @param {import("../i18n/index.js").Translate} t @param {() => void} go  goes to the position of the message */
 export function footer(t, go) {
   const words = h("button", { type: "button", class: "plain verdict", onclick: go });
-  const lamp = h("span", { class: "state" });
+  const stateElement = h("span", { class: "state" });
   const bars = /** @type {const} */ (["variables", "bytecode", "stack"]).map((name) => {
     const fill = h("span", { class: "fill" });
     const text = h("span", {});
@@ -18,7 +18,7 @@ export function footer(t, go) {
     "div",
     { class: "editor-foot" },
     words,
-    lamp,
+    stateElement,
     h("span", { class: "memories" }, ...bars.map((bar) => bar.element)),
   );
   return {
@@ -30,8 +30,8 @@ export function footer(t, go) {
     },
     /** @param {string} state @param {string} text */
     robot(state, text) {
-      setText(lamp, text);
-      setAttribute(lamp, "data-state", state);
+      setText(stateElement, text);
+      setAttribute(stateElement, "data-state", state);
     },
     /** @param {Record<"variables" | "bytecode" | "stack", Share>} use */
     memories(use) {

@@ -7,7 +7,7 @@ import { ALL } from "./workspace.js";
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
- * @param {(kept: import("./file_store.js").Kept) => string} options.draftLabel   text about an unsaved draft
+ * @param {(kept: import("./file_store.js").StoredFile) => string} options.draftLabel   text about an unsaved draft
  * @param {import("./editor_session.js").EditorSession} options.session
  * @param {(robot: string) => void} options.select   called when the tab of a robot is chosen
  * @param {() => void} options.redraw
@@ -98,7 +98,7 @@ export function header({ t, draftLabel, session, select, redraw, close }) {
     notLoaded.hidden = isInRobot(document);
   };
 
-  /** @type {import("./file_store.js").Kept | null} */ let draftShown = null;
+  /** @type {import("./file_store.js").StoredFile | null} */ let draftShown = null;
   const drawDraft = () => {
     const kept = workspace.draft;
     if (kept === draftShown) return;

@@ -2,7 +2,7 @@
 
 import { GREATEST, LEAST } from "./aesl.js";
 
-/** @typedef {{ values: number[], trouble: null } | { values: null, trouble: { key: string, values: Record<string, string | number> } }} Parsed */
+/** @typedef {{ values: number[], problem: null } | { values: null, problem: { key: string, values: Record<string, string | number> } }} Parsed */
 
 /**
  * Parse whole numbers separated by spaces or commas.
@@ -16,11 +16,11 @@ import { GREATEST, LEAST } from "./aesl.js";
 export function parseNumbers(text, count, least = LEAST, greatest = GREATEST) {
   const words = text.split(/[\s,;]+/).filter((word) => word !== "");
   if (words.length !== count)
-    return { values: null, trouble: { key: "number.count", values: { count, found: words.length } } };
+    return { values: null, problem: { key: "number.count", values: { count, found: words.length } } };
   const bad = words.find((word) => !/^[+-]?\d+$/.test(word) || Number(word) < least || Number(word) > greatest);
   if (bad !== undefined)
-    return { values: null, trouble: { key: "number.range", values: { found: bad, least, greatest } } };
-  return { values: words.map(Number), trouble: null };
+    return { values: null, problem: { key: "number.range", values: { found: bad, least, greatest } } };
+  return { values: words.map(Number), problem: null };
 }
 
 /** A table as CSV (RFC 4180). @param {readonly (string | number)[][]} rows */

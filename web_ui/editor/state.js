@@ -34,7 +34,7 @@
  * @property {readonly { name: string, description: string }[]} behaviors
  */
 
-export const KEPT_EVENTS = 500;
+export const MAX_LOGGED_EVENTS = 500;
 
 /** @type {EditorState} */
 export const INITIAL = { targets: {}, variables: {}, log: [], behaviors: [] };
@@ -76,7 +76,7 @@ export function reduce(state, message) {
   const [{ label = "?" } = {}] = value.layout.dim;
   const id = 1 + (state.log.at(-1)?.id ?? 0);
   const entry = { id, timeNs, robot, name: label, values: [...value.data] };
-  return { ...state, log: [...state.log, entry].slice(-KEPT_EVENTS) };
+  return { ...state, log: [...state.log, entry].slice(-MAX_LOGGED_EVENTS) };
 }
 
 /** The values of a labeled array, one name per dimension. @param {any} message */

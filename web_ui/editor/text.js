@@ -203,6 +203,8 @@ export function createText(options) {
   };
 }
 
+/** @typedef {ReturnType<typeof createText>} TextField */
+
 /** @param {Item} item @param {number} place  index in the list @returns {import("@codemirror/autocomplete").Completion} */
 function option(item, place) {
   const { name, kind, detail, help, native, rank } = item;

@@ -3,21 +3,10 @@
 import { plainKey } from "../input/keyboard.js";
 import { fileButton, h, icon, ICONS, lock } from "../panels/dom.js";
 
-/** @typedef {import("./link.js").Verb} Verb */
-/** @typedef {import("./file_store.js").Kept} Kept */
-/** @typedef {{ recent: Kept } | { sample: string }} Choice */
-/**
- * @typedef {object} EditorCommands   actions of the buttons
- * @property {() => void} newFile
- * @property {(file: File) => void} open
- * @property {(choice: Choice) => void} choose   called for an entry of the list of recent files and examples
- * @property {() => void} save
- * @property {() => void} load
- * @property {() => void} run
- * @property {(verb: Verb) => void} control
- * @property {(step: number) => void} resize
- * @property {() => void} find
- */
+/** @typedef {import("./runtime_client.js").Verb} Verb */
+/** @typedef {import("./file_store.js").StoredFile} StoredFile */
+/** @typedef {{ recent: StoredFile } | { sample: string }} Choice   an entry of the list of recent files and examples */
+/** @typedef {import("./commands.js").EditorCommands} EditorCommands */
 
 const SAVE = "M5 3h11l5 5v13H3V3zm2 2v5h8V5zm5 8a3 3 0 1 0 0 6 3 3 0 0 0 0-6z";
 const PUSHABLE = "M11 3h2v9h4l-5 6-5-6h4zM4 19h16v2H4z";
@@ -37,7 +26,7 @@ const VERBS = /** @type {const} */ ([
 /**
  * @param {import("../i18n/index.js").Translate} t
  * @param {EditorCommands} commands
- * @param {(kept: Kept) => string} draftLabel   text about an unsaved draft
+ * @param {(kept: StoredFile) => string} draftLabel   text about an unsaved draft
  */
 export function toolbar(t, commands, draftLabel) {
   /** @param {string} name @param {string} path @param {string} key @param {() => void} act @param {boolean} [worded] */
@@ -56,13 +45,13 @@ export function toolbar(t, commands, draftLabel) {
   choice.addEventListener("change", () => {
     const chosen = choices[choice.selectedIndex - 1];
     choice.value = "";
-    if (chosen !== undefined) commands.choose(chosen);
+    if (chosen !== undefined) void commands.choose(chosen);
   });
-  const load = button("load", PUSHABLE, "Ctrl+Enter", commands.load, true);
-  const run = button("run", ICONS.play, "F9", commands.run, true);
+  const load = button("load", PUSHABLE, "Ctrl+Enter", () => void commands.load(), true);
+  const run = button("run", ICONS.play, "F9", () => void commands.run(), true);
   const verbs = VERBS.map(([verb, path, key]) => ({
     verb: /** @type {Verb} */ (verb),
-    element: button(verb, path, key, () => commands.control(verb)),
+    element: button(verb, path, key, () => void commands.control(verb)),
   }));
   /** @param {string} name @param {string} sign @param {number} step */
   const sizer = (name, sign, step) => {
@@ -76,23 +65,23 @@ export function toolbar(t, commands, draftLabel) {
     h(
       "div",
       { class: "group" },
-      button("new", NEW, "", commands.newFile),
+      button("new", NEW, "", () => commands.newFile()),
       fileButton({
         id: "editor-file",
         label: "",
         help: t("editor.open"),
         accept: ".aesl,.aseba,.txt",
-        open: commands.open,
+        open: (file) => void commands.open(file),
       }),
-      button("save", SAVE, "Ctrl+S", commands.save),
+      button("save", SAVE, "Ctrl+S", () => commands.save()),
       choice,
-      button("find", FIND, "Ctrl+F", commands.find),
+      button("find", FIND, "Ctrl+F", () => commands.find()),
       sizer("smaller", "A−", -1),
       sizer("larger", "A+", 1),
     ),
     h(
       "div",
-      { class: "group", "data-drives": "" },
+      { class: "group" },
       load,
       run,
       ...verbs.map(({ element }) => element),
@@ -104,14 +93,13 @@ export function toolbar(t, commands, draftLabel) {
   return {
     element,
     /**
-     * @param {(verb: Verb) => boolean} can
-     * @param {readonly Kept[]} recent
+     * @param {readonly StoredFile[]} recent
      * @param {readonly { name: string, description: string }[]} samples
-     * @param {string} offline  why the robots cannot be reached; empty if they can
+     * @param {string} reason  why robots cannot be controlled; empty if they can
      */
-    render(can, recent, samples, offline) {
-      for (const button of [load, run]) lock(button, offline);
-      for (const { verb, element } of verbs) lock(element, offline || (can(verb) ? "" : t("editor.unavailable")));
+    render(recent, samples, reason) {
+      for (const button of [load, run]) lock(button, reason);
+      for (const { verb, element } of verbs) lock(element, reason || (commands.can(verb) ? "" : t("editor.unavailable")));
       const names = JSON.stringify([recent.map(({ name, time, unsaved }) => [name, time, unsaved]), samples]);
       if (names === listed) return;
       listed = names;
@@ -143,13 +131,13 @@ export function toolbar(t, commands, draftLabel) {
  */
 export function watchKeys(element, commands) {
   const keys = /** @type {Record<string, () => void>} */ ({
-    F7: () => commands.control("step_line"),
-    "Shift+F7": () => commands.control("step"),
-    F8: () => commands.control("reset"),
-    F9: commands.run,
-    F10: () => commands.control("pause"),
-    "Ctrl+Enter": commands.load,
-    "Ctrl+s": commands.save,
+    F7: () => void commands.control("step_line"),
+    "Shift+F7": () => void commands.control("step"),
+    F8: () => void commands.control("reset"),
+    F9: () => void commands.run(),
+    F10: () => void commands.control("pause"),
+    "Ctrl+Enter": () => void commands.load(),
+    "Ctrl+s": () => commands.save(),
   });
   /** @param {KeyboardEvent} event */
   const press = (event) => {

@@ -1,6 +1,6 @@
 // The open programs, one per tab: which robot runs which, and the drafts in browser storage. No DOM.
 
-import { AeslError } from "./aesl.js";
+import { AeslError, readAesl } from "./aesl.js";
 import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined } from "./documents.js";
 
 /** @typedef {import("./documents.js").Document} Document */
@@ -23,13 +23,33 @@ export class Workspace {
     this.changed = changed;
     this.tab = ALL;
     /** @type {Map<string, Document>} */ this.documents = new Map();
-    /** @type {Map<string, import("./file_store.js").Kept>} */ this.drafts = new Map();
+    /** @type {import("./aesl.js").Aesl | null} */ this.parsed = null;
+    /** @type {Map<string, import("./file_store.js").StoredFile>} */ this.drafts = new Map();
     /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's next program whatever they hold
   }
 
   /** @returns {Document} */
   get current() {
     return this.at(this.tab);
+  }
+
+  /** Whether the robot runs exactly the current text. */
+  get isInRobot() {
+    return isInRobot(this.current);
+  }
+
+  /** The parsed file of the current text. */
+  get file() {
+    const { text } = this.current;
+    if (this.parsed?.text !== text) this.parsed = readAesl(text);
+    return this.parsed;
+  }
+
+  /** Convert a line of the file to a line of the code that is shown. @param {number} line */
+  codeLine(line) {
+    const [unit] = this.file.nodes[this.current.node]?.units ?? [];
+    const before = unit === undefined ? 1 : this.current.text.slice(0, unit.from).split("\n").length;
+    return Math.max(line - before + 1, 1);
   }
 
   /** @param {string} tab @returns {Document} */
@@ -71,7 +91,7 @@ export class Workspace {
   open(name, text) {
     try {
       this.#replace(this.tab, opened(fileName(name), text));
-      this.fileStore.remember({ name: fileName(name), text, time: this.now() });
+      this.fileStore.addRecent({ name: fileName(name), text, time: this.now() });
       return null;
     } catch (error) {
       if (!(error instanceof AeslError)) throw error;
@@ -96,7 +116,7 @@ export class Workspace {
 
   saved() {
     const document = this.current;
-    this.fileStore.remember({ name: document.name, text: document.text, time: this.now() });
+    this.fileStore.addRecent({ name: document.name, text: document.text, time: this.now() });
     this.#set({ ...document, saved: document.text });
   }
 
@@ -143,7 +163,7 @@ export class Workspace {
     this.restore(draft);
   }
 
-  /** Continue with a text that is not in a file. @param {import("./file_store.js").Kept} kept */
+  /** Continue with a text that is not in a file. @param {import("./file_store.js").StoredFile} kept */
   restore({ name, text }) {
     const { text: saved } = blank();
     this.#replace(this.tab, { ...opened(name, text), saved });
@@ -151,7 +171,7 @@ export class Workspace {
 
   forgetDraft() {
     this.drafts.delete(this.tab);
-    this.fileStore.keepDraft(this.tab, null);
+    this.fileStore.storeDraft(this.tab, null);
   }
 
   /** @returns {string} */
@@ -164,9 +184,9 @@ export class Workspace {
     this.documents.set(this.tab, document);
     const { name, text } = document;
     const draft = this.drafts.get(this.tab);
-    if (draft !== undefined && draft.text !== text) this.fileStore.remember({ ...draft, unsaved: true });
+    if (draft !== undefined && draft.text !== text) this.fileStore.addRecent({ ...draft, unsaved: true });
     this.drafts.delete(this.tab);
-    this.fileStore.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
+    this.fileStore.storeDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
   }
 
   /**
@@ -178,7 +198,7 @@ export class Workspace {
   #replace(tab, document) {
     const old = this.documents.get(tab);
     if (old !== undefined && isUnsaved(old)) {
-      this.fileStore.remember({ name: old.name, text: old.text, time: this.now(), unsaved: true });
+      this.fileStore.addRecent({ name: old.name, text: old.text, time: this.now(), unsaved: true });
     }
     this.documents.set(tab, document);
     if (tab === this.tab) this.changed();

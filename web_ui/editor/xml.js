@@ -31,7 +31,7 @@ export function* scan(text) {
   while (at < text.length) {
     PART.lastIndex = at;
     const match = PART.exec(text);
-    if (match === null) throw new AeslError(text, at, trouble(text, at));
+    if (match === null) throw new AeslError(text, at, describeError(text, at));
     const [all, closing, opening, , slash] = match;
     const to = at + all.length;
     if (opening !== undefined) {
@@ -39,27 +39,26 @@ export function* scan(text) {
       yield { kind: "open", name: opening, from: at, to, closed: slash !== "" };
     } else if (closing !== undefined) {
       const last = open.pop();
-      if (last === undefined) throw new AeslError(text, at, `found </${closing}> that nothing opened`);
+      if (last === undefined) throw new AeslError(text, at, `found </${closing}>, expected no closing tag: no element is open`);
       if (last.name !== closing) throw new AeslError(text, at, `found </${closing}>, expected </${last.name}>`);
       yield { kind: "close", name: closing, from: at, to, closed: false };
     } else {
       const kind = all.startsWith("<![CDATA[") ? "cdata" : all.startsWith("<") ? "other" : "text";
       if (kind === "text" && open.length === 0 && all.replace(/^\uFEFF/, "").trim() !== "")
-        throw new AeslError(text, at, "found text outside of <network>");
+        throw new AeslError(text, at, "found text outside of <network>, expected a tag or a comment");
       yield { kind, name: "", from: at, to, closed: false };
     }
     at = to;
   }
   const last = open.pop();
-  if (last !== undefined) throw new AeslError(text, text.length, `found the end, expected </${last.name}>`);
+  if (last !== undefined) throw new AeslError(text, text.length, `found the end of the file, expected </${last.name}>`);
 }
 
-/** @param {string} text @param {number} at */
-function trouble(text, at) {
+/** What is wrong with the markup at a position. @param {string} text @param {number} at */
+function describeError(text, at) {
+  if (text.startsWith("<!--", at)) return "found a comment without end, expected -->";
   const found = JSON.stringify(text.slice(at, at + 20));
-  return text.startsWith("<!--", at)
-    ? "this comment has no end"
-    : `found ${found}, expected a tag; '<' is written &lt;`;
+  return `found ${found}, expected a tag; write '<' as &lt;`;
 }
 
 /** @param {string} text @param {Part} part @returns {Record<string, Attribute>} */
@@ -97,13 +96,13 @@ export function decoded(text, { kind, from, to }) {
     const [piece, hexadecimal, decimal, name] = match;
     let characters = piece === "\r\n" || piece === "\r" ? "\n" : piece;
     if (name !== undefined) {
-      if (!Object.hasOwn(NAMED, name)) throw new AeslError(text, at, `&${name}; is unknown; '&' is written &amp;`);
+      if (!Object.hasOwn(NAMED, name)) throw new AeslError(text, at, `found &${name};, expected a known entity; write '&' as &amp;`);
       characters = NAMED[name];
     } else if (hexadecimal !== undefined || decimal !== undefined) {
       const code = hexadecimal !== undefined ? parseInt(hexadecimal, 16) : Number(decimal);
-      if (code === 0 || code > 0x10ffff) throw new AeslError(text, at, `${piece} is no character`);
+      if (code === 0 || code > 0x10ffff) throw new AeslError(text, at, `found ${piece}, expected the code of a character, from 1 to 10FFFF hexadecimal`);
       characters = String.fromCodePoint(code);
-    } else if (piece === "&" && !cdata) throw new AeslError(text, at, "'&' is written &amp;");
+    } else if (piece === "&" && !cdata) throw new AeslError(text, at, "found '&', expected an entity; write '&' as &amp;");
     const after = at + piece.length;
     for (let index = 0; index < characters.length; index++) {
       units.push({ character: characters[index], from: index === 0 ? at : after, to: after, cdata });

@@ -3,6 +3,7 @@
 import { faultView } from "../panels/fault.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "../panels/dom.js";
 import { FILE } from "../state/index.js";
+import { disabledReason } from "../state/disabled_reason.js";
 
 /** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
 
@@ -76,8 +77,8 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
         type: "button",
         class: "change",
         hidden: true,
-        title: t("gallery.change"),
-        "aria-label": t("gallery.changeOf", { title }),
+        title: t("gallery.edit"),
+        "aria-label": t("gallery.editOf", { title }),
       },
       icon(PENCIL),
     );
@@ -111,7 +112,7 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
   };
 
   /** @param {import("../state/index.js").State} state */
-  function render({ connection, playgrounds, simulator, uploads }) {
+  function render({ connection, readOnly, playgrounds, simulator, uploads }) {
     if (!dialog.open) return;
     const now = JSON.stringify(playgrounds);
     if (now !== listed) {
@@ -119,11 +120,11 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
       cards = [];
       list.replaceChildren(...playgrounds.map(card));
     }
-    const offline = connection === "connected" ? "" : t("connection.needed");
-    lock(buttonOf(file), offline);
+    const reason = disabledReason({ connection, readOnly }, t);
+    lock(buttonOf(file), reason);
     for (const { name, button } of cards) {
       setAttribute(button, "aria-current", String(name === simulator?.playground));
-      lock(button, offline);
+      lock(button, reason);
     }
     const { playground } = uploads;
     if (before === undefined || playground === before || playground === null || playground.phase === "sending") return;

@@ -1,9 +1,11 @@
 // Integrates the playground creator into the page: loads it on demand and runs its playground in the simulator.
 
 import { localStore } from "../browser/local_storage.js";
+import { translator } from "../i18n/index.js";
 import { faultView } from "../panels/fault.js";
 import { parse } from "../playground/document.js";
 import { CONNECTION } from "../state/index.js";
+import { disabledReason } from "../state/disabled_reason.js";
 
 /** @typedef {import("../creator/index.js").Creator} Creator */
 /** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
@@ -42,7 +44,7 @@ export class CreatorHost {
   render() {
     if (!this.isOpen || this.context === null) return;
     const { store, t } = this.context;
-    this.creator?.render(store.state.connection === "connected" ? "" : t("connection.needed"));
+    this.creator?.render(disabledReason(store.state, t));
   }
 
   /** Set the context: on start, and after a change of language. @param {Context} context */
@@ -64,7 +66,7 @@ export class CreatorHost {
       context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded"), cause: CONNECTION });
       return;
     }
-    const title = this.module.WORDS[context.language]["new.title"];
+    const title = translator(context.language, this.module.WORDS)("new.title");
     this.session ??= new this.module.CreatorSession({
       storage: localStore,
       title,
@@ -72,13 +74,13 @@ export class CreatorHost {
       changed: () => this.scene().invalidate(),
     });
     if (playground !== undefined) {
-      this.session.replacePlayground(playground, { word: "did.opened", values: { name: playground.title } });
+      this.session.replacePlayground(playground, { word: "change.opened", values: { name: playground.title } });
       this.scene().reframe();
     }
     if (!this.isOpen) {
       this.isOpen = true;
       window.addEventListener("pagehide", this.#keep);
-      document.body.classList.add("building");
+      document.body.classList.add("creator-open");
       this.slot("creator").hidden = false;
       context.dragController.setMode(false);
       context.editor.close(); // there is no room for both
@@ -105,7 +107,7 @@ export class CreatorHost {
     window.removeEventListener("pagehide", this.#keep);
     this.creator?.destroy();
     this.creator = null;
-    document.body.classList.remove("building");
+    document.body.classList.remove("creator-open");
     this.slot("creator").hidden = true;
     this.scene().camera.setInset(0);
     this.scene().setView("home");
@@ -145,7 +147,7 @@ export class CreatorHost {
     const { module, session, context } = this;
     if (module === null || session === null || context === null) return;
     this.creator?.destroy();
-    this.creator = module.createCreator({
+    this.creator = new module.Creator({
       session,
       language: context.language,
       pageText: context.t,

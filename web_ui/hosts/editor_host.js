@@ -79,14 +79,14 @@ export class EditorHost {
   /** Open a program that was dropped on the page or rejected elsewhere. @param {string} name @param {string} text */
   async openText(name, text) {
     await this.open();
-    this.editor?.openText(name, text);
+    this.editor?.commands.openText(name, text);
   }
 
   #build() {
     if (this.module === null || this.session === null || this.context === null) return;
     this.editor?.destroy();
     const { t, language, store, announce } = this.context;
-    this.editor = this.module.createEditor({
+    this.editor = new this.module.Editor({
       session: this.session,
       client: this.client(),
       store,

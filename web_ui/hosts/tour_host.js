@@ -19,8 +19,8 @@ const CLOSED = "closed";
  * @param {unknown} visit.entry             history state of this visit; available even without storage
  */
 export function shouldStart({ search, storage, entry }) {
-  const asked = new URLSearchParams(search).get("tour");
-  if (asked === "on" || asked === "off") return asked === "on";
+  const parameter = new URLSearchParams(search).get("tour");
+  if (parameter === "on" || parameter === "off") return parameter === "on";
   return storage.getItem(KEY) !== CLOSED && /** @type {any} */ (entry)?.[KEY] !== CLOSED;
 }
 
@@ -30,7 +30,7 @@ export class TourHost {
     /** @type {Tour | null} */ this.tour = null;
     /** @type {typeof import("../tour/index.js") | null} */ this.module = null;
     /** @type {Context | null} */ this.context = null;
-    /** @type {Element | null} previously focused element */ this.before = null;
+    /** @type {Element | null} previously focused element */ this.previousFocus = null;
   }
 
   get isOpen() {
@@ -57,7 +57,7 @@ export class TourHost {
       store.dispatch({ type: "notice", level: "error", text: t("app.notLoaded"), cause: CONNECTION });
       return;
     }
-    this.before = activeElement;
+    this.previousFocus = activeElement;
     this.step = 0;
     this.#build();
   }
@@ -68,7 +68,7 @@ export class TourHost {
     this.tour = null;
     trySetItem(localStore, KEY, CLOSED);
     history.replaceState({ ...history.state, [KEY]: CLOSED }, "");
-    const place = this.before instanceof HTMLElement && this.before !== document.body ? this.before : null;
+    const place = this.previousFocus instanceof HTMLElement && this.previousFocus !== document.body ? this.previousFocus : null;
     (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#tour-switch")))?.focus();
   }
 

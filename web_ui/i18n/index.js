@@ -1,21 +1,26 @@
-// Texts of the page, one table per language. `{name}` in a text is replaced by a value.
+// Languages of the page and their texts. `{name}` in a text is replaced by a value.
 
-import { de } from "./de.js";
-import { en } from "./en.js";
-import { fr } from "./fr.js";
-import { it } from "./it.js";
+import names from "./language.texts.js";
+import pageTexts from "./page.texts.js";
 
 /** @typedef {(key: string, values?: Record<string, string | number>) => string} Translate */
 
-export const LANGUAGES = /** @type {Record<string, Record<string, string>>} */ ({ en, de, fr, it });
+/** Language code → name of the language in itself, English first. */
+export const LANGUAGES = Object.fromEntries(Object.entries(names).map(([code, { name }]) => [code, name]));
 
 /** The first wanted language that is available, else English. @param {readonly string[]} wanted */
 export function chooseLanguage(wanted) {
   return wanted.map((tag) => tag.slice(0, 2).toLowerCase()).find((tag) => tag in LANGUAGES) ?? "en";
 }
 
-/** @param {string} language @param {Record<string, Record<string, string>>} [tables] @returns {Translate} */
-export function translator(language, tables = LANGUAGES) {
+/**
+ * Texts in a language, in English where it lacks them.
+ *
+ * @param {string} language
+ * @param {Record<string, Record<string, string>>} [tables]  by language
+ * @returns {Translate}
+ */
+export function translator(language, tables = pageTexts) {
   const table = tables[language] ?? tables.en;
   return (key, values = {}) => {
     const text = table[key] ?? tables.en[key] ?? key;

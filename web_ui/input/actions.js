@@ -44,14 +44,14 @@ export class Actions {
    */
   constructor({ client, store, t, language, now = () => performance.now(), later = setTimeout.bind(globalThis) }) {
     this.client = client;
-    /** What was loaded last. */
+    /** The last loaded program or behavior: kind and content. */
     this.loaded = "";
     this.store = store;
     this.t = t;
     this.language = language;
     this.now = now;
     this.later = later;
-    /** @type {Map<string, number>} time of the press, by topic of the button */ this.held = new Map();
+    /** @type {Map<string, number>} time of the press, by topic of the button */ this.pressTimes = new Map();
   }
 
   /**
@@ -64,16 +64,16 @@ export class Actions {
    */
   press(robot, button, pressed) {
     const topic = robotTopic(robot, `_press/${button}`);
-    const since = this.held.get(topic);
+    const since = this.pressTimes.get(topic);
     const send = () => this.client.publish(topic, "std_msgs/msg/Bool", { data: pressed });
     if (pressed) {
-      this.held.set(topic, this.now());
+      this.pressTimes.set(topic, this.now());
       return send();
     }
     const rest = since === undefined ? 0 : since + SHORTEST_PRESS_MS - this.now();
     if (rest <= 0) return send();
     this.later(() => {
-      if (this.held.get(topic) === since) send(); // else it has been pressed again
+      if (this.pressTimes.get(topic) === since) send(); // else it has been pressed again
     }, rest);
   }
 
@@ -150,7 +150,7 @@ export class Actions {
     } else {
       this.#report("/simulator/set_poses", { ok: true, message: "" });
       if (this.store.state.simulator?.paused) {
-        this.store.dispatch({ type: "notice", level: "info", text: this.t("move.later") });
+        this.store.dispatch({ type: "notice", level: "info", text: this.t("move.paused") });
       }
     }
     return result.successful;

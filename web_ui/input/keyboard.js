@@ -47,7 +47,7 @@ export function plainKey({ key }) {
  * @param {(button: string, pressed: boolean) => void} press
  */
 export function watchKeyboard(element, scene, dragController, press) {
-  /** @type {Set<string>} */ const held = new Set();
+  /** @type {Set<string>} */ const pressedKeys = new Set();
   element.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { shiftKey, repeat } = event;
@@ -65,7 +65,7 @@ export function watchKeyboard(element, scene, dragController, press) {
     } else if (shiftKey && key in TURNS) scene.camera.turn(...TURNS[key]);
     else if (key in BUTTON_KEYS) {
       if (!repeat) {
-        held.add(key);
+        pressedKeys.add(key);
         press(BUTTON_KEYS[key], true);
       }
     } else if (key === "+" || key === "=") scene.zoom(1);
@@ -76,8 +76,8 @@ export function watchKeyboard(element, scene, dragController, press) {
   });
   /** @param {string} key */
   const release = (key) => {
-    if (held.delete(key)) press(BUTTON_KEYS[key], false);
+    if (pressedKeys.delete(key)) press(BUTTON_KEYS[key], false);
   };
   element.addEventListener("keyup", ({ key }) => release(key));
-  element.addEventListener("blur", () => [...held].forEach(release));
+  element.addEventListener("blur", () => [...pressedKeys].forEach(release));
 }

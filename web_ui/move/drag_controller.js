@@ -6,7 +6,7 @@ import { atHeight, blocker, hit, movables, obstacles, reach } from "./placed_bod
 /** @typedef {import("./placed_bodies.js").Pose} Pose */
 /** @typedef {Parameters<typeof hit>[0]} Ray */
 /** @typedef {import("../state/index.js").State} State */
-/** @typedef {{ body: PlacedBody, pose: Pose, blocker: string | null }} Held   blocker: name of the obstacle at the position of the ghost */
+/** @typedef {{ body: PlacedBody, pose: Pose, blocker: string | null }} Dragged   blocker: name of the obstacle at the position of the ghost */
 
 /** The ring for turning: its distance from the outline, and the width that can be hit. */
 export const RING = { beyond: 0.025, width: 0.03 };
@@ -28,16 +28,16 @@ export class DragController {
     this.report = report;
     /** Whether a drag on a body moves it without Shift. */
     this.mode = false;
-    /** @type {Held | null} */ this.held = null;
+    /** @type {Dragged | null} */ this.dragged = null;
     /** @type {{ turning: boolean, z: number, dx: number, dy: number } | null} offset of the pointer during a drag */
-    this.grip = null;
+    this.pointerOffset = null;
   }
 
   /** @param {boolean} on */
   setMode(on) {
     this.mode = on;
     this.cancel();
-    if (on) this.#hold(this.#choice(0));
+    if (on) this.#select(this.#bodyAt(0));
     this.changed();
   }
 
@@ -45,32 +45,32 @@ export class DragController {
   grab(ray, wanted) {
     if (!wanted) return false;
     const floor = atHeight(ray, 0);
-    if (this.mode && this.held !== null && floor !== null) {
-      const { body, pose } = this.held;
+    if (this.mode && this.dragged !== null && floor !== null) {
+      const { body, pose } = this.dragged;
       const away = Math.hypot(floor.x - pose.x, floor.y - pose.y) - reach(body) - RING.beyond;
       if (Math.abs(away) < RING.width / 2) {
         const dx = pose.yaw - Math.atan2(floor.y - pose.y, floor.x - pose.x);
-        this.grip = { turning: true, z: 0, dx, dy: 0 };
+        this.pointerOffset = { turning: true, z: 0, dx, dy: 0 };
         return true;
       }
     }
     const found = hit(ray, movables(this.state()));
     if (found === null) return false;
-    this.#hold(found.body);
+    this.#select(found.body);
     const { pose } = found.body;
-    this.grip = { turning: false, z: found.z, dx: pose.x - found.x, dy: pose.y - found.y };
+    this.pointerOffset = { turning: false, z: found.z, dx: pose.x - found.x, dy: pose.y - found.y };
     return true;
   }
 
   /** Pointer move. @param {Ray} ray */
   drag(ray) {
-    if (this.held === null || this.grip === null) return;
-    const { turning, z, dx, dy } = this.grip;
-    const place = atHeight(ray, z);
-    if (place === null) return;
-    const { pose } = this.held;
-    if (turning) this.#carry({ ...pose, yaw: Math.atan2(place.y - pose.y, place.x - pose.x) + dx });
-    else this.#carry({ ...pose, x: place.x + dx, y: place.y + dy });
+    if (this.dragged === null || this.pointerOffset === null) return;
+    const { turning, z, dx, dy } = this.pointerOffset;
+    const point = atHeight(ray, z);
+    if (point === null) return;
+    const { pose } = this.dragged;
+    if (turning) this.#moveGhost({ ...pose, yaw: Math.atan2(point.y - pose.y, point.x - pose.x) + dx });
+    else this.#moveGhost({ ...pose, x: point.x + dx, y: point.y + dy });
   }
 
   /**
@@ -81,46 +81,46 @@ export class DragController {
    * @param {number} [turn]
    */
   nudge(x, y, turn = 0) {
-    if (this.held === null) return;
-    const { pose } = this.held;
-    this.#carry({ x: pose.x + x * STEP_M, y: pose.y + y * STEP_M, yaw: pose.yaw + turn * STEP_RAD });
-    const { x: nowX, y: nowY, yaw } = this.held.pose;
+    if (this.dragged === null) return;
+    const { pose } = this.dragged;
+    this.#moveGhost({ x: pose.x + x * STEP_M, y: pose.y + y * STEP_M, yaw: pose.yaw + turn * STEP_RAD });
+    const { x: nowX, y: nowY, yaw } = this.dragged.pose;
     const values = { x: (nowX * 100).toFixed(0), y: (nowY * 100).toFixed(0), yaw: degrees(yaw) };
-    if (this.held.blocker === null) this.report("move.at", values);
-    else this.report("move.taken", { ...values, by: this.held.blocker });
+    if (this.dragged.blocker === null) this.report("move.at", values);
+    else this.report("move.blocked", { ...values, by: this.dragged.blocker });
   }
 
   /** Select the next body. */
   next() {
-    this.#hold(this.#choice(1));
-    if (this.held !== null) this.report("move.holds", { name: this.held.body.name || "thymio" });
+    this.#select(this.#bodyAt(1));
+    if (this.dragged !== null) this.report("move.selected", { name: this.dragged.body.name || "thymio" });
   }
 
   /** Place the body at the ghost; the simulator accepts or rejects the pose. */
   async drop() {
-    const { held } = this;
-    this.grip = null;
-    if (held === null) return;
-    const { body, pose } = held;
+    const { dragged } = this;
+    this.pointerOffset = null;
+    if (dragged === null) return;
+    const { body, pose } = dragged;
     await this.place(body.name, pose);
-    if (this.held !== held) return;
+    if (this.dragged !== dragged) return;
     // In move mode the body stays selected at its new pose.
-    this.held = null;
+    this.dragged = null;
     if (this.mode) this.#follow(body.name);
     this.changed();
   }
 
   /** Cancel the drag; nothing has moved. */
   cancel() {
-    this.held = null;
-    this.grip = null;
+    this.dragged = null;
+    this.pointerOffset = null;
     this.changed();
   }
 
   /** The state has changed: a ghost that is not being dragged follows its body. */
   refresh() {
-    if (this.held === null || !this.mode || this.grip !== null) return;
-    const { body, pose } = this.held;
+    if (this.dragged === null || !this.mode || this.pointerOffset !== null) return;
+    const { body, pose } = this.dragged;
     const { x, y, yaw } = body.pose;
     if (pose.x === x && pose.y === y && pose.yaw === yaw) this.#follow(body.name);
   }
@@ -128,14 +128,14 @@ export class DragController {
   /** @param {string} name */
   #follow(name) {
     const body = movables(this.state()).find((one) => one.name === name);
-    if (body === undefined) this.held = null;
-    else this.held = { body, pose: body.pose, blocker: null };
+    if (body === undefined) this.dragged = null;
+    else this.dragged = { body, pose: body.pose, blocker: null };
   }
 
   /** @param {number} ahead  offset in the list of bodies, from the selected body or robot */
-  #choice(ahead) {
+  #bodyAt(ahead) {
     const bodies = movables(this.state());
-    const name = this.held?.body.name;
+    const name = this.dragged?.body.name;
     const now = bodies.findIndex((one) =>
       name === undefined ? one.robot === this.state().selected : one.name === name,
     );
@@ -143,17 +143,17 @@ export class DragController {
   }
 
   /** @param {PlacedBody | undefined} body */
-  #hold(body) {
-    this.held = body === undefined ? null : { body, pose: body.pose, blocker: null };
+  #select(body) {
+    this.dragged = body === undefined ? null : { body, pose: body.pose, blocker: null };
     this.changed();
   }
 
   /** @param {Pose} pose */
-  #carry(pose) {
-    if (this.held === null) return;
-    const { body } = this.held;
+  #moveGhost(pose) {
+    if (this.dragged === null) return;
+    const { body } = this.dragged;
     const found = blocker(body, pose, obstacles(this.state(), body.name));
-    this.held = { body, pose, blocker: found === null ? null : found.name };
+    this.dragged = { body, pose, blocker: found === null ? null : found.name };
     this.changed();
   }
 }

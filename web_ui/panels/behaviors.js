@@ -1,6 +1,7 @@
 // The choice of built-in behaviors: the menu, and each behavior with its color.
 
 import { programOf } from "../state/index.js";
+import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock, setAttribute } from "./dom.js";
 
 /** The colors that the robot shows in each behavior (docs/behaviors.md). */
@@ -40,7 +41,7 @@ export function behaviorChoice({ t, actions }) {
     element,
     render(state) {
       const { behaviors } = state;
-      lock(select, state.connection === "connected" ? "" : t("connection.needed"));
+      lock(select, disabledReason(state, t));
       if (behaviors !== listed) {
         listed = behaviors;
         element.hidden = behaviors.length === 0;

@@ -21,13 +21,6 @@ export function card(name, title, ...content) {
   return details;
 }
 
-/** A card whose content controls the simulator: it is disabled while the page is read-only. @type {typeof card} */
-export function controlCard(name, title, ...content) {
-  const details = card(name, title, ...content);
-  details.querySelector(".content")?.setAttribute("data-drives", "");
-  return details;
-}
-
 /**
  * Make an error visible: open its card, or show a notice if editor or creator covers the card.
  *

@@ -10,7 +10,7 @@ export function connectionPanel({ t, address, announce }) {
   const element = h("div", { class: "access" }, chip, badge);
   const sentence = h("div", { class: "banner", hidden: true });
   document.querySelector(".stage")?.append(sentence);
-  let was = "";
+  let previous = "";
   return {
     slot: "header",
     element,
@@ -18,14 +18,14 @@ export function connectionPanel({ t, address, announce }) {
       const watches = readOnly && connection === "connected";
       if (watches && badge.hidden) announce(t("access.readOnlyHelp"));
       badge.hidden = !watches;
-      if (connection === was) return;
+      if (connection === previous) return;
       setText(word, t(`connection.${connection}`));
       setAttribute(chip, "data-state", connection);
       const text = connection === "connected" ? "" : t(`connection.${connection}Long`, { address });
       setText(sentence, text);
       sentence.hidden = text === "";
       announce(connection === "connected" ? t("connection.back") : text);
-      was = connection;
+      previous = connection;
     },
   };
 }

@@ -38,7 +38,7 @@ export function displayPanel({ t, scene }) {
       flat.input.checked = scene.isFlat;
       flat.input.disabled = !scene.has3d;
       const { pixelRatio } = scene.quality.settings;
-      setText(now, scene.isFlat ? "" : t("display.now", { share: Math.round(pixelRatio * 100) }));
+      setText(now, scene.isFlat ? "" : t("display.limited", { share: Math.round(pixelRatio * 100) }));
     },
   };
 }

@@ -86,18 +86,18 @@ export function lock(control, reason) {
  * pressed until Shift is released.
  *
  * @param {HTMLElement} element
- * @param {(pressed: boolean) => void} hold
+ * @param {(pressed: boolean) => void} change
  */
-export function momentary(element, hold) {
-  /** @type {Set<string | number>} */ const holders = new Set();
-  /** @param {string | number} who */
-  const down = (who) => {
-    if (holders.size === 0) hold(true);
-    holders.add(who);
+export function momentary(element, change) {
+  /** @type {Set<string | number>} */ const sources = new Set();
+  /** @param {string | number} source */
+  const down = (source) => {
+    if (sources.size === 0) change(true);
+    sources.add(source);
   };
-  /** @param {string | number} who */
-  const up = (who) => {
-    if (holders.delete(who) && holders.size === 0) hold(false);
+  /** @param {string | number} source */
+  const up = (source) => {
+    if (sources.delete(source) && sources.size === 0) change(false);
   };
   element.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
@@ -122,7 +122,7 @@ export function momentary(element, hold) {
   element.addEventListener("contextmenu", (event) => event.preventDefault());
 }
 
-const PLACES = "input, select, summary, button:enabled";
+const FOCUSABLE = "input, select, summary, button:enabled";
 
 /**
  * Replace the children of an element; the keyboard focus stays at the same position.
@@ -131,13 +131,13 @@ const PLACES = "input, select, summary, button:enabled";
  * @param {readonly Node[]} children
  */
 export function renew(parent, children) {
-  const places = () => /** @type {HTMLElement[]} */ ([...parent.querySelectorAll(PLACES)]);
-  const at = places().findIndex((place) => place === document.activeElement);
+  const focusable = () => /** @type {HTMLElement[]} */ ([...parent.querySelectorAll(FOCUSABLE)]);
+  const at = focusable().findIndex((target) => target === document.activeElement);
   parent.replaceChildren(...children);
   if (at < 0) return;
-  const place = places()[Math.min(at, places().length - 1)];
-  place?.focus();
-  if (place instanceof HTMLInputElement) place.select(); // as after Tab
+  const target = focusable()[Math.min(at, focusable().length - 1)];
+  target?.focus();
+  if (target instanceof HTMLInputElement) target.select(); // as after Tab
 }
 
 /** The button of a `fileButton`. @param {HTMLElement} file */

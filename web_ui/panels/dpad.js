@@ -2,6 +2,7 @@
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { BUTTONS } from "../state/names.js";
+import { disabledReason } from "../state/disabled_reason.js";
 import { h, momentary, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 const CHEVRON = "M4 8.500 5.800 6.700 12 12.900l6.200-6.200L20 8.500l-8 8z";
@@ -22,7 +23,7 @@ export function dpadPanel({ t, actions, store }) {
   });
   const pad = h(
     "div",
-    { class: "dpad", id: "dpad", role: "group", "aria-label": t("dpad"), "data-drives": "" },
+    { class: "dpad", id: "dpad", role: "group", "aria-label": t("dpad") },
     ...buttons.map(({ button }) => button),
   );
   // On phones the pad can be hidden so that it does not cover the view.
@@ -45,10 +46,10 @@ export function dpadPanel({ t, actions, store }) {
   return {
     slot: "stage",
     element,
-    render({ connection, robots, selected }) {
+    render({ connection, readOnly, robots, selected }) {
       for (const { name, button } of buttons) {
         setAttribute(button, "aria-pressed", String(robots[selected]?.buttons[name] ?? false));
-        lock(button, connection === "connected" ? "" : t("connection.needed"));
+        lock(button, disabledReason({ connection, readOnly }, t));
       }
     },
   };

@@ -16,7 +16,7 @@ export function refusalOf(text) {
 }
 
 /** Expectations that only a file of another kind violates. */
-const FOREIGN = /^(?:JSON\b.*|XML|UTF-8 text|an object|<aseba-playground>|a whole one|a plain zip archive)$/s;
+const FOREIGN = /^(?:JSON\b.*|XML|UTF-8 text|an object|<aseba-playground>|a complete zip archive|a plain zip archive)$/s;
 
 /**
  * Whether a rejected file is of another kind, rather than a playground with an error.

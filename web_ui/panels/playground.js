@@ -1,7 +1,8 @@
 // The playground panel: choose a shipped playground or open a file; a rejected one changes nothing.
 
 import { galleryDialog } from "../gallery/index.js";
-import { controlCard, showRefusal } from "./card.js";
+import { disabledReason } from "../state/disabled_reason.js";
+import { card, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setText } from "./dom.js";
 import { faultText, faultView } from "./fault.js";
 
@@ -37,9 +38,9 @@ export function playgroundPanel(context) {
   );
   const copy = h(
     "button",
-    { type: "button", id: "playground-change", title: t("playground.changeHelp"), onclick: change },
+    { type: "button", id: "playground-change", title: t("playground.editHelp"), onclick: change },
     icon(PENCIL),
-    t("playground.change"),
+    t("playground.edit"),
   );
   const file = fileButton({
     id: "playground-file",
@@ -49,7 +50,7 @@ export function playgroundPanel(context) {
     open: (chosen) => actions.loadFile(chosen),
   });
   const controls = [select, pictures, copy, buttonOf(file)];
-  const element = controlCard(
+  const element = card(
     "playground",
     t("playground"),
     h("div", { class: "row" }, select),
@@ -74,8 +75,8 @@ export function playgroundPanel(context) {
     render(state) {
       const { playgrounds, simulator, uploads } = state;
       gallery.render(state);
-      const offline = state.connection === "connected" ? "" : t("connection.needed");
-      for (const control of controls) lock(control, offline);
+      const reason = disabledReason(state, t);
+      for (const control of controls) lock(control, reason);
       const { playground } = uploads;
       const own =
         simulator !== null && !playgrounds.some(({ name }) => name === simulator.playground) ? simulator : null;
@@ -96,7 +97,7 @@ export function playgroundPanel(context) {
       if (notesJson !== noted) {
         noted = notesJson;
         const texts = simulator?.notes ?? [];
-        setText(summary, t("playground.remarks", { count: texts.length }));
+        setText(summary, t("playground.warnings", { count: texts.length }));
         notes.replaceChildren(...texts.map((text) => h("li", {}, text)));
         remarks.hidden = texts.length === 0;
       }

@@ -3,8 +3,9 @@
 
 import { programOf } from "../state/index.js";
 import { faultMessage, lineLabel, stateLabel } from "../state/program_status.js";
+import { disabledReason } from "../state/disabled_reason.js";
 import { behaviorChoice } from "./behaviors.js";
-import { controlCard, showRefusal } from "./card.js";
+import { card, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
 import { SUCCESS_MS } from "./notices.js";
 import { sourceView } from "./source.js";
@@ -20,7 +21,7 @@ export function programPanel(context) {
   const { t, language, actions, store, announce, editor } = context;
   const behavior = behaviorChoice(context);
   const name = h("strong", { class: "name" });
-  const lamp = h("span", { class: "state" });
+  const stateElement = h("span", { class: "state" });
   const message = h("p", { class: "message", hidden: true });
   const verbs = VERBS.map(([verb, path]) => ({
     verb,
@@ -40,10 +41,10 @@ export function programPanel(context) {
   });
   const open = buttonOf(file);
   const upload = h("div", { class: "upload", hidden: true });
-  const element = controlCard(
+  const element = card(
     "program",
     t("program"),
-    h("div", { class: "current" }, name, lamp),
+    h("div", { class: "current" }, name, stateElement),
     message,
     h("div", { class: "row verbs" }, ...verbs.map(({ button }) => button)),
     h(
@@ -111,18 +112,18 @@ export function programPanel(context) {
       const program = programOf(state);
       const timePaused = state.simulator?.paused ?? false;
       const word = program === null ? "" : stateLabel(program.state, t, timePaused);
-      const offline = state.connection === "connected" ? "" : t("connection.needed");
+      const reason = disabledReason(state, t);
       setText(name, program?.name || t("program.none"));
-      setText(lamp, word);
-      setAttribute(lamp, "data-state", timePaused && program?.state === "running" ? "paused" : (program?.state ?? ""));
+      setText(stateElement, word);
+      setAttribute(stateElement, "data-state", timePaused && program?.state === "running" ? "paused" : (program?.state ?? ""));
       const { values, level, message: reported } = program ?? { values: {}, level: 0, message: "" };
       setText(message, level > 0 ? (faultMessage(values, language) || reported) + lineLabel(values, t) : "");
       message.hidden = message.textContent === "";
       for (const { verb, button } of verbs) {
         const there = state.services.includes(actions.programService(verb));
-        lock(button, offline || (there ? "" : t("program.unavailable")));
+        lock(button, reason || (there ? "" : t("program.unavailable")));
       }
-      lock(open, offline);
+      lock(open, reason);
       const news = program === null ? "" : `${program.name}: ${word}`;
       if (news !== announced && news !== "") announce(news);
       announced = news;

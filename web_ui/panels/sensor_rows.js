@@ -1,35 +1,90 @@
 // The rows of the sensor panel: SI values and Thymio's integers. Pure.
+//
+// Sensors declare their rows in Python (docs/plugins.md), also those of plug-ins. The rows here are those that combine
+// several topics, or show a text instead of a number.
 
 import { BUTTONS, GROUND, PROXIMITY } from "../state/names.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("../state/index.js").SensorInfo} SensorInfo */
+/** @typedef {import("../i18n/index.js").Translate} Translate */
 /**
  * @typedef {object} Row
  * @property {string} label
  * @property {(robot: Robot) => string} value
- * @property {(robot: Robot) => number | undefined} raw
- * @property {number} full   full scale of the integer, for the bar
+ * @property {(robot: Robot) => readonly (number | undefined)[]} words   integers; undefined: not received yet
+ * @property {number | null} full   the integer that fills the bar; null: no bar
  */
+/** @typedef {[title: string, rows: Row[]]} Group */
 
 const WHEEL_RADIUS_M = 0.022;
 const PROXIMITY_FULL = 4505;
 const GROUND_FULL = 1023;
-// docs/spec/thymio-robot.md sections 2.1, 7.3 and 7.4
+const SPEED_FULL = 500;
+// docs/spec/thymio-robot.md section 2.1
 const PWM_FULL = 801;
-const ACC_PER_G = 23;
-const GRAVITY = 9.81;
-const MIC_FULL = 255;
-const COUNTS_PER_VOLT = 198.9;
+const COMMAND_FULL = 127;
+const COMM_FULL = 1023;
 
-/** @param {import("../i18n/index.js").Translate} t @returns {[string, Row[]][]} */
-export function groupsOf(t) {
+/**
+ * @param {Translate} t
+ * @param {string} language
+ * @param {readonly SensorInfo[]} sensors   declarations
+ * @returns {Group[]}
+ */
+export function groupsOf(t, language, sensors) {
+  const others = new Map(sensors.map((sensor) => [sensor.name, sensor]));
+  /**
+   * The rows of a sensor that has its place and its label here.
+   *
+   * @param {string} name
+   * @param {string} title
+   */
+  const placed = (name, title) => {
+    const sensor = others.get(name);
+    others.delete(name);
+    return sensor === undefined ? [] : declaredRows(sensor, title, language);
+  };
+  const groups = builtInGroups(t, placed).filter(([, rows]) => rows.length > 0);
+  return [...groups, ...[...others.values()].map((sensor) => declaredGroup(sensor, language))];
+}
+
+/** @param {SensorInfo} sensor @param {string} language @returns {Group} */
+function declaredGroup(sensor, language) {
+  const title = chooseText(sensor.label, language) || sensor.name;
+  return [title, declaredRows(sensor, title, language)];
+}
+
+/** @param {SensorInfo} sensor @param {string} title  label of rows without one @param {string} language @returns {Row[]} */
+function declaredRows({ name, values }, title, language) {
+  let next = 0;
+  return values.map(({ label, unit, scale, digits, full_scale, words }) => {
+    const from = next;
+    next += words;
+    /** @param {Robot} robot */
+    const wordsOf = ({ raw }) => (raw[name] ?? []).slice(from, from + words);
+    return {
+      label: chooseText(label, language) || title,
+      value: (robot) => scaled(wordsOf(robot), scale, digits, unit),
+      words: wordsOf,
+      full: full_scale,
+    };
+  });
+}
+
+/**
+ * @param {Translate} t
+ * @param {(name: string, title: string) => Row[]} placed
+ * @returns {Group[]}
+ */
+function builtInGroups(t, placed) {
   return [
     [
       t("sensors.proximity"),
       PROXIMITY.map((name, index) => ({
         label: t(`proximity.${name}`),
         value: ({ proximity }) => formatRange(proximity[name], t),
-        raw: ({ raw }) => raw.proximity?.[index],
+        words: ({ raw }) => [raw.proximity?.[index]],
         full: PROXIMITY_FULL,
       })),
     ],
@@ -39,7 +94,7 @@ export function groupsOf(t) {
         label: t(`side.${name}`),
         value: ({ ground }) =>
           ground[name] === undefined ? "" : t(isBright(ground[name]) ? "sensors.bright" : "sensors.dark"),
-        raw: ({ raw }) => raw.ground?.[4 + index],
+        words: ({ raw }) => [raw.ground?.[4 + index]],
         full: GROUND_FULL,
       })),
     ],
@@ -48,8 +103,8 @@ export function groupsOf(t) {
       /** @type {const} */ (["left", "right"]).map((side, index) => ({
         label: t(`side.${side}`),
         value: ({ wheelSpeeds }) => `${(wheelSpeeds[side] * WHEEL_RADIUS_M * 100).toFixed(1)} cm/s`,
-        raw: ({ raw }) => raw.motor?.[index],
-        full: 500,
+        words: ({ raw }) => [raw.motor?.[index]],
+        full: SPEED_FULL,
       })),
     ],
     [
@@ -57,58 +112,35 @@ export function groupsOf(t) {
       /** @type {const} */ (["left", "right"]).map((side, index) => ({
         label: t(`side.${side}`),
         value: ({ raw }) => percent(raw.motor?.[2 + index], PWM_FULL),
-        raw: ({ raw }) => raw.motor?.[2 + index],
+        words: ({ raw }) => [raw.motor?.[2 + index]],
         full: PWM_FULL,
       })),
     ],
-    [
-      t("sensors.acceleration"),
-      ["x", "y", "z"].map((axis, index) => ({
-        label: axis,
-        value: ({ raw }) => unit(raw.accelerometer?.[index], GRAVITY / ACC_PER_G, "m/s²", 1),
-        raw: ({ raw }) => raw.accelerometer?.[index],
-        full: 32,
-      })),
-    ],
+    [t("sensors.acceleration"), placed("accelerometer", "")],
     [
       t("sensors.others"),
       [
-        {
-          label: t("sensors.temperature"),
-          value: ({ raw }) => unit(raw.temperature?.[0], 0.1, "°C", 1),
-          raw: ({ raw }) => raw.temperature?.[0],
-          full: 500,
-        },
-        {
-          label: t("sensors.microphone"),
-          value: ({ raw }) => percent(raw.sound?.[0], MIC_FULL),
-          raw: ({ raw }) => raw.sound?.[0],
-          full: MIC_FULL,
-        },
+        ...placed("temperature", t("sensors.temperature")),
+        ...placed("sound", t("sensors.microphone")),
         {
           label: t("sensors.remote"),
           value: ({ raw }) => (raw.remote === undefined ? "–" : t("sensors.address", { address: raw.remote[0] })),
-          raw: ({ raw }) => raw.remote?.[1],
-          full: 127,
+          words: ({ raw }) => [raw.remote?.[1]],
+          full: COMMAND_FULL,
         },
         {
           label: t("sensors.comm"),
           value: ({ raw }) => (raw.comm === undefined ? "–" : t("sensors.strength", { value: strongest(raw.comm) })),
-          raw: ({ raw }) => raw.comm?.[0],
-          full: 1023,
+          words: ({ raw }) => [raw.comm?.[0]],
+          full: COMM_FULL,
         },
-        {
-          label: t("sensors.battery"),
-          value: ({ raw }) => unit(raw.battery?.[0], 1 / COUNTS_PER_VOLT, "V", 2),
-          raw: ({ raw }) => raw.battery?.[0],
-          full: 4.2 * COUNTS_PER_VOLT,
-        },
+        ...placed("battery", t("sensors.battery")),
         {
           label: t("sensors.loudspeaker"),
           value: ({ sound: [frequency, seconds] }) =>
             frequency > 0 ? `${frequency.toFixed(0)} Hz` : seconds > 0 ? t("sensors.samples") : "–",
-          raw: () => undefined,
-          full: 1,
+          words: () => [],
+          full: null,
         },
       ],
     ],
@@ -117,25 +149,36 @@ export function groupsOf(t) {
       BUTTONS.map((name) => ({
         label: t(`button.${name}`),
         value: ({ buttons }) => t(buttons[name] ? "sensors.pressed" : "sensors.released"),
-        raw: ({ buttons }) => Number(buttons[name]),
+        words: ({ buttons }) => [Number(buttons[name])],
         full: 1,
       })),
     ],
   ];
 }
 
-/** The table as tab-separated text for a spreadsheet. @param {[string, Row[]][]} groups @param {Robot} robot */
+/** The table as tab-separated text for a spreadsheet. @param {Group[]} groups @param {Robot} robot */
 export function asText(groups, robot) {
   return groups
     .flatMap(([title, rows]) =>
-      rows.map((row) => [title, row.label, row.value(robot), row.raw(robot) ?? ""].join("\t")),
+      rows.map((row) => [title, row.label, row.value(robot), joined(row.words(robot))].join("\t")),
     )
     .join("\n");
 }
 
-/** @param {number | undefined} count @param {number} size  of one @param {string} name @param {number} digits */
-function unit(count, size, name, digits) {
-  return count === undefined ? "" : `${(count * size).toFixed(digits)} ${name}`;
+/** Integers as text. @param {readonly (number | undefined)[]} words */
+export function joined(words) {
+  return words.map((word) => word ?? "").join(" ");
+}
+
+/** @param {readonly number[]} words @param {number} scale @param {number} digits @param {string} unit */
+function scaled(words, scale, digits, unit) {
+  const numbers = words.map((word) => (word * scale).toFixed(digits)).join(" ");
+  return numbers === "" || unit === "" ? numbers : `${numbers} ${unit}`;
+}
+
+/** The text in a language, else in English. @param {import("../state/index.js").Label} label @param {string} language */
+function chooseText(label, language) {
+  return label[language] ?? label.en ?? "";
 }
 
 /** @param {number | undefined} count @param {number} full */

@@ -2,7 +2,7 @@
 
 import { card } from "./card.js";
 import { h, setAttribute, setText } from "./dom.js";
-import { asText, groupsOf } from "./sensor_rows.js";
+import { asText, groupsOf, joined } from "./sensor_rows.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
@@ -10,35 +10,8 @@ import { asText, groupsOf } from "./sensor_rows.js";
 const COPIED_MS = 2000;
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
-export function sensorsPanel({ t, store, announce }) {
-  const groups = groupsOf(t);
-  const rows = groups.map(([title, list]) => ({
-    title,
-    cells: list.map((row) => ({ row, ...cellsOf(row.label) })),
-  }));
-  const table = h(
-    "table",
-    {},
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        {},
-        h("th", { scope: "col" }, t("sensors.sensor")),
-        h("th", { scope: "col" }, t("sensors.value")),
-        h("th", { scope: "col" }, t("sensors.raw")),
-      ),
-    ),
-    ...rows.map(({ title, cells }) =>
-      h(
-        "tbody",
-        {},
-        h("tr", { class: "group" }, h("th", { colspan: 3, scope: "rowgroup" }, title)),
-        ...cells.map(({ element }) => element),
-      ),
-    ),
-  );
+export function sensorsPanel({ t, language, store, announce }) {
+  const table = new SensorTable(t);
   let frozen = false;
   const freeze = h("button", { type: "button", "aria-pressed": "false", "data-values": "freeze" }, t("sensors.freeze"));
   freeze.addEventListener("click", () => {
@@ -49,46 +22,86 @@ export function sensorsPanel({ t, store, announce }) {
   const copy = h("button", { type: "button", "data-values": "copy" }, t("sensors.copy"));
   copy.addEventListener("click", async () => {
     if (shown === undefined) return;
-    const done = await copyText(asText(groups, shown));
+    const done = await copyText(asText(table.groups, shown));
     announce(t(done ? "sensors.copied" : "sensors.notCopied"));
     setText(copy, t(done ? "sensors.copied" : "sensors.notCopied"));
     setTimeout(() => setText(copy, t("sensors.copy")), COPIED_MS);
   });
   const waiting = h("small", { class: "waiting", hidden: true }, t("sensors.waiting"));
-  const element = card("sensors", t("sensors"), h("div", { class: "row verbs" }, freeze, copy), waiting, table);
+  const element = card("sensors", t("sensors"), h("div", { class: "row verbs" }, freeze, copy), waiting, table.element);
+  // Values that no other part of the page needs are subscribed to while they are visible.
+  const reportOpen = () => store.dispatch({ type: "showSensors", shown: element.open });
+  element.addEventListener("toggle", reportOpen);
+  reportOpen();
   /** @type {Robot | undefined} */ let shown;
+  /** @type {readonly import("../state/index.js").SensorInfo[] | undefined} */ let declared;
   /** @param {Robot | undefined} robot */
   const show = (robot) => {
     if (robot === undefined) return;
     shown = robot;
-    for (const { cells } of rows) {
-      for (const { row, value, raw, bar } of cells) {
-        const count = row.raw(robot);
-        setText(value, row.value(robot));
-        setText(raw, count === undefined ? "" : String(count));
-        const share = Math.min(1, Math.abs(count ?? 0) / row.full);
-        setAttribute(bar, "style", `--share: ${share.toFixed(2)}`);
-      }
-    }
+    table.show(robot);
   };
   return {
     slot: "side",
     element,
-    render({ robots, selected, simulator }) {
+    render({ robots, selected, simulator, sensors }) {
       const robot = robots[selected];
       waiting.hidden = !simulator?.paused || robot === undefined || Object.keys(robot.raw).length > 0;
+      if (sensors !== declared) {
+        declared = sensors;
+        table.setGroups(groupsOf(t, language, sensors));
+        if (shown !== undefined) table.show(shown);
+      }
       if (frozen || robot === shown || !element.open) return;
       show(robot);
     },
   };
 }
 
-/** @param {string} label */
-function cellsOf(label) {
+/** The table of groups of rows, and the values in it. */
+class SensorTable {
+  /** @param {import("../i18n/index.js").Translate} t */
+  constructor(t) {
+    /** @type {import("./sensor_rows.js").Group[]} */ this.groups = [];
+    /** @type {Cells[]} */ this.cells = [];
+    const titles = ["sensors.sensor", "sensors.value", "sensors.raw"].map((key) => h("th", { scope: "col" }, t(key)));
+    this.element = h("table", {}, h("thead", {}, h("tr", {}, ...titles)));
+  }
+
+  /** @param {import("./sensor_rows.js").Group[]} groups */
+  setGroups(groups) {
+    this.groups = groups;
+    this.cells = [];
+    const bodies = groups.map(([title, rows]) => {
+      const cells = rows.map(cellsOf);
+      this.cells.push(...cells);
+      const heading = h("tr", { class: "group" }, h("th", { colspan: 3, scope: "rowgroup" }, title));
+      return h("tbody", {}, heading, ...cells.map(({ element }) => element));
+    });
+    this.element.replaceChildren(this.element.children[0], ...bodies);
+  }
+
+  /** @param {Robot} robot */
+  show(robot) {
+    for (const { row, value, raw, bar } of this.cells) {
+      const words = row.words(robot);
+      setText(value, row.value(robot));
+      setText(raw, joined(words));
+      const largest = Math.max(0, ...words.map((word) => Math.abs(word ?? 0)));
+      const share = row.full === null ? 0 : Math.min(1, largest / row.full);
+      setAttribute(bar, "style", `--share: ${share.toFixed(2)}`);
+    }
+  }
+}
+
+/** @typedef {ReturnType<typeof cellsOf>} Cells */
+
+/** @param {import("./sensor_rows.js").Row} row */
+function cellsOf(row) {
   const value = h("td", {});
   const raw = h("span", {});
   const bar = h("td", { class: "raw" }, raw);
-  return { element: h("tr", {}, h("th", { scope: "row" }, label), value, bar), value, raw, bar };
+  return { row, element: h("tr", {}, h("th", { scope: "row" }, row.label), value, bar), value, raw, bar };
 }
 
 /**

@@ -1,6 +1,7 @@
 // Stimuli for the selected robot: tap, clap, tilt, noise, light, temperature, battery, remote control, pen.
 
-import { controlCard } from "./card.js";
+import { disabledReason } from "../state/disabled_reason.js";
+import { card } from "./card.js";
 import { h, lock } from "./dom.js";
 
 /** @typedef {import("./index.js").Context} Context */
@@ -101,7 +102,7 @@ export function stimuliPanel({ t, actions, store }) {
     h(
       "button",
       { type: "button", "data-operate": "tap", onclick: () => actions.operate("_press/tap", "std_msgs/msg/Empty", {}) },
-      t("surroundings.tap"),
+      t("stimuli.tap"),
     ),
     h(
       "button",
@@ -110,7 +111,7 @@ export function stimuliPanel({ t, actions, store }) {
         "data-operate": "clap",
         onclick: () => actions.operate("_press/clap", "std_msgs/msg/Float32", { data: 1 }),
       },
-      t("surroundings.clap"),
+      t("stimuli.clap"),
     ),
   );
 
@@ -128,7 +129,7 @@ export function stimuliPanel({ t, actions, store }) {
       actions.operate(...send(values[name], (other) => values[other]));
     });
     return {
-      element: h("label", { class: "slider" }, h("span", {}, t(`surroundings.${name}`)), input, shown),
+      element: h("label", { class: "slider" }, h("span", {}, t(`stimuli.${name}`)), input, shown),
       refresh: () => {
         const value = setting()[name];
         input.value = String(value);
@@ -139,7 +140,7 @@ export function stimuliPanel({ t, actions, store }) {
 
   const remote = h(
     "div",
-    { class: "keypad", role: "group", "aria-label": t("surroundings.remote") },
+    { class: "keypad", role: "group", "aria-label": t("stimuli.remote") },
     ...KEYS.map(([sign, command]) =>
       h(
         "button",
@@ -156,21 +157,21 @@ export function stimuliPanel({ t, actions, store }) {
 
   const controls = h(
     "fieldset",
-    { "aria-label": t("surroundings") },
+    { "aria-label": t("stimuli") },
     knocks,
     ...sliders.map(({ element }) => element),
-    h("h3", {}, t("surroundings.remote")),
+    h("h3", {}, t("stimuli.remote")),
     remote,
     h("h3", {}, t("pen")),
     ...pen(t, actions),
   );
-  const element = controlCard("surroundings", t("surroundings"), controls);
+  const element = card("stimuli", t("stimuli"), controls);
   /** @type {string | null} */ let robot = null;
   return {
     slot: "side",
     element,
-    render({ connection, selected }) {
-      lock(controls, connection === "connected" ? "" : t("connection.needed"));
+    render({ connection, readOnly, selected }) {
+      lock(controls, disabledReason({ connection, readOnly }, t));
       if (selected === robot) return;
       robot = selected;
       for (const { refresh } of sliders) refresh();

@@ -1,5 +1,6 @@
 // Time control: pause, step, reset, speed, and the real-time factor that is reached.
 
+import { disabledReason } from "../state/disabled_reason.js";
 import { h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
 
 export const FACTORS = [0.25, 0.5, 1, 2, 5, 10];
@@ -41,7 +42,7 @@ export function timePanel({ t, actions, store, announce }) {
   const clock = h("output", { class: "clock", "aria-label": t("time.simulated"), title: t("time.simulated") });
   const element = h(
     "div",
-    { class: "time", role: "group", "aria-label": t("time"), "data-drives": "" },
+    { class: "time", role: "group", "aria-label": t("time") },
     pause,
     h("span", { class: "steps" }, step, length),
     reset,
@@ -54,8 +55,8 @@ export function timePanel({ t, actions, store, announce }) {
   return {
     slot: "footer",
     element,
-    render({ connection, simulator, timeNs, robots, selected, services }) {
-      const offline = connection === "connected" ? "" : t("connection.needed");
+    render({ connection, readOnly, simulator, timeNs, robots, selected, services }) {
+      const reason = disabledReason({ connection, readOnly }, t);
       const now = simulator?.paused ?? false;
       if (now !== paused) {
         pause.replaceChildren(
@@ -66,12 +67,12 @@ export function timePanel({ t, actions, store, announce }) {
         paused = now;
       }
       /** @param {string} verb */
-      const missing = (verb) => offline || (services.includes(`/simulator/${verb}`) ? "" : t("time.unavailable"));
+      const missing = (verb) => reason || (services.includes(`/simulator/${verb}`) ? "" : t("time.unavailable"));
       lock(step, missing("step") || (now ? "" : t("time.pauseFirst")));
-      lock(length, offline);
+      lock(length, reason);
       lock(pause, missing("pause"));
       lock(reset, missing("reset"));
-      lock(speed, offline);
+      lock(speed, reason);
       const factor = simulator?.factor ?? 1;
       if (factor !== wanted) showFactor(speed, factor);
       wanted = factor;

@@ -1,6 +1,7 @@
 // Camera views: overview, from above, follow, robot's view; sensor beams on or off.
 
 import { VIEWS } from "../scene/camera.js";
+import { disabledReason } from "../state/disabled_reason.js";
 import { h, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
@@ -30,7 +31,6 @@ export function viewsPanel({ t, scene, store, dragController, announce }) {
       "data-view": "move",
       title: t("move"),
       "aria-label": t("move"),
-      "data-drives": "",
       onclick: () => {
         dragController.setMode(!dragController.mode);
         if (!dragController.mode) return;
@@ -68,8 +68,8 @@ export function viewsPanel({ t, scene, store, dragController, announce }) {
   return {
     slot: "stage",
     element,
-    render({ connection }) {
-      lock(move, connection === "connected" ? "" : t("connection.needed"));
+    render({ connection, readOnly }) {
+      lock(move, disabledReason({ connection, readOnly }, t));
       for (const { view, button } of buttons) setAttribute(button, "aria-pressed", String(scene.camera.view === view));
       setAttribute(move, "aria-pressed", String(dragController.mode));
       hint.hidden = !dragController.mode;

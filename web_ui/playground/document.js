@@ -1,18 +1,15 @@
 // A playground as the creator edits it: titles, and items in order. Reads and writes the JSON format. Pure.
 
-import { checkSettled } from "./validation.js";
+import { checkWhole } from "./validation.js";
+import { BUILT_IN } from "./declarations.js";
 import { kindNamed, ROBOT } from "./kinds/index.js";
-import { check, describe, Fault, needed, optional, RULES } from "./rules.js";
+import { check, describe, Fault } from "./rules.js";
 
 /** @typedef {import("./parts.js").Item} Item */
 /** @typedef {Readonly<{ title: string, description: string, translations: Readonly<Record<string, any>>, items: readonly Item[] }>} Playground */
 
-export const FORMAT = 1;
-/** The same limit as the simulator's (sim/playground/reader.py). */
-export const MOST = { shapes: 1000, robots: 1000, translations: 50 };
-const LANGUAGE = /^[a-z]{2,3}(-[A-Za-z0-9]{2,8})*$/;
-
-const TITLES = { title: needed(RULES.line), description: optional(RULES.line, "") };
+const { format: FORMAT, limits: LIMITS, titles: TITLES } = BUILT_IN;
+const LANGUAGE = new RegExp(`^(${BUILT_IN.language})$`);
 
 /** Parse a playground. Throws a Fault with location and reason. @param {string} text @returns {Playground} */
 export function parse(text) {
@@ -38,11 +35,11 @@ export function parse(text) {
   check(TITLES, titles, "");
   checkTranslations(translations);
   const items = [
-    ...list(shapes, "shapes", MOST.shapes).map((shape, index) => readShape(shape, index)),
-    ...list(robots, "robots", MOST.robots).map((start, index) => readRobot(start, index)),
+    ...list(shapes, "shapes", LIMITS.shapes).map((shape, index) => readShape(shape, index)),
+    ...list(robots, "robots", LIMITS.robots).map((start, index) => readRobot(start, index)),
   ];
   const playground = { title: titles.title, description: titles.description ?? "", translations, items };
-  checkSettled(playground);
+  checkWhole(playground);
   return playground;
 }
 
@@ -73,7 +70,7 @@ export function tidy(item) {
   const fields = kindNamed(item.kind)?.fields ?? {};
   return /** @type {Item} */ (
     Object.fromEntries(
-      Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].defaultValue),
+      Object.entries(item).filter(([key, value]) => !(key in fields) || fields[key].required || value !== fields[key].default),
     )
   );
 }
@@ -100,9 +97,9 @@ function readShape(shape, index) {
   if (typeof shape.kind !== "string" || shape.kind === "robot")
     throw new Fault(`${key}.kind`, describe(shape.kind), { word: "fault.kind" });
   const { kind, name = `${kind}_${index}`, ...values } = shape;
-  check({ name: needed(RULES.name) }, { name }, key);
+  check({ name: ROBOT.fields.name }, { name }, key);
   const known = kindNamed(kind);
-  if (known !== undefined) check(known.fields, values, key); // shapes of plug-ins are checked by the simulator
+  if (known !== undefined) check(known.fields, values, key); // the simulator checks those that are not installed here
   return Object.freeze({ kind, name, ...values });
 }
 
@@ -118,7 +115,7 @@ function checkTranslations(translations) {
     typeof translations !== "object" ||
     translations === null ||
     Array.isArray(translations) ||
-    Object.keys(translations).length > MOST.translations
+    Object.keys(translations).length > LIMITS.translations
   ) {
     throw new Fault("translations", describe(translations), { word: "fault.object" });
   }

@@ -21,10 +21,16 @@ export function placed({ x, y, yaw }, points) {
   return points.map(([u, v]) => [x + cos * u - sin * v, y + sin * u + cos * v]);
 }
 
-/** The corners of a rectangle about its center. @param {number} sizeX @param {number} sizeY @returns {Point[]} */
+/**
+ * The corners of a rectangle about its center, counter-clockwise.
+ *
+ * @param {number} sizeX
+ * @param {number} sizeY
+ * @returns {Point[]}
+ */
 export function rectangle(sizeX, sizeY) {
   const [x, y] = [sizeX / 2, sizeY / 2];
-  return [[x, -y], [x, y], [-x, y], [-x, -y]]; // prettier-ignore
+  return [[-x, -y], [x, -y], [x, y], [-x, y]]; // prettier-ignore
 }
 
 /** A circle as a polygon. @param {number} radius @param {number} [sides] @returns {Point[]} */

@@ -1,8 +1,8 @@
 // The parts of an item, computed once per item: items are immutable.
 
-import { circle, placed } from "./geometry.js";
+import { circle, placed, rectangle } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
-import { footprintOf } from "./primitives.js";
+import { footprintOf, poseOf } from "./primitives.js";
 import { ROBOT_OUTLINE } from "../move/placed_bodies.js";
 
 /** @typedef {Readonly<Record<string, any> & { kind: string, name: string }>} Item  a shape, or the start pose of a robot (kind "robot") */
@@ -12,7 +12,8 @@ import { ROBOT_OUTLINE } from "../move/placed_bodies.js";
  * @typedef {object} Parts
  * @property {Record<string, any>} values       all values, including defaults
  * @property {import("./primitives.js").Primitive[]} primitives
- * @property {Footprint[]} footprints    ground on which no other body can stand
+ * @property {boolean} isExact           whether the primitives are those of the simulator
+ * @property {Footprint[]} footprints    ground on which no other body can stand; empty unless exact
  * @property {Point[][]} floors
  */
 
@@ -25,11 +26,12 @@ export function partsOf(item) {
   if (known !== undefined) return known;
   const kind = kindNamed(item.kind);
   const values = valuesOf(item);
-  const primitives = kind?.primitives(values) ?? [];
+  const primitives = kind?.draw(values) ?? [];
+  const isExact = kind === undefined || kind.isExact(values);
   const solids = primitives.filter((part) => part.type === "solid");
-  const footprints = item.kind === "robot" ? [robotFootprint(values)] : solids.map(footprintOf);
+  const footprints = item.kind === "robot" ? [robotFootprint(values)] : isExact ? solids.map(footprintOf) : [];
   const floors = primitives.flatMap((part) => (part.type === "floor" ? [part.vertices] : []));
-  const parts = { values, primitives, footprints, floors };
+  const parts = { values, primitives, isExact, footprints, floors };
   KNOWN.set(item, parts);
   return parts;
 }
@@ -43,9 +45,9 @@ export function valuesOf(item) {
 /** @param {import("./rules.js").Fields} fields @param {Record<string, any>} given @returns {Record<string, any>} */
 function filled(fields, given) {
   const values = { ...given };
-  for (const [key, { rule, defaultValue }] of Object.entries(fields)) {
-    if (!(key in given)) values[key] = defaultValue;
-    else if (rule.type === "object" && given[key] !== null) values[key] = filled(rule.fields ?? {}, given[key]);
+  for (const [key, field] of Object.entries(fields)) {
+    if (!(key in given)) values[key] = field.default;
+    else if (field.type === "object" && given[key] !== null) values[key] = filled(field.fields ?? {}, given[key]);
   }
   return values;
 }
@@ -57,13 +59,12 @@ function filled(fields, given) {
  * @returns {{ outline: Point[], height: number }[]}
  */
 export function outlinesOf(item) {
-  if (item.kind === "robot") return [{ outline: placed(poseOfRobot(valuesOf(item)), ROBOT_OUTLINE[0]), height: 0.053 }];
+  if (item.kind === "robot") return [{ outline: placed(poseOf(valuesOf(item)), ROBOT_OUTLINE[0]), height: 0.053 }];
   return partsOf(item).primitives.flatMap((part) => {
     if (part.type === "floor" || part.type === "paint") return [{ outline: part.vertices, height: 0 }];
     if (part.type === "trigger") return [];
     if (part.type === "print") {
-      const [x, y] = [part.sizeX / 2, (part.sizeY ?? part.sizeX) / 2];
-      return [{ outline: placed(part.pose, [[x, -y], [x, y], [-x, y], [-x, -y]]), height: 0 }]; // prettier-ignore
+      return [{ outline: placed(part.pose, rectangle(part.sizeX, part.sizeY ?? part.sizeX)), height: 0 }];
     }
     const footprint = footprintOf(part);
     const outline = "radius" in footprint ? placed(part.pose, circle(footprint.radius)) : [...footprint.vertices];
@@ -71,12 +72,7 @@ export function outlinesOf(item) {
   });
 }
 
-/** @param {Record<string, any>} values */
-function poseOfRobot({ x_m, y_m, yaw_rad }) {
-  return { x: x_m, y: y_m, yaw: yaw_rad };
-}
-
 /** @param {Record<string, any>} values @returns {Footprint} */
 function robotFootprint(values) {
-  return { vertices: placed(poseOfRobot(values), ROBOT_OUTLINE[0]) };
+  return { vertices: placed(poseOf(values), ROBOT_OUTLINE[0]) };
 }

@@ -43,7 +43,7 @@ export function footprintOf({ pose, size, radius }) {
   return { vertices: placed(pose, rectangle(...size)) };
 }
 
-/** The pose of a shape with these keys. @param {Record<string, any>} values @returns {Pose} */
-export function poseOf({ x_m, y_m, yaw_rad }) {
+/** The pose of an item with these keys; 0 for a yaw that it lacks. @param {Record<string, any>} values @returns {Pose} */
+export function poseOf({ x_m, y_m, yaw_rad = 0 }) {
   return { x: x_m, y: y_m, yaw: yaw_rad };
 }

@@ -1,60 +1,16 @@
-// Field types of playground files: the rules of the published schema, and reading values by them.
-// Pure. `tests/web_ui/playground.test.js` compares these tables with playgrounds/playground.schema.json.
+// The rules of fields of playground files, as the Python dataclasses declare them (`declarations.json`), and the check
+// of values by them. Pure.
 
-/**
- * @typedef {object} Rule
- * @property {"number" | "text" | "points" | "image" | "flag" | "object"} type
- * @property {string} [unit]     unit of a number
- * @property {number} [low]      minimum of a number
- * @property {number} [high]     maximum of a number
- * @property {RegExp} [pattern]  pattern of a text
- * @property {string} [meaning]  key of the description of a text
- * @property {number} [longest]  maximum number of characters
- * @property {number} [fewest]   minimum number of points
- * @property {Fields} [fields]   fields of an object
- */
-/** @typedef {{ rule: Rule, required: boolean, defaultValue?: any }} Field   defaultValue: the default */
+import { BUILT_IN } from "./declarations.js";
+
+/** @typedef {import("./declarations.js").DeclaredField} Field   a rule, and whether the field is required */
 /** @typedef {Readonly<Record<string, Field>>} Fields */
 /** @typedef {{ word: string, values?: Record<string, string | number> }} Phrase  a text key with the values to fill in */
 
-const FAR_M = 100;
-const MOST_POINTS = 1000;
+/** Text keys of the expectations of texts. */
+const FORMATS = { line: "fault.line", name: "fault.name", color: "fault.shade" };
 
-/** @param {string} unit @param {number} low @param {number} high @returns {Rule} */
-const number = (unit, low, high) => ({ type: "number", unit, low, high });
-/** @param {string} expression @param {string} meaning @param {number} longest @returns {Rule} */
-const text = (expression, meaning, longest) => ({
-  type: "text",
-  pattern: new RegExp(`^(${expression})$`, "u"),
-  meaning,
-  longest,
-});
-
-export const RULES = {
-  coordinate: number("m", -FAR_M, FAR_M),
-  extent: number("m", 0.001, FAR_M),
-  radius: number("m", 0, FAR_M),
-  penWidth: number("m", 0.001, 0.1),
-  angle: number("rad", -2 * Math.PI, 2 * Math.PI),
-  mass: number("kg", 0.001, 1000),
-  friction: number("parts of the weight", 0, 2),
-  restitution: number("parts of the speed", 0, 1),
-  duration: number("s", 0.01, 3600),
-  line: text("[^\\x00-\\x1f\\x7f\\ud800-\\udfff]*", "fault.line", 2000),
-  name: text("[A-Za-z](_?[A-Za-z0-9])*", "fault.name", 60),
-  shade: text("#[0-9A-Fa-f]{6}", "fault.shade", 7),
-  points: /** @type {Rule} */ ({ type: "points", fewest: 2 }),
-  area: /** @type {Rule} */ ({ type: "points", fewest: 3 }),
-  image: /** @type {Rule} */ ({ type: "image", longest: 6_000_000 }),
-  flag: /** @type {Rule} */ ({ type: "flag" }),
-};
-
-/** @param {Rule} rule @returns {Field} */
-export const needed = (rule) => ({ rule, required: true });
-/** @param {Rule} rule @param {any} defaultValue @returns {Field} */
-export const optional = (rule, defaultValue) => ({ rule, required: false, defaultValue });
-/** @param {Fields} fields @returns {Rule} */
-export const object = (fields) => ({ type: "object", fields });
+/** @type {Map<string, RegExp | null>} */ const PATTERNS = new Map();
 
 /** A rejected value: location, what was found, and what was expected. */
 export class Fault extends Error {
@@ -86,45 +42,50 @@ export function check(fields, data, key) {
         values: { names: Object.keys(fields).join(", ") },
       });
   }
-  for (const [name, { rule, required, defaultValue }] of Object.entries(fields)) {
-    if (defaultValue === null && members[name] === null) continue;
-    if (Object.hasOwn(members, name)) checkValue(rule, members[name], join(key, name));
-    else if (required) throw new Fault(join(key, name), "–", expectation(rule));
+  for (const [name, field] of Object.entries(fields)) {
+    if (field.nullable && members[name] === null) continue;
+    if (Object.hasOwn(members, name)) checkValue(field, members[name], join(key, name));
+    else if (field.required) throw new Fault(join(key, name), "–", expectation(field));
   }
 }
 
-/** @param {Rule} rule @param {unknown} value @param {string} key */
-export function checkValue(rule, value, key) {
-  if (rule.type === "object") return check(rule.fields ?? {}, value, key);
+/** @param {Field} field @param {unknown} value @param {string} key */
+export function checkValue(field, value, key) {
+  if (field.type === "object") return check(field.fields ?? {}, value, key);
   if (
-    rule.type === "points" &&
+    field.type === "points" &&
     Array.isArray(value) &&
-    value.length >= (rule.fewest ?? 0) &&
-    value.length <= MOST_POINTS
+    value.length >= (field.fewest ?? 0) &&
+    value.length <= (field.most ?? Infinity)
   ) {
     value.forEach((point, index) => {
       if (!Array.isArray(point) || point.length !== 2)
         throw new Fault(`${key}[${index}]`, describe(point), { word: "fault.point" });
-      point.forEach((part, axis) => checkValue(RULES.coordinate, part, `${key}[${index}][${axis}]`));
+      point.forEach((part, axis) => checkValue(BUILT_IN.coordinate, part, `${key}[${index}][${axis}]`));
     });
     return;
   }
-  if (!fits(rule, value)) throw new Fault(key, describe(value), expectation(rule));
+  if (!fits(field, value)) throw new Fault(key, describe(value), expectation(field));
 }
 
-/** @param {Rule} rule @param {unknown} value */
-function fits({ type, low = -Infinity, high = Infinity, pattern, longest = Infinity }, value) {
+/**
+ * Whether a value that is neither an object nor a list follows the rule of a field.
+ *
+ * @param {Field} field
+ * @param {unknown} value
+ */
+export function fits({ type, low = -Infinity, high = Infinity, pattern, longest = Infinity }, value) {
   if (type === "number") return typeof value === "number" && value >= low && value <= high;
   if (type === "flag") return typeof value === "boolean";
   if (typeof value !== "string" || (value.length > longest && [...value].length > longest)) return false;
-  return type === "image" ? value.startsWith("data:image/") : type === "text" && (pattern?.test(value) ?? true);
+  return type === "image" ? value.startsWith("data:image/") : type === "text" && matches(pattern, value);
 }
 
-/** The expectation of a rule, as a phrase. @param {Rule} rule @returns {Phrase} */
-export function expectation({ type, unit = "", low = 0, high = 0, meaning = "", longest = 0, fewest = 0 }) {
+/** The expectation of a field, as a phrase. @param {Field} field @returns {Phrase} */
+export function expectation({ type, unit = "", low = 0, high = 0, format, meaning = "", longest = 0, fewest = 0, most = 0 }) {
   if (type === "number") return { word: "fault.number", values: { unit, low: short(low), high: short(high) } };
-  if (type === "text") return { word: meaning, values: { longest } };
-  if (type === "points") return { word: "fault.points", values: { fewest, most: MOST_POINTS } };
+  if (type === "text") return { word: format === undefined ? meaning : FORMATS[format], values: { longest } };
+  if (type === "points") return { word: "fault.points", values: { fewest, most } };
   return { word: `fault.${type}` };
 }
 
@@ -137,6 +98,21 @@ export function describe(value) {
 /** @param {string} key @param {string} name */
 export function join(key, name) {
   return key === "" ? name : `${key}.${name}`;
+}
+
+/** Whether a pattern matches a whole text. @param {string | undefined} pattern @param {string} text */
+function matches(pattern, text) {
+  if (pattern === undefined) return true;
+  let expression = PATTERNS.get(pattern);
+  if (expression === undefined) {
+    try {
+      expression = new RegExp(`^(${pattern})$`, "u");
+    } catch {
+      expression = null; // a pattern of a plug-in with Python's syntax: the simulator checks it
+    }
+    PATTERNS.set(pattern, expression);
+  }
+  return expression === null || expression.test(text);
 }
 
 /** @param {number} value */

@@ -2,16 +2,16 @@
 // The same rules as in thymio_sim_ros/sim/playground/checks.py: the simulator accepts what passes here.
 
 import { containsPoint, overlap } from "./geometry.js";
-import { kindNamed } from "./kinds/index.js";
+import { kindNamed, ROBOT } from "./kinds/index.js";
 import { partsOf, valuesOf } from "./parts.js";
-import { check, Fault, needed, RULES } from "./rules.js";
+import { BUILT_IN } from "./declarations.js";
+import { check, Fault } from "./rules.js";
 
 /** @typedef {import("./parts.js").Item} Item */
 /** @typedef {import("./document.js").Playground} Playground */
 /** @typedef {import("./rules.js").Phrase} Phrase */
 
-/** The same limit as the simulator's (sim/playground/reader.py). */
-const MOST_PARTS = 10_000;
+const MOST_PARTS = BUILT_IN.limits.primitives;
 
 /**
  * The problem of an item among others; null if there is none.
@@ -25,14 +25,14 @@ export function findProblem(others, item) {
   if (kind === undefined) return null;
   try {
     const { kind: _kind, ...values } = item;
-    check({ ...kind.fields, name: needed(RULES.name) }, values, "");
+    check({ ...kind.fields, name: ROBOT.fields.name }, values, "");
     partsOf(item);
   } catch (error) {
     if (error instanceof Fault) return { word: "problem.value", values: { key: error.key, found: error.found } };
     throw error;
   }
   const blocker = blockerOf(others, item);
-  return blocker === null ? null : { word: "problem.taken", values: { name: blocker } };
+  return blocker === null ? null : { word: "problem.blocked", values: { name: blocker } };
 }
 
 /**
@@ -61,7 +61,9 @@ export function blockerOf(others, item) {
 export function isOnGround(others, item) {
   const kind = kindNamed(item.kind);
   if (kind === undefined || kind.group === "ground") return true;
-  const floors = others.flatMap((other) => partsOf(other).floors);
+  const grounds = others.map(partsOf).filter(({ floors }) => floors.length > 0);
+  if (grounds.some(({ isExact }) => !isExact)) return true; // only the simulator knows
+  const floors = grounds.flatMap((ground) => ground.floors);
   if (floors.length === 0) return true;
   return groundPoints(item).every((point) => floors.some((floor) => containsPoint(floor, point)));
 }
@@ -80,9 +82,9 @@ export function lacksGround(items) {
 function groundPoints(item) {
   const kind = kindNamed(item.kind);
   const values = valuesOf(item);
-  if (kind?.path !== undefined && !kind.relative) return values[kind.path];
-  const places = item.kind === "wall" ? (kind?.points ?? []) : (kind?.points ?? []).slice(0, 1);
-  return places.map(([x, y]) => [values[x], values[y]]);
+  if (kind?.path !== undefined && !kind.isRelative) return values[kind.path];
+  const keys = kind?.placement === "ends" ? kind.points : (kind?.points ?? []).slice(0, 1);
+  return keys.map(([x, y]) => [values[x], values[y]]);
 }
 
 /**
@@ -90,7 +92,7 @@ function groundPoints(item) {
  *
  * @param {Playground} playground
  */
-export function checkSettled({ items }) {
+export function checkWhole({ items }) {
   const shapes = items.filter(({ kind }) => kind !== "robot");
   const robots = items.filter(({ kind }) => kind === "robot");
   const keyed = [

@@ -9,8 +9,8 @@ import { parseSchema } from "./ros2msg.js";
 
 /** @typedef {import("./ros2msg.js").Definition} Definition */
 /** @typedef {{ id: number, topic: string, encoding: string, schemaName: string, schema: string }} Channel */
-/** @typedef {{ encoding: string, schemaName: string, schemaEncoding: string, schema: string }} Half */
-/** @typedef {{ id: number, name: string, type: string, request: Half, response: Half }} Service */
+/** @typedef {{ encoding: string, schemaName: string, schemaEncoding: string, schema: string }} MessageType */
+/** @typedef {{ id: number, name: string, type: string, request: MessageType, response: MessageType }} Service */
 /** @typedef {{ name: string, value?: any, type?: string }} Parameter */
 /** @typedef {{ level: number, message: string, id?: string }} Status */
 
@@ -56,7 +56,7 @@ function multiArray(element) {
 }
 
 /** Definitions of published messages; a server that knows the topic advertises the same. */
-const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
+const PUBLISHED_SCHEMAS = /** @type {Record<string, string>} */ ({
   "std_msgs/msg/Bool": "bool data",
   "std_msgs/msg/Empty": "",
   "std_msgs/msg/Float32": "float32 data",
@@ -124,7 +124,7 @@ export class Session {
     if (this.readOnly) return;
     let channel = this.published.get(topic);
     if (channel === undefined) {
-      const schema = OWN_SCHEMAS[schemaName];
+      const schema = PUBLISHED_SCHEMAS[schemaName];
       channel = { id: this.nextId++, definition: parseSchema(schemaName, schema) };
       this.published.set(topic, channel);
       this.#sendJson({
@@ -240,8 +240,8 @@ export class Session {
     const unwanted = [...this.subscriptions].filter(([, { topic }]) => !this.wants(topic)).map(([id]) => id);
     for (const id of unwanted) this.subscriptions.delete(id);
     if (unwanted.length > 0) this.#sendJson({ op: "unsubscribe", subscriptionIds: unwanted });
-    const held = new Set([...this.subscriptions.values()].map(({ channel }) => channel.id));
-    this.#subscribe([...this.channels.values()].filter(({ id }) => !held.has(id)));
+    const subscribed = new Set([...this.subscriptions.values()].map(({ channel }) => channel.id));
+    this.#subscribe([...this.channels.values()].filter(({ id }) => !subscribed.has(id)));
   }
 
   /** Subscribe to the wanted channels among these. @param {Channel[]} channels */
@@ -287,16 +287,16 @@ export class Session {
   }
 
   #emitChannels() {
-    const topics = this.inside([...this.channels.values()].map((channel) => channel.topic));
+    const topics = this.innerNames([...this.channels.values()].map((channel) => channel.topic));
     this.emit({ type: "channels", topics: topics.sort() });
   }
 
   emitServices() {
-    this.emit({ type: "services", names: this.inside([...this.services.keys()]).sort() });
+    this.emit({ type: "services", names: this.innerNames([...this.services.keys()]).sort() });
   }
 
   /** The page's names of those that belong to the suite. @param {string[]} names */
-  inside(names) {
+  innerNames(names) {
     return names.map((name) => this.names.inner(name)).filter((name) => name !== null);
   }
 

@@ -59,7 +59,7 @@ export class FlatView {
    * @param {object} options
    * @param {number} options.nowMs
    * @param {(name: string) => boolean} options.senses  whether the beams of a robot are drawn
-   * @param {import("../move/drag_controller.js").Held | null} options.held
+   * @param {import("../move/drag_controller.js").Dragged | null} options.held
    * @param {import("../creator/sketch.js").Sketch | null} options.sketch
    * @param {(name: string) => string} options.color
    * @param {() => void} options.changed   called when an image has been decoded

@@ -5,7 +5,7 @@ import * as THREE from "three";
 import { RING } from "../move/drag_controller.js";
 import { reach } from "../move/placed_bodies.js";
 
-/** @typedef {import("../move/drag_controller.js").Held} Held */
+/** @typedef {import("../move/drag_controller.js").Dragged} Held */
 
 const FREE = 0x1769d1;
 const TAKEN = 0xd11a1a;

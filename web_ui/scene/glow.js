@@ -19,13 +19,13 @@ export function glow(target, off, levels = [0, 0, 0], most) {
 }
 
 /**
- * A round spot, opaque in its center.
+ * The texture of a round spot, opaque in its center.
  *
  * @param {number} size  pixels
  * @param {[number, number, number]} color  0…255
  * @param {(share: number) => number} opacity  opacity 0…1 as a function of 1 in the center to 0 at the edge
  */
-export function spot(size, color, opacity) {
+export function spotTexture(size, color, opacity) {
   const data = new Uint8Array(size * size * 4);
   for (let row = 0; row < size; row++) {
     for (let column = 0; column < size; column++) {

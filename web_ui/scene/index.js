@@ -6,7 +6,6 @@ import { watchDrags } from "../move/drag.js";
 import { Camera } from "./camera.js";
 import { robotColor } from "../state/robot_colors.js";
 import { FlatView } from "./flat.js";
-import { RobotInstances } from "./robot_instances.js";
 import { Ghost } from "./ghost.js";
 import { createRenderer, isSoftware } from "./graphics.js";
 import { litScene } from "./lights.js";
@@ -15,9 +14,8 @@ import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
 import { pictureRatio, Quality } from "./quality.js";
-import { RobotModel } from "./robot.js";
+import { RobotsLayer } from "./robots_layer.js";
 import { SketchModel } from "./sketch.js";
-import { NameTags } from "./tags.js";
 import { isSensed } from "../state/names.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -48,10 +46,8 @@ export class SceneView {
    */
   constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, sketch, contextLost }) {
     this.canvas = canvas;
-    this.tags = new NameTags(labels);
     this.state = state;
     this.beforeDraw = beforeDraw;
-    this.robotTitle = robotTitle;
     this.dragController = dragController;
     this.ghost = new Ghost();
     this.sketch = sketch;
@@ -68,14 +64,11 @@ export class SceneView {
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
     /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.photoRequests = [];
-    /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel }>} */ this.robots = new Map();
     this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
-    this.near = new RobotInstances({ fine: true });
-    this.far = new RobotInstances({ fine: false });
+    this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle });
     this.scene.add(this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
-    this.scene.add(this.near.group, this.far.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     this.quality = new Quality(isSoftware(this.renderer) ? 1 : 0);
@@ -104,9 +97,7 @@ export class SceneView {
       element: canvas,
       camera: () => this.eye,
       targets: () =>
-        this.sketch() !== null
-          ? [] // robots in the creator have no buttons
-          : [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.targets.meshes : [])),
+        this.sketch() === null ? this.robots.targets : [], // robots in the creator have no buttons
       press,
       hover: (target) => {
         if (target?.robot === this.hovered?.robot && target?.button === this.hovered?.button) return;
@@ -173,8 +164,7 @@ export class SceneView {
 
   /**
    * The view as PNG in full resolution, whatever the current quality; null if the browser cannot create it. This runs
-   * in
-   * one task, so that the browser never shows a frame of the large canvas.
+   * in one task, so that the browser never shows a frame of the large canvas.
    *
    * @returns {Promise<Blob | null>}
    */
@@ -219,9 +209,8 @@ export class SceneView {
    * @param {string} [robot]
    */
   partPosition(part, robot = this.state().selected) {
-    const model = this.robots.get(robot)?.model;
-    const place = model?.group.visible ? model.partPosition(part) : null;
-    return place == null ? null : this.#toWindow(place);
+    const place = this.robots.visibleModel(robot)?.partPosition(part) ?? null;
+    return place === null ? null : this.#toWindow(place);
   }
 
   /** The line of sight through a pointer position. @param {{ clientX: number, clientY: number }} event */
@@ -270,7 +259,7 @@ export class SceneView {
     this.framed = sketch !== null;
     this.objects.update(state.objects);
     this.dragController.refresh();
-    this.ghost.update(this.dragController.held, this.dragController.mode);
+    this.ghost.update(this.dragController.dragged, this.dragController.mode);
     this.sketchModel.update(sketch);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
@@ -299,7 +288,7 @@ export class SceneView {
     this.flat.draw(state, {
       nowMs,
       senses: (name) => this.#isSensing(name),
-      held: this.dragController.held,
+      held: this.dragController.dragged,
       sketch: this.sketch(),
       color: (name) => robotColor(names, name),
       changed: () => this.invalidate(),
@@ -308,48 +297,18 @@ export class SceneView {
 
   /** @param {State} state @param {number} nowMs */
   #updateRobots(state, nowMs) {
-    for (const [name, { model, trail }] of [...this.robots]) {
-      if (name in state.robots) continue;
-      this.scene.remove(model.group, trail.group);
-      model.dispose();
-      trail.dispose();
-      this.tags.remove(name);
-      this.robots.delete(name);
-    }
-    let moving = false;
-    const names = Object.keys(state.robots);
-    for (const [name, robot] of Object.entries(state.robots)) {
-      let entry = this.robots.get(name);
-      if (entry === undefined) {
-        entry = { model: new RobotModel(name), trail: new PlaygroundModel() };
-        this.scene.add(entry.model.group, entry.trail.group);
-        this.robots.set(name, entry);
-      }
-      entry.trail.update(robot.trail);
-      moving = entry.model.update(robot, nowMs) || moving;
-      const sounds = robot.sound[0] > 0 || robot.sound[1] > 0;
-      const color = names.length > 1 ? robotColor(names, name) : "";
-      this.tags.show(name, (sounds ? "♪ " : "") + this.robotTitle(name), color);
-    }
-    const drawn = this.#drawnRobots(state, names);
-    this.near.update(drawn.filter(({ frame }) => !this.#isSmall(frame)));
-    this.far.update(drawn.filter(({ frame }) => this.#isSmall(frame)));
-    return moving;
+    const { hovered } = this;
+    return this.robots.update(state, {
+      nowMs,
+      hovered,
+      isSensing: (name) => this.#isSensing(name),
+      isSmall: (frame) => this.#isSmall(frame),
+    });
   }
 
   /** Whether beams and ground patches of a robot are drawn. @param {string} name */
   #isSensing(name) {
     return this.showSensors && !this.framed && isSensed(this.state(), name);
-  }
-
-  /** The visible robots. @param {State} state @param {string[]} names */
-  #drawnRobots({ robots }, names) {
-    return names.flatMap((name) => {
-      const group = this.robots.get(name)?.model.group;
-      if (!group?.visible) return [];
-      const hovered = this.hovered?.robot === name ? this.hovered.button : null;
-      return [{ look: { robot: robots[name], hovered, sensing: this.#isSensing(name) }, frame: group.matrix }];
-    });
   }
 
   /** Whether a robot at this position is too small on the screen for fine detail. @param {THREE.Matrix4} frame */
@@ -362,14 +321,10 @@ export class SceneView {
   }
 
   #placeLabels() {
-    const above = this.isFlat ? FLAT_LABEL_PX : 0;
-    for (const [name, { model }] of this.robots) {
-      const spot = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
-      this.tags.place(name, spot && { x: spot.x, y: spot.y - above });
-    }
+    this.robots.placeNames((place) => this.#project(place), this.isFlat ? FLAT_LABEL_PX : 0);
     const { robots, selected } = this.state();
-    const group = this.robots.get(selected)?.model.group;
-    const numbers = this.showNumbers && group?.visible ? valueLabelsOf(robots[selected]) : [];
+    const group = this.robots.visibleModel(selected)?.group;
+    const numbers = this.showNumbers && group !== undefined ? valueLabelsOf(robots[selected]) : [];
     this.valueLabels.show(numbers, ({ x, y, z }) =>
       group === undefined ? null : this.#project(group.localToWorld(new THREE.Vector3(x, y, z))),
     );
@@ -378,10 +333,7 @@ export class SceneView {
   #selectedPose() {
     const { robots, selected } = this.state();
     const pose = robots[selected]?.latest?.pose ?? null;
-    const group = this.robots.get(selected)?.model.group;
-    return pose === null || group === undefined
-      ? pose
-      : { x: group.position.x, y: group.position.y, yaw: group.rotation.z };
+    return pose === null ? null : (this.robots.drawnPose(selected) ?? pose);
   }
 
   /** World → CSS pixels of the canvas. @param {THREE.Vector3} place */

@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 
-import { glow, spot } from "./glow.js";
+import { glow, spotTexture } from "./glow.js";
 import { Instances, placeOf } from "./instances.js";
 import { LIGHTS, RGB_LIGHTS } from "./parts.js";
 
@@ -40,7 +40,7 @@ function facing({ place, normal }, radius, before) {
 /** @param {import("./robot_instances.js").Capacity} room */
 export function createLeds({ robots, fine }) {
   const each = LIGHTS.length;
-  const texture = spot(64, [255, 255, 255], (share) => share ** 2);
+  const texture = spotTexture(64, [255, 255, 255], (share) => share ** 2);
   const halo = new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false, opacity: 0.75 });
   const discs = new Instances(new THREE.CircleGeometry(1, fine ? 14 : 5), new THREE.MeshBasicMaterial(), { each, robots });
   const halos = new Instances(new THREE.PlaneGeometry(2, 2), halo, { each, robots });

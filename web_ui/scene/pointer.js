@@ -19,7 +19,7 @@ import { onShiftRelease } from "../input/sticky_press.js";
 export function watchPointer({ element, camera, targets, press, hover }) {
   const caster = new THREE.Raycaster();
   /** @type {Map<number, Target>} */ const held = new Map();
-  /** @type {Target[]} pressed until Shift is released */ let kept = [];
+  /** @type {Target[]} pressed until Shift is released */ let shiftHeld = [];
 
   /** @param {PointerEvent} event @returns {Target | null} */
   const targetAt = (event) => {
@@ -40,8 +40,8 @@ export function watchPointer({ element, camera, targets, press, hover }) {
   };
   /** @param {Target} target */
   const keep = (target) => {
-    if (kept.length === 0) onShiftRelease(() => kept.splice(0).forEach((each) => press(each, false)));
-    kept.push(target);
+    if (shiftHeld.length === 0) onShiftRelease(() => shiftHeld.splice(0).forEach((each) => press(each, false)));
+    shiftHeld.push(target);
   };
 
   // Registered for the capture phase, so that the camera's handlers do not see a press on a button.
@@ -53,7 +53,7 @@ export function watchPointer({ element, camera, targets, press, hover }) {
       event.stopImmediatePropagation();
       element.setPointerCapture(event.pointerId);
       held.set(event.pointerId, target);
-      kept = kept.filter(({ robot, button }) => robot !== target.robot || button !== target.button);
+      shiftHeld = shiftHeld.filter(({ robot, button }) => robot !== target.robot || button !== target.button);
       press(target, true);
     },
     { capture: true },

@@ -42,8 +42,8 @@ export class Quality {
     this.choice = "auto";
     /** @type {number[]} */ this.intervals = [];
     /** @type {number | null} */ this.lastMs = null;
-    /** The first measuring window is ignored: it includes the start of the page. */
-    this.settled = false;
+    /** Whether the first measuring window is over, which is ignored because it includes the start of the page. */
+    this.isWarm = false;
   }
 
   /** @param {string} choice  one of `QUALITIES` */
@@ -77,8 +77,8 @@ export class Quality {
     if (this.intervals.length < WINDOW) return false;
     const mean = this.intervals.reduce((sum, value) => sum + value, 0) / this.intervals.length;
     this.intervals = [];
-    if (!this.settled) {
-      this.settled = true;
+    if (!this.isWarm) {
+      this.isWarm = true;
       return false;
     }
     if (this.choice !== "auto") return false;

@@ -1,6 +1,6 @@
 // Labels with the robots' names: elements in a layer over the canvas, updated only where something changed.
 
-/** @typedef {{ x: number, y: number }} Spot  CSS pixels of the layer */
+/** @typedef {{ x: number, y: number }} LabelPosition  CSS pixels of the layer */
 
 export class NameTags {
   /** @param {HTMLElement} layer */
@@ -29,15 +29,15 @@ export class NameTags {
    * Position a label by the center of its lower edge; null hides it.
    *
    * @param {string} robot
-   * @param {Spot | null} spot
+   * @param {LabelPosition | null} position
    */
-  place(robot, spot) {
+  place(robot, position) {
     const tag = this.tags.get(robot);
     if (tag === undefined) return;
     const { label } = tag;
-    if (label.hidden !== (spot === null)) label.hidden = spot === null;
-    if (spot === null) return;
-    const transform = `translate(${Math.round(spot.x)}px, ${Math.round(spot.y)}px) translate(-50%, -100%)`;
+    if (label.hidden !== (position === null)) label.hidden = position === null;
+    if (position === null) return;
+    const transform = `translate(${Math.round(position.x)}px, ${Math.round(position.y)}px) translate(-50%, -100%)`;
     if (tag.transform !== transform) label.style.transform = tag.transform = transform;
   }
 

@@ -34,6 +34,14 @@ import { applyTransforms } from "./transforms.js";
  * @property {string[]} fallen    robots that fell off an edge, by their names in topics
  * @property {string[]} movables  names of movable objects
  */
+/** @typedef {Readonly<Record<string, string>>} Label   texts by language */
+/**
+ * A row of the sensor panel: the next words of a reading, each times `scale`; `full_scale` is the word that fills
+ * the bar.
+ *
+ * @typedef {{ label: Label, unit: string, scale: number, digits: number, full_scale: number | null, words: number }} SensorValue
+ */
+/** @typedef {{ name: string, label: Label, values: readonly SensorValue[] }} SensorInfo   declaration of a sensor */
 /**
  * A notice for the user; `cause` identifies its reason, so that it disappears when the reason is resolved.
  *
@@ -43,7 +51,7 @@ import { applyTransforms } from "./transforms.js";
  * @typedef {object} State
  * @property {"connecting" | "connected" | "lost" | "noToken" | "wrongToken"} connection
  * @property {boolean} readOnly   whether the server restricts this page to read-only access
- * @property {boolean} greeted    whether the server of this connection has identified itself
+ * @property {boolean} identified    whether the server of this connection has identified itself
  * @property {string} server
  * @property {string} sessionId
  * @property {string[]} topics
@@ -52,6 +60,8 @@ import { applyTransforms } from "./transforms.js";
  * @property {Simulator | null} simulator
  * @property {PlaygroundInfo[]} playgrounds
  * @property {Behavior[]} behaviors  built-in behaviors
+ * @property {readonly SensorInfo[]} sensors   sensors whose values are shown by their declarations
+ * @property {boolean} sensorsShown   whether the sensor panel is open
  * @property {ReadonlyMap<string, Marker>} markers  static markers
  * @property {ReadonlyMap<string, Marker>} objects  movable objects and doors
  * @property {Readonly<Record<string, Robot>>} robots
@@ -76,6 +86,7 @@ import { applyTransforms } from "./transforms.js";
  *   | { type: "removeStatus", ids: string[] }
  *   | { type: "fault", what: string }
  *   | { type: "select", robot: string }
+ *   | { type: "showSensors", shown: boolean }
  *   | { type: "upload", what: UploadKind, name: string, text: string }
  *   | { type: "uploaded", what: UploadKind, message: string | null, fault?: Fault | null }
  *   | { type: "forget", what: UploadKind }
@@ -84,7 +95,7 @@ import { applyTransforms } from "./transforms.js";
  *   | { type: "dismiss", id: number }} Message
  */
 
-const KEPT_NOTICES = 4;
+const MAX_NOTICES = 4;
 
 /** Cause of notices about a file that was rejected by the page. */
 export const FILE = "file";
@@ -95,7 +106,7 @@ export const CONNECTION = "connection";
 export const INITIAL = {
   connection: "connecting",
   readOnly: false,
-  greeted: false,
+  identified: false,
   server: "",
   sessionId: "",
   topics: [],
@@ -104,6 +115,8 @@ export const INITIAL = {
   simulator: null,
   playgrounds: [],
   behaviors: [],
+  sensors: [],
+  sensorsShown: false,
   markers: new Map(),
   objects: new Map(),
   robots: {},
@@ -129,18 +142,19 @@ export function reduce(state, message) {
 const STEPS = /** @type {Record<string, (state: State, message: any) => State>} */ ({
   connecting: (state) => ({ ...state, connection: state.connection === "lost" ? "lost" : "connecting" }),
   connected: (state) =>
-    withoutNotices({ ...state, connection: "connected", greeted: false, services: [], topics: [] }, [CONNECTION]),
+    withoutNotices({ ...state, connection: "connected", identified: false, services: [], topics: [] }, [CONNECTION]),
   disconnected: (state) => ({ ...state, connection: "lost" }),
   refused: (state, { withToken }) => ({ ...state, connection: withToken ? "wrongToken" : "noToken" }),
   serverInfo(state, { name, sessionId, readOnly = false }) {
-    const known = { ...state, greeted: true, server: name, sessionId, readOnly };
+    const known = { ...state, identified: true, server: name, sessionId, readOnly };
     if (sessionId === state.sessionId && sessionId !== "") return known;
     // On the same connection the simulation was restarted: topics stay, time is reset.
-    if (state.greeted) return { ...known, timeNs: 0 };
+    if (state.identified) return { ...known, timeNs: 0 };
     // Another simulator: discard the data of the previous one.
-    const { connection, notices, noticeCount, selected } = state;
+    const { connection, notices, noticeCount, selected, sensorsShown } = state;
     const remaining = notices.filter(({ cause }) => !isSimulatorCause(cause));
-    return { ...INITIAL, connection, notices: remaining, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
+    const own = { connection, notices: remaining, noticeCount, selected, sensorsShown };
+    return { ...INITIAL, ...own, readOnly, identified: true, server: name, sessionId };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
@@ -166,6 +180,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   removeStatus: (state, { ids }) => withoutNotices(state, ids.map(statusCause)),
   fault: (state, { what }) => withNotice(state, "error", what),
   select: (state, { robot }) => withoutStaleReadings({ ...state, selected: robot }, state.selected),
+  showSensors: (state, { shown }) => ({ ...state, sensorsShown: shown }),
   upload: (state, { what, name, text }) =>
     withoutNotices(withUpload(state, what, { name, text, phase: "sending", fault: null }), [uploadCause(what), FILE]),
   uploaded(state, { what, message, fault: reported = null }) {
@@ -255,6 +270,7 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs:
     return withChannels({ ...state, simulator }, state);
   },
   "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviors: JSON.parse(value.data) }),
+  "/simulator/_sensors": (state, value) => ({ ...state, sensors: JSON.parse(value.data) }),
   "/simulator/_playgrounds": (state, value) => ({
     ...state,
     playgrounds: JSON.parse(value.data).map(
@@ -277,7 +293,7 @@ function selection(wanted, robots) {
 function withNotice(state, level, text, cause = "") {
   if (state.notices.some((notice) => notice.text === text)) return state;
   const id = state.noticeCount + 1;
-  return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-KEPT_NOTICES) };
+  return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-MAX_NOTICES) };
 }
 
 /** Remove the notices of resolved causes. @param {State} state @param {readonly string[]} causes @returns {State} */

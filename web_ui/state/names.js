@@ -15,6 +15,7 @@ export const GLOBAL_TOPICS = [
   "/_markers/objects",
   "/simulator/_state",
   "/simulator/_playgrounds",
+  "/simulator/_sensors",
   "/aseba_runtime/_behaviours",
 ];
 
@@ -23,15 +24,6 @@ export const ROBOT_TOPICS = [
   "_ground_truth/odom",
   "joint_states",
   "_led/state",
-  "_raw/proximity",
-  "_raw/ground",
-  "_raw/motor",
-  "_raw/accelerometer",
-  "_raw/temperature",
-  "_raw/sound",
-  "_raw/remote",
-  "_raw/comm",
-  "_raw/battery",
   "_aseba/status",
   "_pen/trail",
   "_sound/state",
@@ -42,13 +34,20 @@ export const ROBOT_TOPICS = [
   ...BUTTONS.map((name) => `buttons/${name}`),
 ];
 
+/** A sensor's integers; which sensors there are is known from `/simulator/_sensors`. */
+const RAW_TOPIC = /^\/(?:([^/]+)\/)?(_raw\/(\w+))$/;
+/** Sensors whose integers the scene draws, with the beams. */
+const DRAWN_SENSORS = ["proximity", "ground"];
+/** Sensors whose rows in the sensor panel are not derived from their declarations. */
+const PANEL_SENSORS = ["motor", "remote", "comm"];
+
 /** With more robots than this, topics for panels and beams are subscribed to for the selected robot only. */
 export const MANY_ROBOTS = 4;
 
 /** Topics that are needed to draw a robot. */
 const DRAWN = /^(?:_ground_truth|joint_states|_led|buttons|_pen|_sound|_aseba)\b/;
 /** Topics that the transforms replace while the simulation runs. */
-const PLACED = /^(?:_ground_truth|joint_states)\b/;
+const POSE_TOPICS = /^(?:_ground_truth|joint_states)\b/;
 
 /** @typedef {{ isByTransforms: boolean }} Placed */
 /**
@@ -56,6 +55,8 @@ const PLACED = /^(?:_ground_truth|joint_states)\b/;
  * @property {Readonly<Record<string, Placed>>} robots
  * @property {string} selected
  * @property {{ paused: boolean } | null} simulator
+ * @property {readonly { name: string }[]} sensors   sensors that declare rows of the sensor panel
+ * @property {boolean} sensorsShown                  whether the sensor panel is open
  */
 
 /** @param {Pick<SubscriptionState, "robots">} state */
@@ -83,16 +84,30 @@ export function isWatched(state, topic) {
   const part = splitTopic(topic);
   if (part === null) return false;
   if (part.robot === null) return topic !== TRANSFORMS || hasManyRobots(state);
+  const sensor = RAW_TOPIC.exec(topic)?.[3];
+  if (sensor !== undefined && !isSensorShown(state, sensor)) return false;
   if (isSensed(state, part.robot)) return true;
-  if (PLACED.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
+  if (POSE_TOPICS.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
   return DRAWN.test(part.name);
+}
+
+/**
+ * Whether the integers of a sensor are drawn, or shown by the open sensor panel.
+ *
+ * @param {Pick<SubscriptionState, "sensors" | "sensorsShown">} state
+ * @param {string} sensor
+ */
+function isSensorShown({ sensors, sensorsShown }, sensor) {
+  if (DRAWN_SENSORS.includes(sensor)) return true;
+  return sensorsShown && (PANEL_SENSORS.includes(sensor) || sensors.some(({ name }) => name === sensor));
 }
 
 /** A key that changes whenever `isWatched` may return another result for the same topics. @param {SubscriptionState} state */
 export function subscriptionKey(state) {
-  if (!hasManyRobots(state)) return "";
+  const shown = state.sensorsShown ? state.sensors.map(({ name }) => name).join() : "closed";
+  if (!hasManyRobots(state)) return shown;
   const placed = Object.values(state.robots).filter(({ isByTransforms }) => isByTransforms).length;
-  return `${state.selected} ${placed} ${state.simulator?.paused}`;
+  return `${shown} ${state.selected} ${placed} ${state.simulator?.paused}`;
 }
 
 export const PARAMETERS = /** @type {const} */ ({
@@ -112,6 +127,8 @@ export const PARAMETERS = /** @type {const} */ ({
  */
 export function splitTopic(topic) {
   if (GLOBAL_TOPICS.includes(topic)) return { robot: null, name: topic };
+  const raw = RAW_TOPIC.exec(topic);
+  if (raw !== null) return { robot: raw[1] ?? "", name: raw[2] };
   const name = ROBOT_TOPICS.find((relative) => topic.endsWith(`/${relative}`));
   if (name === undefined) return null;
   const robot = topic.slice(1, -(name.length + 1));

@@ -2,9 +2,9 @@
 
 import { h, icon, ICONS, setAttribute, setText } from "../panels/dom.js";
 import { translator } from "../i18n/index.js";
+import tourTexts from "../i18n/tour.texts.js";
 import { placed } from "./place.js";
 import { STEPS } from "./steps.js";
-import { WORDS } from "./words.js";
 
 import "./tour.css";
 
@@ -19,7 +19,7 @@ const RING_PX = 5;
  * @param {() => void} options.close
  */
 export function createTour({ language, step: first, stepped, close }) {
-  const t = translator(language, WORDS);
+  const t = translator(language, tourTexts);
   let step = first;
   const title = h("h2", { id: "tour-title" });
   const text = h("p", { id: "tour-text" });

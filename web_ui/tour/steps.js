@@ -4,8 +4,8 @@
 
 export const STEPS = /** @type {readonly Step[]} */ ([
   { name: "scene", targets: ["#view", ".editor-slot"] },
-  { name: "pad", targets: [".dpad", ".fold"] },
-  { name: "hands", targets: ['[data-view="move"]'] },
+  { name: "buttons", targets: [".dpad", ".fold"] },
+  { name: "move", targets: ['[data-view="move"]'] },
   { name: "program", targets: ["#editor-switch"] },
   { name: "playgrounds", targets: ["#gallery-open", "#creator-switch"] },
 ]);

@@ -6,7 +6,8 @@ import re
 import pytest
 
 from aseba_vm import CompileError, compile
-from aseba_vm.messages import LANGUAGES, MESSAGES
+from aseba_vm.languages import texts
+from aseba_vm.messages import MESSAGES
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.vectors import load
 
@@ -213,7 +214,7 @@ def test_a_hint_names_the_line_of_the_open_block_in_the_file():
     hint = refused("var a\nif a == 1 then\n a = 2").hint
     assert str(hint) == "the 'if' of line 2 has no 'end'"
     assert hint.message(rows=(10, 11, 12)) == "the 'if' of line 12 has no 'end'"
-    assert hint.message(LANGUAGES["de"]) == "dem 'if' von Zeile 2 fehlt ein 'end'"
+    assert hint.message(texts("compiler", "de")) == "dem 'if' von Zeile 2 fehlt ein 'end'"
 
 
 # -- every edit helps --------------------------------------------------------------------------------------------------

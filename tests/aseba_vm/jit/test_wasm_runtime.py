@@ -28,7 +28,7 @@ print(machine.variables[128])
 print(wasm_runtime.is_usable(), file=sys.stderr)
 """
 
-CROWD = """
+BATCH_SCRIPT = """
 import sys
 from dataclasses import replace
 from aseba_vm.jit import wasm_runtime
@@ -59,7 +59,7 @@ def run(script: str, *, path: Path = ROOT, address_space: int = resource.RLIM_IN
 
 @pytest.fixture(scope="module")
 def poses() -> str:
-    return run(CROWD)[0]
+    return run(BATCH_SCRIPT)[0]
 
 
 @pytest.fixture(
@@ -85,7 +85,7 @@ def test_a_broken_package_is_reported_once_and_programs_run(broken):
 
 
 def test_a_broken_package_is_reported_once_and_crowds_move_the_same(broken, poses):
-    stdout, stderr = run(CROWD, path=broken)
+    stdout, stderr = run(BATCH_SCRIPT, path=broken)
     assert stdout == poses
     check_told_once(stderr)
 
@@ -97,12 +97,12 @@ def test_without_the_package_nothing_is_reported():
 @pytest.mark.skipif(not is_available(), reason="wasmtime is not installed")
 def test_memories_take_no_more_address_space_than_their_size(poses):
     assert run(PROGRAM, address_space=ENOUGH) == ("9000\n", ["True"])
-    assert run(CROWD, address_space=ENOUGH) == (poses, ["True"])
+    assert run(BATCH_SCRIPT, address_space=ENOUGH) == (poses, ["True"])
 
 
 @pytest.mark.skipif(not is_available(), reason="wasmtime is not installed")
 def test_where_memory_is_short_everything_works_without(poses):
-    for script, expected in ((PROGRAM, "9000\n"), (CROWD, poses)):
+    for script, expected in ((PROGRAM, "9000\n"), (BATCH_SCRIPT, poses)):
         stdout, stderr = run(script, address_space=TOO_LITTLE)
         assert stdout == expected
         check_told_once(stderr)

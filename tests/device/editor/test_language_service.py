@@ -1,13 +1,12 @@
-"""The language service: what an editor is told."""
+"""Answers of the language service to an editor."""
 
 import json
 
 import pytest
 
-from aseba_vm import messages
+from aseba_vm.languages import texts
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros import resources
-from thymio_sim_ros.device.editor import help as helps
 from thymio_sim_ros.device.editor.help_order import ORDER
 from thymio_sim_ros.device.editor.language_service import (
     MOST_CHARACTERS,
@@ -54,7 +53,7 @@ def test_other_programs_of_the_file_are_checked_too():
     assert answer["nodes"][1]["handlers"] == [{"name": "prox", "line": 10, "column": 9}]
 
 
-def test_events_and_constants_of_the_file_are_told():
+def test_events_and_constants_of_the_file_are_listed():
     answer = check(Question(FILE))
     assert answer["events"] == [{"name": "ping", "size": 1}]
     assert answer["constants"] == [{"name": "SPEED", "value": 200}]
@@ -65,18 +64,18 @@ def test_a_bare_program_may_bring_its_events_and_constants():
     assert answer["errors"] == []
 
 
-def test_a_program_that_compiles_tells_addresses_and_use():
+def test_a_program_that_compiles_has_addresses_and_memory_use():
     (node,) = check(Question("var a[3]\nvar b = 1\nonevent prox\nb = 2"))["nodes"]
     end = target().variables_end
     assert node["variables"] == [
         {"name": "a", "line": 1, "column": 5, "address": end, "size": 3},
         {"name": "b", "line": 2, "column": 5, "address": end + 3, "size": 1},
     ]
-    assert node["use"]["variables"] == (end + 4, 640)
+    assert node["use"]["variables"] == (end + 4, target().variables_size)
     assert node["use"]["bytecode"][1] == 1534
 
 
-def test_names_are_told_as_far_as_a_broken_text_can_be_read():
+def test_names_are_listed_as_far_as_a_broken_text_can_be_parsed():
     (node,) = check(Question("var a[3]\nsub s\n  a[0] = \nvar late = $"))["nodes"]
     assert [symbol["name"] for symbol in node["variables"]] == ["a", "late"]
     assert node["variables"][0]["address"] is None
@@ -110,9 +109,8 @@ def test_a_program_too_large_for_the_memory_is_an_error_without_a_place():
     assert (error["line"], error["kind"]) == (None, "bytecode-too-large")
 
 
-def test_messages_come_in_the_language_that_has_them(monkeypatch):
-    tables = {"en": messages.MESSAGES, "xx": {"unknown-event": "xx {0}"}}
-    monkeypatch.setattr("thymio_sim_ros.device.editor.language_service.LANGUAGES", tables)
+def test_messages_come_in_the_language_that_has_them(add_language):
+    add_language("xx", compiler={"unknown-event": "xx {0}"})
     answers = [check(Question("onevent zzzzz", language=language)) for language in ("xx", "en", "yy")]
     said = [answer["errors"][0]["message"] for answer in answers]
     assert said == ["xx zzzzz", "no event is called 'zzzzz'", "no event is called 'zzzzz'"]
@@ -125,27 +123,27 @@ def test_every_program_we_ship_is_without_errors_and_warnings(name):
     assert (answer["errors"], answer["warnings"]) == ([], [])
 
 
-def test_the_target_says_all_that_a_program_can_use():
-    told = json.loads(json.dumps(describe_target()))
+def test_the_target_lists_all_that_a_program_can_use():
+    reported = json.loads(json.dumps(describe_target()))
     assert {
         "name": "button.center",
         "size": 1,
         "address": target().addresses["button.center"][0],
         "hidden": False,
-        "help": helps.ENGLISH.variables["button.center"],
-    } in told["variables"]
-    assert {"name": "prox", "help": helps.ENGLISH.events["prox"]} in told["events"]
-    natives = {entry["name"]: entry for entry in told["natives"]}
+        "help": texts("help")["variables.button.center"],
+    } in reported["variables"]
+    assert {"name": "prox", "help": texts("help")["events.prox"]} in reported["events"]
+    natives = {entry["name"]: entry for entry in reported["natives"]}
     assert natives["leds.top"]["parameters"][0] == {"name": "red", "size": 1}
     assert natives["_poweroff"]["hidden"]
-    assert told["limits"]["bytecode"] == 1534
-    assert "onevent" in told["keywords"]
-    assert len(describe_target(PLAYGROUND)["natives"]) < len(told["natives"])
+    assert reported["limits"]["bytecode"] == 1534
+    assert "onevent" in reported["keywords"]
+    assert len(describe_target(PLAYGROUND)["natives"]) < len(reported["natives"])
 
 
 def test_what_beginners_need_most_comes_first():
-    told = describe_target()
-    names = {kind: [entry["name"] for entry in told[kind]] for kind in ("variables", "natives", "events")}
+    reported = describe_target()
+    names = {kind: [entry["name"] for entry in reported[kind]] for kind in ("variables", "natives", "events")}
     assert names["variables"][:2] == ["motor.left.target", "motor.right.target"]
     assert names["natives"][0] == "leds.top"
     families = list(dict.fromkeys(name.split(".")[0] for name in names["natives"] if not name.startswith("_")))
@@ -162,26 +160,26 @@ def test_every_name_for_beginners_has_its_place_and_no_other_name(kind):
 
 
 def test_every_name_of_the_robot_has_help():
-    told = describe_target()
-    entries = [entry for kind in ("variables", "natives", "events") for entry in told[kind]]
+    reported = describe_target()
+    entries = [entry for kind in ("variables", "natives", "events") for entry in reported[kind]]
     assert [entry["name"] for entry in entries if not entry["help"]] == []
 
 
-def test_help_comes_in_the_language_that_has_it(monkeypatch):
-    monkeypatch.setattr(helps, "TABLES", {"en": helps.ENGLISH, "xx": helps.HelpTable({"acc": "xx"}, {}, {})})
-    told = {entry["name"]: entry["help"] for entry in describe_target(language="xx")["variables"]}
-    assert told["acc"] == "xx"
-    assert told["leds.top"] == helps.ENGLISH.variables["leds.top"]
+def test_help_comes_in_the_language_that_has_it(add_language):
+    add_language("xx", help={"variables.acc": "xx"})
+    reported = {entry["name"]: entry["help"] for entry in describe_target(language="xx")["variables"]}
+    assert reported["acc"] == "xx"
+    assert reported["leds.top"] == texts("help")["variables.leds.top"]
 
 
 def test_a_loaded_program_is_described_with_the_topics_of_its_events():
     text = FILE.replace("targt", "target")
-    told = describe_program(load_program(text, "maze.aesl"), {"ping": "ping"})
-    assert (told["name"], told["node"], told["first_line"]) == ("maze.aesl", "thymio-II", 4)
-    assert told["source"].startswith("var counter")
-    assert told["file"] == text
-    assert told["events"] == [{"name": "ping", "size": 1, "topic": "ping"}]
-    assert told["variables"][0]["line"] == 4
+    reported = describe_program(load_program(text, "maze.aesl"), {"ping": "ping"})
+    assert (reported["name"], reported["node"], reported["first_line"]) == ("maze.aesl", "thymio-II", 4)
+    assert reported["source"].startswith("var counter")
+    assert reported["file"] == text
+    assert reported["events"] == [{"name": "ping", "size": 1, "topic": "ping"}]
+    assert reported["variables"][0]["line"] == 4
 
 
 def test_doubts_about_a_program_have_their_place():

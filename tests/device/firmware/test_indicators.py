@@ -45,7 +45,7 @@ def robot() -> Robot:
     return Robot()
 
 
-def test_a_robot_that_was_told_nothing_shows_nothing(robot: Robot) -> None:
+def test_a_robot_without_readings_shows_nothing(robot: Robot) -> None:
     assert robot.update(updates=100) == []
 
 
@@ -242,7 +242,7 @@ def test_after_a_reset_all_rules_begin_again(robot: Robot) -> None:
     assert robot.update() == [ShowOnLeds("ground", (32, 32))]
 
 
-def test_nothing_is_told_twice(robot: Robot) -> None:
+def test_unchanged_levels_cause_no_command(robot: Robot) -> None:
     assert robot.update({"prox.ground.delta": (900, 900)}) != []
     assert robot.update({"prox.ground.delta": (901, 902)}) == []
 

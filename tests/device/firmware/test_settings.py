@@ -39,7 +39,7 @@ def test_flashed_settings_are_kept_in_a_file(tmp_path: Path) -> None:
     assert [again[address] for address in range(92)] == [settings[address] for address in range(92)]
 
 
-def test_a_new_robot_has_what_the_file_says_or_the_first_values(tmp_path: Path) -> None:
+def test_a_new_robot_has_the_settings_of_the_file_or_the_initial_values(tmp_path: Path) -> None:
     for settings, kept in ((Settings(), 0), (Settings(tmp_path / "settings.json"), 2)):
         settings[0] = 2
         settings.flash()
@@ -62,12 +62,12 @@ def test_settings_outlive_a_disk_that_is_full(tmp_path: Path) -> None:
     settings.flash()
     settings[0] = 3
     with disk.files_end_at(100):
-        assert settings.flash() == f"settings are not stored: {file}: {disk.TOLD}"
+        assert settings.flash() == f"settings are not stored: {file}: {disk.FILE_TOO_LARGE}"
     assert Settings(file)[0] == 2
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_place_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_written_is_reported(tmp_path: Path) -> None:
     (tmp_path / "robot").touch()
     settings = Settings()
     settings._file = tmp_path / "robot" / "settings.json"

@@ -1,4 +1,4 @@
-"""A record of what the microphone told."""
+"""Recordings of the microphone."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_the_swing_of_the_samples_is_the_intensity() -> None:
         assert max(record.samples) - min(record.samples) == intensity
 
 
-def test_loud_and_quiet_follow_each_other_as_they_were_heard() -> None:
+def test_a_recording_follows_the_intensity() -> None:
     record = SoundRecorder(1, 0)
     for tick, intensity in enumerate((0, 200, 0), start=1):
         record.record_until(tick * BLOCK_NS, intensity)

@@ -1,4 +1,4 @@
-"""Timers count simulated milliseconds and lose nothing while somebody listens."""
+"""Timers count simulated milliseconds and lose nothing while a program handles their event."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_the_same_moment_again_changes_nothing():
     assert [len(heard(timers, 6 * look)) for look in (0, 1, 1, 2, 2, 3, 3, 4)] == [0, 0, 0, 1, 0, 0, 0, 1]
 
 
-def test_what_fires_unheard_is_told_once():
+def test_a_timer_that_fires_several_times_unhandled_causes_one_event():
     timers = started(10, 0)
     assert timers.set_clock(95 * MILLISECOND_NS) == ()
     assert timers.set_clock(96 * MILLISECOND_NS) == (0,)

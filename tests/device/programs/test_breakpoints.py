@@ -38,26 +38,26 @@ def place(device):
 
 
 def test_a_breakpoint_pauses_before_its_line(device):
-    assert device.set_breakpoints([7]) == Breakpoints((7,), {})
+    assert device.run_control.set_breakpoints([7]) == Breakpoints((7,), {})
     prox(device)
     assert place(device) == ("paused", "prox", 7)
-    assert (device.get_variable("n"), device.get_variable("m")) == ((1,), (0,))
+    assert (device.variables.get("n"), device.variables.get("m")) == ((1,), (0,))
     assert device.status.pc is not None
 
 
 def test_resume_goes_on_off_the_breakpoint_and_meets_it_again(device):
-    device.set_breakpoints([5])
+    device.run_control.set_breakpoints([5])
     prox(device)
-    device.resume()
+    device.run_control.resume()
     device.run(1000)
     assert place(device) == ("running", "", None)
-    assert device.get_variable("m") == (1,)
+    assert device.variables.get("m") == (1,)
     prox(device)
     assert place(device) == ("paused", "prox", 5)
 
 
 def test_lines_without_code_move_to_the_next_with_code(device):
-    assert device.set_breakpoints([6, 7, 1000]) == Breakpoints((7,), {6: 7, 1000: None})
+    assert device.run_control.set_breakpoints([6, 7, 1000]) == Breakpoints((7,), {6: 7, 1000: None})
 
 
 def test_breakpoints_of_a_file_count_its_lines():
@@ -65,69 +65,69 @@ def test_breakpoints_of_a_file_count_its_lines():
     device = AsebaDevice()
     device.load(load_program(text, "test.aesl"))
     device.run(1000)
-    assert device.set_breakpoints([1, 3, 8]) == Breakpoints((3, 9), {1: None, 8: 9})
+    assert device.run_control.set_breakpoints([1, 3, 8]) == Breakpoints((3, 9), {1: None, 8: 9})
     prox(device)
     assert place(device) == ("paused", "prox", 9)
 
 
 def test_new_breakpoints_replace_the_old_ones(device):
-    device.set_breakpoints([5])
-    assert device.set_breakpoints([]) == Breakpoints()
+    device.run_control.set_breakpoints([5])
+    assert device.run_control.set_breakpoints([]) == Breakpoints()
     prox(device)
     assert place(device) == ("running", "", None)
 
 
 def test_step_line_stands_at_the_first_line_of_an_event_then_goes_line_by_line(device):
-    device.pause()
+    device.run_control.pause()
     device.feed("proximity", PROX)
     lines = []
     for _ in range(3):
-        device.step_line()
+        device.run_control.step_line()
         lines.append(place(device))
     assert lines == [("paused", "prox", 5), ("paused", "prox", 7), ("paused", "", None)]
-    assert device.get_variable("m") == (1,)
+    assert device.variables.get("m") == (1,)
 
 
-def test_a_step_into_a_fault_tells_it():
+def test_a_step_into_a_fault_reports_it():
     device = AsebaDevice()
     device.load(load_program("var i = 9\nvar t[2]\nonevent prox\nt[i] = 1", "test"))
     device.run(1000)
-    device.set_breakpoints([4])
+    device.run_control.set_breakpoints([4])
     prox(device)
-    device.resume()
+    device.run_control.resume()
     while device.status.state == "running":
         device.run(1000)
     assert place(device) == ("fault", "prox", 4)
 
 
 def test_a_robot_that_is_off_does_not_step(device):
-    device.switch_off()
-    device.step_line()
+    device.run_control.switch_off()
+    device.run_control.step_line()
     assert device.status.state == "off"
 
 
 def test_a_new_program_has_no_breakpoints(device):
-    device.set_breakpoints([5])
+    device.run_control.set_breakpoints([5])
     device.load(load_program(SOURCE, "again"))
     device.run(1000)
     prox(device)
     assert place(device) == ("running", "", None)
 
 
-def test_watched_local_events_are_told_also_without_a_handler(device):
-    device.watch_events({"acc", "button.left", "timer0", "prox"})
+def test_watched_local_events_are_returned_also_without_a_handler(device):
+    device.local_events.watch({"acc", "button.left", "timer0", "prox"})
     device.feed("accelerometer", [0, 0, 23])
     device.feed("buttons", [0, 1, 0, 0, 0])
     device.feed("buttons", [0, 1, 1, 0, 0])
-    device.set_variable("timer.period", (20, 0))
+    device.variables.set("timer.period", (20, 0))
     prox(device)
     for now_ns in (10_000_000, 60_000_000):
         device.advance(now_ns)
         device.run(1000)
-    assert device.pop_local_events() == ["acc", "button.left", "prox", "timer0", "timer0"]
-    assert device.pop_local_events() == []
+    assert device.local_events.pop() == ["acc", "button.left", "prox", "timer0", "timer0"]
+    assert device.local_events.pop() == []
 
 
-def test_nothing_is_remembered_of_events_that_nobody_watches(device):
+def test_unwatched_events_are_not_recorded(device):
     device.feed("accelerometer", [0, 0, 23])
-    assert device.pop_local_events() == []
+    assert device.local_events.pop() == []

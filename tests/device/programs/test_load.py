@@ -1,4 +1,4 @@
-"""What a program asks of its robot is charged; what is too much is told, and ends."""
+"""What a program asks of its robot is charged; too much is reported and stops it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.events import MAX_PENDING, PLAYGROUND
+from thymio_sim_ros.device.event_queue import MAX_PENDING, PLAYGROUND
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.load import MIN_CUTS, Load
 from thymio_sim_ros.device.programs.program import load_program
@@ -39,7 +39,7 @@ def test_a_run_makes_as_many_calls_as_the_budget_pays(body: str, most: int, opti
     device = running(body, options)
     for _ in range(MIN_CUTS):
         device.run(BUDGET)
-        load = device.pop_load()
+        load = device.load_meter.pop()
         assert 1 <= sum([*load.calls.values(), *load.emitted.values()]) <= max(most, 200)
 
 
@@ -47,13 +47,13 @@ def test_a_program_that_calls_too_much_is_named_until_it_stops() -> None:
     device = running("call leds.top(i % 32, 0, 0)\nemit e [1, 2]")
     for _ in range(MIN_CUTS):
         device.run(BUDGET)
-    said = device.pop_load().warning
+    said = device.load_meter.pop().warning
     assert "more than the robot can carry out" in said
     assert "emit e" in said
     assert "call leds.top" in said
-    device.stop()
+    device.run_control.stop()
     device.run(BUDGET)
-    assert device.pop_load().warning == ""
+    assert device.load_meter.pop().warning == ""
 
 
 def test_a_long_computation_is_no_overload() -> None:
@@ -61,7 +61,7 @@ def test_a_long_computation_is_no_overload() -> None:
     for _ in range(10):
         device.run(BUDGET)
     assert device.is_busy
-    assert device.pop_load().warning == ""
+    assert device.load_meter.pop().warning == ""
 
 
 def test_a_busy_handler_that_ends_is_no_overload() -> None:
@@ -69,7 +69,7 @@ def test_a_busy_handler_that_ends_is_no_overload() -> None:
     for pressed in (1, 0) * 5:
         device.feed("buttons", (0, 0, pressed, 0, 0))
         device.run(BUDGET)
-    load = device.pop_load()
+    load = device.load_meter.pop()
     assert load.calls == {"leds.top": 10}
     assert load.warning == ""
 
@@ -79,7 +79,7 @@ def test_events_that_cannot_wait_are_counted() -> None:
     device.run(BUDGET)
     for _ in range(MAX_PENDING + 7):
         device.receive_event("e", (1, 2))
-    load = device.pop_load()
+    load = device.load_meter.pop()
     assert load.lost == {"e": 7}
     assert "events lost" in load.warning
 
@@ -88,26 +88,26 @@ def test_a_program_that_names_ever_new_sounds_is_not_quoted_for_each(tmp_path: P
     device = running("call sound.play(i)", DeviceOptions(card=tmp_path))
     for _ in range(30):
         device.run(BUDGET)
-    assert 1 < len(device.pop_notices()) <= 50
+    assert 1 < len(device.notices.pop()) <= 50
 
 
-def test_a_full_card_answers_as_the_robot_and_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_card_fails_as_on_the_robot_and_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("thymio_sim_ros.device.firmware.sd_card.MAX_FILES", 4)
     text = "var i\nvar s[8]\nwhile i < 8 do\ncall sd.open(i, s[i])\ni++\nend{}"
     device = running("", DeviceOptions(card=tmp_path), text=text)
     device.run(BUDGET)
-    assert device.get_variable("s") == (0, 0, 0, 0, -1, -1, -1, -1)
-    assert device.pop_notices() == ["the card is full: it holds 4 files"]
+    assert device.variables.get("s") == (0, 0, 0, 0, -1, -1, -1, -1)
+    assert device.notices.pop() == ["the card is full: it holds 4 files"]
 
 
 def test_a_long_sound_is_charged_for_its_bytes(tmp_path: Path) -> None:
     (tmp_path / "p1.wav").write_bytes(bytes(44 + 2_000_000))
     device = running("call sound.play(1)", DeviceOptions(card=tmp_path))
     device.run(BUDGET)
-    assert device.pop_load().calls == {"sound.play": 1}
+    assert device.load_meter.pop().calls == {"sound.play": 1}
 
 
-def test_a_load_without_faults_says_nothing() -> None:
+def test_a_load_within_the_capacity_has_no_warning() -> None:
     assert Load(MIN_CUTS - 1, 10, {"leds.top": 9}).warning == ""
     assert "leds.top: 9" in Load(1, 1, {"leds.top": 9}).warning
     assert "replaced" in Load(replaced=30).warning

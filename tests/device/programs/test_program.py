@@ -115,7 +115,7 @@ def test_a_fault_has_its_line_in_the_file():
     assert program.line_of(len(program.program.words) - 2) == 8
 
 
-def test_an_unfinished_program_is_told_at_its_end():
+def test_the_error_of_an_unfinished_program_is_at_its_end():
     with pytest.raises(ProgramError) as caught:
         load_program(AESL.format(code="var a\na = "), "a.aesl")
     assert (caught.value.line, caught.value.column) == (6, 4)

@@ -38,13 +38,13 @@ def test_names_come_before_numbers_and_numbers_before_order():
     assert shares["carl"].notes == ("node 'thymio-II' 9 runs here, on number 3, as it was next in order",)
 
 
-def test_nodes_without_a_number_go_by_their_order_and_nobody_wonders():
+def test_nodes_without_a_number_are_assigned_in_order_without_a_note():
     shares = assign_programs(file_of(("thymio-II", 0, "a"), ("thymio-II", 0, "b")), [ANNA, BERT])
     assert codes(shares) == {"anna": "a", "bert": "b"}
     assert [share.notes for share in shares.values()] == [(), ()]
 
 
-def test_a_robot_without_a_node_runs_nothing_and_is_told():
+def test_a_robot_without_a_node_runs_nothing_and_gets_a_note():
     shares = assign_programs(file_of(("thymio-II", 1, "a"), ("thymio-II", 2, "b")), [ANNA, BERT, CARL])
     assert shares["carl"].program is None
     assert shares["carl"].notes == ("the file has no program left for this robot: it runs nothing",)
@@ -55,12 +55,12 @@ def test_the_only_node_with_a_robot_s_name_is_for_that_robot():
     assert codes(shares) == {"anna": None, "bert": "b"}
 
 
-def test_nodes_of_other_kinds_are_left_out_and_told():
+def test_nodes_of_other_kinds_are_skipped_with_a_note():
     shares = assign_programs(file_of(("thymio-II", 1, "a"), ("e-puck", 2, "b")), [ANNA])
     assert shares["anna"].notes == ("not for a Thymio, left out: node 'e-puck'",)
 
 
-def test_an_error_in_one_of_several_programs_says_in_which():
+def test_an_error_in_one_of_several_programs_names_the_node():
     with pytest.raises(ProgramError) as caught:
         file_of(("thymio-II", 1, "a"), ("anna", 2, "a b"))
     assert str(caught.value).startswith("test.aesl: line 3, column 36: node 'anna' 2: no variable")
@@ -123,7 +123,7 @@ def test_a_device_s_program_that_does_not_compile_is_an_error_otherwise():
         file_of((SUITE, 0, "a = b"), ("other", 0, "a"))
 
 
-def test_the_error_of_a_program_for_another_device_says_so():
+def test_the_error_of_a_program_for_another_device_names_the_device():
     with pytest.raises(
         ProgramError, match=r"no variable is called 'ir'.*; the program was made for the device 'e-puck'"
     ):

@@ -37,7 +37,7 @@ def call(ros, word, robot=""):
     return answer.success, answer.message
 
 
-def test_a_breakpoint_stops_before_its_line_and_tells_where(ros, runtime, prox):
+def test_a_breakpoint_stops_before_its_line_and_reports_the_position(ros, runtime, prox):
     runtime(SOURCE)
     status = Status(ros)
     assert set_parameters(ros, {"breakpoints": [6, 99]}).successful
@@ -84,7 +84,7 @@ def test_reset_stands_before_the_first_line(ros, runtime):
     ros.until(lambda: status.place == ("paused", "init", "1"))
 
 
-def test_a_robot_that_is_off_says_so(ros, runtime):
+def test_a_robot_that_is_off_reports_it(ros, runtime):
     runtime(SOURCE)
     status = Status(ros)
     ros.publisher(Empty, "/shutdown").publish(Empty())
@@ -125,7 +125,7 @@ def test_each_robot_may_have_breakpoints_of_its_own(ros, runtime):
     ros.until(lambda: bert["breakpoints"] == "[5]")
 
 
-def test_the_status_tells_use_of_the_memories_and_warnings(ros, runtime):
+def test_the_status_has_memory_use_and_warnings(ros, runtime):
     runtime("var n\nonevent prox\nreturn\nsub never\nreturn")
     status = Status(ros)
     ros.until(lambda: status["state"] == "running")
@@ -138,7 +138,7 @@ def test_the_status_tells_use_of_the_memories_and_warnings(ros, runtime):
     assert warning["message"] == "subroutine 'never' is never called"
 
 
-def test_a_late_listener_hears_the_last_fault(ros, runtime, prox):
+def test_a_late_subscriber_gets_the_last_fault(ros, runtime, prox):
     runtime("var i = 9\nvar t[3]\nonevent prox\n t[i] = 1")
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")
     prox()

@@ -1,4 +1,4 @@
-"""docs/aseba_ros.md: what its tables name is there, and what its examples type does what it says."""
+"""docs/aseba_ros.md: everything named in its tables exists, and the commands of its examples work."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COMMANDS = [shlex.split(line) for line in re.findall(r"^ros2 .+$", DOC, re.MULTI
 
 
 def names(*, where):
-    """What the first cells of tables name, of the rows whose second cell matches."""
+    """Return the names in the first cells of table rows whose second cell matches."""
     found = [re.findall(r"`([^`]+)`", row[1]) for row in ROWS if re.search(where, row[2])]
     return sorted({name.replace("<event>", "ping").replace("<name>", "counter") for cell in found for name in cell})
 
@@ -94,7 +94,7 @@ def test_the_service_calls_of_the_examples_are_answered(ros, runtime):
         request = json_messages.from_json(_json(text[0] if text else "{}"), service.Request)
         answer = ros.call(service, name, request)
         results = [answer.result] if hasattr(answer, "result") else getattr(answer, "results", [])
-        expected = name != "/aseba_runtime/check"  # the example has a mistake to be told
+        expected = name != "/aseba_runtime/check"  # the example has a mistake to be reported
         assert all(result.successful is expected for result in results)
 
 
@@ -109,7 +109,7 @@ def test_the_messages_of_the_examples_arrive(ros, runtime):
     ros.until(lambda: len(pongs) == len(published))
 
 
-def test_the_topics_of_the_examples_can_be_listened_to(ros, runtime):
+def test_the_topics_of_the_examples_exist(ros, runtime):
     runtime(MAZE, watch=["prox.horizontal"])
     wanted = {command[-1] for command in commands("topic", "echo")}
     ros.until(lambda: all(ros.node.count_publishers(name) for name in wanted))
@@ -125,11 +125,11 @@ def test_the_node_starts_as_in_the_examples(ros, command, maze):
 
 def test_the_refusal_of_the_text_is_ours(ros, runtime):
     runtime("var me = 1")
-    (told,) = re.findall(r"`(maze\.aesl: line [^`]+)`", DOC)
+    (reported,) = re.findall(r"`(maze\.aesl: line [^`]+)`", DOC)
     nodes = '<node name="thymio-II" nodeId="1">\n\n\n\n</node><node name="thymio-II" nodeId="2">\n\n\n\n      '
     text = f"<network>\n\n\n{nodes}motor.left.targt = 1</node></network>"
     result = set_parameters(ros, {"script.name": "maze.aesl", "script.source": text})
-    assert result.reason == told
+    assert result.reason == reported
 
 
 def _json(text):

@@ -27,7 +27,7 @@ def seen(value):
 
 
 class FakeRobot:
-    """A node that publishes what the driver publishes, as the driver does it."""
+    """A node that publishes the topics of the ROS driver as the driver does."""
 
     def __init__(self, ros):
         self.ros = ros
@@ -74,7 +74,7 @@ def test_the_ground_is_dark_or_bright(ros, robot, dark, bright):
     assert left < 200 < 800 < right
 
 
-def test_all_other_senses_arrive_with_their_events(ros, robot):
+def test_all_other_sensors_arrive_with_their_events(ros, robot):
     robot.say("buttons/left", Bool(data=True))
     robot.say("temperature", Temperature(temperature=23.4))
     robot.say("tap", Empty())
@@ -109,6 +109,6 @@ def test_there_are_no_topics_of_the_simulator(ros, robot):
     assert not [name for name in topics if name.startswith("/raw/") or name == "/_motor/target"]
 
 
-def test_a_range_that_is_no_number_is_nothing():
+def test_a_range_of_nan_means_no_obstacle():
     assert proximity_count(seen(math.nan)) == 0
     assert proximity_count(seen(0.2)) == 0

@@ -42,7 +42,7 @@ def test_an_event_from_ros_reaches_every_robot_that_declares_it(ros, runtime):
         ros.until(lambda robot=robot: get_variables(ros, "heard", "from", robot=robot) == [[1, 0], [0]])
 
 
-def test_or_one_robot_only(ros, runtime):
+def test_an_event_from_ros_can_be_for_one_robot_only(ros, runtime):
     runtime(HEAR, **TWO, emit_reaches="robot")
     ros.publisher(Int16MultiArray, "/bert/_aseba/emit").publish(event("ping", 3, 4))
     ros.until(lambda: get_variables(ros, "heard", robot="/bert") == [[3, 4]])
@@ -68,7 +68,7 @@ def test_an_event_that_only_another_robot_declares_reaches_it(ros, runtime):
         (Int16MultiArray(data=[1]), "layout.dim[0].label must be the name of the event"),
     ],
 )
-def test_an_event_that_cannot_be_is_refused_with_a_warning(ros, runtime, message, found):
+def test_an_invalid_event_is_rejected_with_a_warning(ros, runtime, message, found):
     runtime(HEAR)
     logs = ros.collect(Log, "/rosout")
     ros.publisher(Int16MultiArray, "/_aseba/emit").publish(message)
@@ -98,29 +98,29 @@ def test_an_event_whose_name_is_too_long_for_a_topic_has_none(ros, runtime):
     assert node.robots[0].program.events
 
 
-def test_robots_hear_each_other_but_not_themselves(ros, runtime):
+def test_robots_receive_events_of_others_but_not_their_own(ros, runtime):
     runtime(HEAR, **TWO)
-    told = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
+    reported = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
     press_left(ros, "anna")
-    ros.until(lambda: told and list(told[0].data) == [7, 8])
+    ros.until(lambda: reported and list(reported[0].data) == [7, 8])
     assert get_variables(ros, "heard", "from", robot="/bert") == [[7, 8], [1]]
     assert get_variables(ros, "times", robot="/anna") == [[0]]
 
 
-def test_robots_that_answer_each_other_for_ever_let_others_have_their_turn(ros, runtime):
+def test_robots_that_answer_each_other_endlessly_do_not_starve_others(ros, runtime):
     node = runtime(
         program("var n = 0\nonevent ball\nn = n + 1\nemit ball\nonevent button.left\nemit ball", ("ball", 0)),
         **TWO,
     )
     anna, bert = (endpoints.device for endpoints in node.robots)
     press_left(ros, "anna")
-    ros.until(lambda: bert.get_variable("n")[0] > 0)
-    assert anna.get_variable("n")[0] + bert.get_variable("n")[0] <= MAX_ROUNDS
-    before = bert.get_variable("n")[0]
+    ros.until(lambda: bert.variables.get("n")[0] > 0)
+    assert anna.variables.get("n")[0] + bert.variables.get("n")[0] <= MAX_ROUNDS
+    before = bert.variables.get("n")[0]
     assert any(endpoints.is_busy for endpoints in node.robots)
     for endpoints in node.robots:
         endpoints.run()
-    assert bert.get_variable("n")[0] > before
+    assert bert.variables.get("n")[0] > before
     assert ros.call(Trigger, "/anna/aseba/stop").success
 
 
@@ -178,21 +178,21 @@ def second(ros, robot, number=7, source=HEAR):
     return life
 
 
-def test_robots_of_different_runtimes_hear_each_other_once(ros, runtime):
+def test_robots_of_different_runtimes_receive_events_once(ros, runtime):
     runtime(HEAR, **TWO)
     other = second(ros, "carl")
     ros.until(lambda: ros.node.count_subscribers(TOPIC) == 2)
     air = ros.collect(Int16MultiArray, TOPIC)
-    told = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
+    reported = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
     press_left(ros, "carl")
     carl = other.robots[0].device
     ros.until(lambda: get_variables(ros, "heard", "from", robot="/bert") == [[7, 8], [7]])
     press_left(ros, "anna")
-    ros.until(lambda: carl.get_variable("from") == (1,))
+    ros.until(lambda: carl.variables.get("from") == (1,))
     ros.until(lambda: len(air) == 2)
     times = {robot: get_variables(ros, "times", robot=f"/{robot}")[0] for robot in ("anna", "bert", "carl")}
     assert times == {"anna": [1], "bert": [2], "carl": [1]}
-    assert len(told) == 1
+    assert len(reported) == 1
 
 
 def test_an_event_from_ros_reaches_robots_of_other_runtimes(ros, runtime):
@@ -204,25 +204,25 @@ def test_an_event_from_ros_reaches_robots_of_other_runtimes(ros, runtime):
 
     def heard():
         publisher.publish(event("ping", 5))
-        return device.get_variable("heard") == (5, 0)
+        return device.variables.get("heard") == (5, 0)
 
     ros.until(heard)
-    assert device.get_variable("from") == (0,)
+    assert device.variables.get("from") == (0,)
 
 
-def test_robots_of_another_radio_network_do_not_hear(ros, runtime):
+def test_robots_of_another_radio_network_receive_no_events(ros, runtime):
     runtime(HEAR, **TWO)
     setup = HEAR.replace("var times = 0", "var times = 0\ncall _rf.setup(2, 3)")
     other, third = second(ros, "carl", 7, setup), second(ros, "dora", 9, setup)
     ros.until(lambda: ros.node.count_subscribers(TOPIC) == 3)
     press_left(ros, "carl")
-    ros.until(lambda: third.robots[0].device.get_variable("times") == (1,))
+    ros.until(lambda: third.robots[0].device.variables.get("times") == (1,))
     assert get_variables(ros, "times", robot="/anna") == [[0]]
-    assert other.robots[0].device.get_variable("times") == (0,)
+    assert other.robots[0].device.variables.get("times") == (0,)
 
 
 @pytest.mark.parametrize(("values", "heard"), [([1, 2, 3, 4], [1, 2, 0, 0]), ([5], [5, 0, 0, 0])])
-def test_a_robot_hears_as_many_values_as_its_program_declares(ros, runtime, values, heard):
+def test_a_robot_gets_as_many_values_as_its_program_declares(ros, runtime, values, heard):
     runtime(HEAR)
     message = Int16MultiArray(data=[7, 0, 0, *values])
     message.layout.dim = [MultiArrayDimension(label=label) for label in ("ping", "another runtime")]

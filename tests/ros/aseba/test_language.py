@@ -1,4 +1,4 @@
-"""What the runtime tells editors: the target, and checks of texts that are not loaded."""
+"""Services of the runtime for editors: the target, and checks of texts that are not loaded."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import String
 
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import JSON
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import JSON
 from thymio_sim_ros.device.editor.language_service import MOST_CHARACTERS
 from thymio_sim_ros.ros.foxglove import json_messages
 
@@ -27,61 +27,61 @@ def check(ros, **given):
     return result.successful, json.loads(result.reason)
 
 
-def test_a_check_tells_errors_with_their_place_and_loads_nothing(ros, runtime):
+def test_a_check_reports_errors_with_position_and_loads_nothing(ros, runtime):
     runtime("var me = 1")
-    successful, told = check(ros, source="onevent prox\n  motor.left.targt = 1")
+    successful, reported = check(ros, source="onevent prox\n  motor.left.targt = 1")
     assert not successful
-    (error,) = told["errors"]
+    (error,) = reported["errors"]
     assert (error["line"], error["column"], error["length"]) == (2, 3, 16)
     assert get_variables(ros, "me") == [[1]]
 
 
-def test_a_check_tells_warnings_symbols_and_use(ros, runtime):
+def test_a_check_reports_warnings_symbols_and_use(ros, runtime):
     runtime("var me = 1")
     source = "var a[3]\nonevent ping\nemit pong a[0] + K\nsub s\nreturn"
-    successful, told = check(ros, source=source, name="x.aseba", events=["ping 1", "pong 1"], constants=["K 5"])
+    successful, reported = check(ros, source=source, name="x.aseba", events=["ping 1", "pong 1"], constants=["K 5"])
     assert successful
-    (warning,) = told["warnings"]
+    (warning,) = reported["warnings"]
     assert (warning["line"], warning["kind"]) == (4, "warning-uncalled-subroutine")
-    (node,) = told["nodes"]
+    (node,) = reported["nodes"]
     assert [symbol["name"] for symbol in node["variables"]] == ["a"]
     assert [symbol["name"] for symbol in node["handlers"]] == ["ping"]
     assert node["use"]["bytecode"][1] == 1534
-    assert told["constants"] == [{"name": "K", "value": 5}]
+    assert reported["constants"] == [{"name": "K", "value": 5}]
 
 
 def test_a_check_knows_the_robots_names(ros, runtime):
     runtime("var me = 1", robots=["anna", "bert"], follow_simulator=False)
-    successful, told = check(ros, source='<network><node name="anna">var a</node></network>')
+    successful, reported = check(ros, source='<network><node name="anna">var a</node></network>')
     assert successful
-    assert told["nodes"][0]["name"] == "anna"
+    assert reported["nodes"][0]["name"] == "anna"
 
 
 def test_a_check_may_bring_the_target_in_a_language(ros, runtime):
     runtime("var me = 1")
-    _, told = check(ros, source="", target=True, language="de")
-    assert told["target"]["language"] == "de"
-    assert {"name", "help"} <= told["target"]["natives"][0].keys()
-    assert "program" not in told["target"]
+    _, reported = check(ros, source="", target=True, language="de")
+    assert reported["target"]["language"] == "de"
+    assert {"name", "help"} <= reported["target"]["natives"][0].keys()
+    assert "program" not in reported["target"]
     assert "target" not in check(ros, source="")[1]
 
 
 @pytest.mark.parametrize(
     ("given", "found"),
     [
-        ({}, "no parameter 'source' found"),
-        ({"source": 3}, "source: INTEGER found, expected STRING"),
-        ({"source": "", "sauce": ""}, "parameter 'sauce' found, expected one of source"),
-        ({"source": "", "events": ["ping"]}, "events: 'ping' found, expected a name and a number"),
+        ({}, "found no parameter 'source'"),
+        ({"source": 3}, "source: found INTEGER, expected STRING"),
+        ({"source": "", "sauce": ""}, "found parameter 'sauce', expected one of source"),
+        ({"source": "", "events": ["ping"]}, "events: found 'ping', expected a name and a number"),
         ({"source": "#" * (MOST_CHARACTERS + 1)}, f"expected at most {MOST_CHARACTERS}"),
     ],
 )
-def test_a_request_that_cannot_be_understood_says_why(ros, runtime, given, found):
+def test_an_invalid_request_is_rejected_with_a_reason(ros, runtime, given, found):
     runtime("var me = 1")
-    successful, told = check(ros, **given)
+    successful, reported = check(ros, **given)
     assert not successful
-    assert told["errors"][0]["kind"] == "request"
-    assert found in told["errors"][0]["message"]
+    assert reported["errors"][0]["kind"] == "request"
+    assert found in reported["errors"][0]["message"]
 
 
 def test_a_request_may_come_as_the_json_of_a_bridge(ros, runtime):
@@ -89,8 +89,8 @@ def test_a_request_may_come_as_the_json_of_a_bridge(ros, runtime):
     text = json.dumps({"parameters": [{"name": "source", "value": {"type": 4, "string_value": "var 3"}}]})
     asked = json_messages.from_json(text.encode(), SetParametersAtomically.Request)
     answer = ros.call(SetParametersAtomically, "/aseba_runtime/check", asked)
-    told = json.loads(json.loads(json_messages.to_json(answer))["result"]["reason"])
-    assert told["errors"][0]["line"] == 1
+    reported = json.loads(json.loads(json_messages.to_json(answer))["result"]["reason"])
+    assert reported["errors"][0]["line"] == 1
     again = deserialize_message(serialize_message(asked), SetParametersAtomically.Request)
     assert again == asked
 
@@ -120,12 +120,12 @@ def test_an_editor_behind_the_bridge_checks_loads_and_steps(ros, studio, runtime
 
 def test_the_target_comes_with_the_program_and_changes_with_it(ros, runtime):
     runtime("var me = 1\nsub turn\nreturn")
-    targets = ros.collect(String, "/_aseba/target", latched=True)
+    targets = ros.collect(String, "/_aseba/target", transient_local=True)
     ros.until(lambda: targets)
-    told = json.loads(targets[-1].data)
-    assert told["name"] == "thymio-II"
-    assert told["program"]["variables"][0]["name"] == "me"
-    assert told["program"]["subroutines"] == [{"name": "turn", "line": 2, "column": 5}]
+    reported = json.loads(targets[-1].data)
+    assert reported["name"] == "thymio-II"
+    assert reported["program"]["variables"][0]["name"] == "me"
+    assert reported["program"]["subroutines"] == [{"name": "turn", "line": 2, "column": 5}]
     source = '<network><event name="a.b" size="2"/><node name="thymio-II">var you</node></network>'
     assert set_parameters(ros, {"script.source": source, "script.name": "you.aesl"}).successful
     ros.until(lambda: json.loads(targets[-1].data)["program"]["name"] == "you.aesl")
@@ -136,6 +136,6 @@ def test_the_target_comes_with_the_program_and_changes_with_it(ros, runtime):
 
 def test_the_language_of_the_target_is_a_parameter(ros, runtime):
     runtime("var me = 1")
-    targets = ros.collect(String, "/_aseba/target", latched=True)
+    targets = ros.collect(String, "/_aseba/target", transient_local=True)
     assert set_parameters(ros, {"language": "fr"}).successful
     ros.until(lambda: targets and json.loads(targets[-1].data)["language"] == "fr")

@@ -36,7 +36,7 @@ def values(status):
 def test_a_pressed_button_raises_its_event(ros, simulation, runtime):
     sim = simulation()
     runtime("onevent button.center\nif button.center == 1 then\n call leds.top(32, 0, 16)\nend")
-    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     press = ros.publisher(Bool, "/_press/center")
     press.publish(Bool(data=True))
     sim.until(lambda: state and list(state[-1].data[:3]) == [1.0, 0.0, 0.5])
@@ -93,7 +93,7 @@ def test_events_of_the_wrong_size_are_refused(ros, simulation, runtime):
 def test_a_program_that_does_not_compile_is_refused_with_its_place(ros, simulation, runtime):
     simulation()
     runtime("var a = 1")
-    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     bad = set_parameters(ros, {"script.source": "var a\n  motor.left.targt = 5", "script.name": "bad.aesl"})
     assert not bad.successful
     assert "line 2, column 3" in bad.reason
@@ -114,10 +114,10 @@ def set_parameters(ros, wanted):
     return ros.call(SetParametersAtomically, "/aseba_runtime/set_parameters_atomically", request).result
 
 
-def test_a_fault_is_told_with_its_line_and_stops_the_wheels(ros, simulation, runtime):
+def test_a_fault_is_reported_with_its_line_and_stops_the_wheels(ros, simulation, runtime):
     sim = simulation()
     runtime("var i = 9\nvar t[3]\nmotor.left.target = 100\nmotor.right.target = 100\nonevent button.center\n t[i] = 1")
-    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
     ros.publisher(Bool, "/_press/center").publish(Bool(data=True))
     sim.until(lambda: status and values(status[-1])["state"] == "fault")
@@ -143,7 +143,7 @@ def test_run_control_by_services(ros, simulation, runtime):
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > stopped.x_m + 0.01)
 
 
-def test_a_robot_that_comes_later_is_told_what_its_program_said_first(ros, simulation, runtime):
+def test_a_robot_that_is_discovered_later_gets_the_first_commands(ros, simulation, runtime):
     runtime("motor.left.target = 100\nmotor.right.target = 100\ncall leds.top(32, 0, 0)")
     sim = simulation(playground="base")
 
@@ -225,7 +225,7 @@ def test_a_playground_with_other_robots_gives_each_its_program(ros, simulation, 
     request = SetParameters.Request(parameters=[Parameter("playground", value=TWO_ROBOTS).to_parameter_msg()])
     assert ros.call(SetParameters, "/simulator/set_parameters", request).results[0].successful
     press = ros.publisher(Bool, "/anna/_press/center")
-    heard = ros.collect(Float32MultiArray, "/bert/_led/state", latched=True)
+    heard = ros.collect(Float32MultiArray, "/bert/_led/state", transient_local=True)
     sim.until(lambda: all(robot.pose.x_m > 0.01 for robot in sim.world.robots.values()))
     press.publish(Bool(data=True))
     sim.until(lambda: heard and heard[-1].data[0] > 0.5)
@@ -253,8 +253,8 @@ def too_fast():
 def test_a_robot_without_a_program_is_switched_on_with_its_menu(ros, simulation, runtime):
     sim = simulation()
     runtime()
-    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
-    shown = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
+    shown = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     events = ros.collect(Int16MultiArray, "/_aseba/events")
     center = ros.publisher(Bool, "/_press/center")
     right = ros.publisher(Bool, "/_press/right")
@@ -275,7 +275,7 @@ def test_a_robot_without_a_program_is_switched_on_with_its_menu(ros, simulation,
 def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runtime):
     sim = simulation()
     runtime(behaviour="obedient")
-    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     ros.publisher(Bool, "/_press/forward").publish(Bool(data=True))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
     assert set_parameters(ros, {"script.source": "var a = 1", "script.name": "mine"}).successful
@@ -284,16 +284,16 @@ def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runti
     sim.step(0.3)
     assert sim.world.robots["thymio"].pose == stopped
     sim.until(lambda: values(status[-1])["program"] == "mine")
-    shown = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    shown = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     assert set_parameters(ros, {"behaviour": "menu"}).successful
     sim.until(lambda: values(status[-1])["program"] == "menu.aesl")
     sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 0.0, 0.0], what="the black of one's own program")
 
 
-def test_built_in_behaviours_are_listed_for_whoever_offers_a_choice(ros, simulation, runtime):
+def test_built_in_behaviours_are_published_as_a_list(ros, simulation, runtime):
     simulation()
     runtime("var a = 1")
-    lists = ros.collect(String, "/aseba_runtime/_behaviours", latched=True)
+    lists = ros.collect(String, "/aseba_runtime/_behaviours", transient_local=True)
     ros.until(lambda: lists)
     listed = {entry["name"]: entry["description"] for entry in json.loads(lists[-1].data)}
     assert listed["explorer"].startswith("Explorer, yellow: drives about")
@@ -308,7 +308,7 @@ def test_a_behaviour_that_does_not_exist_is_refused(ros, simulation, runtime):
     assert "did you mean 'friendly'?" in result.reason
 
 
-def test_what_a_program_tells_its_robot_is_no_topic(ros, simulation, runtime):
+def test_internal_events_have_no_topic(ros, simulation, runtime):
     simulation()
     runtime(path="menu")
     ros.until(lambda: ros.node.count_publishers("/_aseba/events"))
@@ -323,13 +323,13 @@ onevent sound.finished
 </node></network>"""
 
 
-def test_a_program_s_sound_is_told_and_its_end_comes_back(ros, simulation, runtime):
+def test_the_sound_of_a_program_is_published_and_its_end_reported(ros, simulation, runtime):
     sim = simulation()
-    told = ros.collect(Float32MultiArray, "/_sound/state")
+    reported = ros.collect(Float32MultiArray, "/_sound/state")
     runtime(SOUND)
     done = ros.collect(Int16MultiArray, "/aseba/events/done")
     sim.until(lambda: done, what="the end of the sound")
-    (hertz, seconds, volume), *_, silence = (list(message.data) for message in told)
+    (hertz, seconds, volume), *_, silence = (list(message.data) for message in reported)
     assert (hertz, volume) == (440.0, 1.0)
     assert math.isclose(seconds, 10 * 0.016384, rel_tol=1e-5)
     assert silence[:2] == [0.0, 0.0]
@@ -338,7 +338,7 @@ def test_a_program_s_sound_is_told_and_its_end_comes_back(ros, simulation, runti
 def test_a_touched_button_lights_up_until_a_program_takes_its_lights(ros, simulation, runtime):
     sim = simulation()
     runtime("onevent button.left\ncall leds.buttons(0, 0, 0, 16)")
-    shown = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    shown = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
 
     def lights():
         labels = [dimension.label for dimension in shown[-1].layout.dim]
@@ -354,7 +354,7 @@ def test_a_touched_button_lights_up_until_a_program_takes_its_lights(ros, simula
 def test_a_robot_is_switched_off_and_on_again(ros, simulation, runtime):
     sim = simulation()
     runtime("motor.left.target = 200\nmotor.right.target = 200")
-    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.02)
     ros.publisher(Empty, "/shutdown").publish(Empty())
     sim.until(lambda: status and values(status[-1])["state"] == "off")
@@ -369,7 +369,7 @@ def test_a_robot_is_switched_off_and_on_again(ros, simulation, runtime):
 def test_a_robot_that_was_switched_on_with_the_menu_is_so_again(ros, simulation, runtime):
     sim = simulation()
     runtime(behaviour="menu")
-    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     center = ros.publisher(Bool, "/_press/center")
     sim.step(2.2)
     center.publish(Bool(data=True))
@@ -395,6 +395,6 @@ def test_a_program_writes_on_its_card(ros, simulation, runtime, tmp_path):
         ({"card": "/dev/null"}, "card /dev/null: File exists; expected a folder"),
     ],
 )
-def test_a_robot_that_cannot_be_is_refused_at_the_start(ros, parameters, found):
+def test_an_invalid_robot_is_rejected_at_the_start(ros, parameters, found):
     with pytest.raises(StartError, match=found):
         AsebaRuntime(ros.context, RuntimeParams(**parameters))

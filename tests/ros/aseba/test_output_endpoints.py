@@ -1,4 +1,4 @@
-"""What programs tell robots that listen, that come later, and that come again."""
+"""Commands of programs to robots that are subscribed, that subscribe later, and that are restarted."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KINDS = {"_motor/target": Int16MultiArray, "_led/single": Int16MultiArray, "soun
 
 
 class Robot:
-    """Somebody who listens to what a program says, until he leaves."""
+    """A subscriber of commands of a program, until `leave` is called."""
 
     def __init__(self, ros, topics=tuple(KINDS)):
         self.heard: list[list[float]] = []
@@ -42,14 +42,14 @@ def outputs(ros):
 
 
 def resend(ros, outputs):
-    """Twice: the first look sees who has come, the second one that no more come."""
+    """Resend twice: the first poll finds new subscribers, the second one that discovery is quiet."""
     for _ in range(2):
         outputs.resend()
     ros.settle()
     ros.deliver()
 
 
-def test_who_comes_later_is_told_once_what_nobody_heard(ros, outputs):
+def test_a_late_subscriber_gets_unreceived_commands_once(ros, outputs):
     for command in (MotorTargets(1, 2), PlayTone(440.0, None), MotorTargets(3, 4)):
         outputs.send(command)
     robot = Robot(ros)
@@ -58,7 +58,7 @@ def test_who_comes_later_is_told_once_what_nobody_heard(ros, outputs):
     assert sorted(robot.heard) == [[3, 4], [440.0, 0.0]]
 
 
-def test_lights_that_were_set_one_by_one_are_all_told_in_order(ros, outputs):
+def test_lights_that_were_set_one_by_one_are_sent_again_in_order(ros, outputs):
     for command in (SetLed(1, 10), SetLed(2, 20), SetLed(1, 30)):
         outputs.send(command)
     robot = Robot(ros, ["_led/single"])
@@ -66,7 +66,7 @@ def test_lights_that_were_set_one_by_one_are_all_told_in_order(ros, outputs):
     assert robot.heard == [[2, 20], [1, 30]]
 
 
-def test_who_hears_everything_hears_nothing_twice(ros, outputs):
+def test_a_subscriber_that_got_everything_gets_nothing_twice(ros, outputs):
     robot = Robot(ros)
     resend(ros, outputs)
     for command in (MotorTargets(1, 2), PlayTone(440.0, None)):
@@ -75,7 +75,7 @@ def test_who_hears_everything_hears_nothing_twice(ros, outputs):
     assert sorted(robot.heard) == [[1, 2], [440.0, 0.0]]
 
 
-def test_a_robot_that_was_started_again_is_told_what_holds(ros, outputs):
+def test_a_restarted_robot_gets_the_retained_commands(ros, outputs):
     first = Robot(ros)
     resend(ros, outputs)
     for command in (MotorTargets(1, 2), PlayTone(440.0, None)):
@@ -89,8 +89,8 @@ def test_a_robot_that_was_started_again_is_told_what_holds(ros, outputs):
 
 
 @pytest.mark.parametrize(("later_s", "heard"), [(0.0, [[1, 2]]), (FRESH_S, [])])
-def test_beside_one_who_listens_only_the_beginning_is_told_again(ros, outputs, monkeypatch, later_s, heard):
-    """A robot that was killed seems to listen for a while; who looks on later must not move anything."""
+def test_with_another_subscriber_only_fresh_commands_are_sent_again(ros, outputs, monkeypatch, later_s, heard):
+    """Discovery reports a killed robot as a subscriber for a while; a late viewer must not start a movement."""
     Robot(ros)
     resend(ros, outputs)
     outputs.send(MotorTargets(1, 2))

@@ -80,7 +80,7 @@ def test_an_error_in_one_of_several_programs_names_its_node(ros, runtime):
     assert "two.aesl: line 4, column 48: node 'thymio-II' 1: no variable is called 'L'" in result.reason
 
 
-def test_what_does_not_fit_is_told_in_the_warnings(ros, runtime):
+def test_what_does_not_fit_is_reported_as_a_warning(ros, runtime):
     runtime(NETWORK.replace('nodeId="2"', 'nodeId="9"'), robots=["anna", "bert", "carl"], follow_simulator=False)
     bert, carl = Status(ros, "/bert"), Status(ros, "/carl")
     ros.until(lambda: bert["state"] and carl["state"])
@@ -104,29 +104,29 @@ def test_constants_are_parameters_for_all_and_for_one(ros, runtime):
 @pytest.mark.parametrize(
     ("name", "value", "found"),
     [
-        ("script.constants.K", 40000, "40000 found, expected a whole number from -32768 to 32767"),
-        ("script.constants.K", "7", "'7' found, expected a whole number"),
+        ("script.constants.K", 40000, "found 40000, expected a whole number from -32768 to 32767"),
+        ("script.constants.K", "7", "found '7', expected a whole number"),
         ("script.constants.7up", 7, "a program cannot use the name '7up'"),
-        ("breakpoints", [0], "[0] found, expected lines from 1 on"),
-        ("breakpoints", list(range(1, 18)), "17 breakpoints found, expected at most 16"),
-        ("breakpoints", 4, "4 found, expected a list of lines"),
-        ("breakpoints", None, "breakpoints: nothing found, expected a value"),
-        ("robots.anna.breakpoints", 4, "4 found, expected a list of lines"),
-        ("watch", [3], "[3] found, expected a list of names"),
-        ("watch", "me", "'me' found, expected a list of names"),
-        ("watch", None, "watch: nothing found, expected a value"),
-        ("robots.anna.watch", "me", "'me' found, expected a list of names"),
-        ("local_events", True, "True found, expected a list of names"),
-        ("script.path", "~nobody-knows/x.aesl", "~nobody-knows/x.aesl"),
+        ("breakpoints", [0], "found [0], expected lines from 1 on"),
+        ("breakpoints", list(range(1, 18)), "found 17 breakpoints, expected at most 16"),
+        ("breakpoints", 4, "found 4, expected a list of lines"),
+        ("breakpoints", None, "breakpoints: found nothing, expected a value"),
+        ("robots.anna.breakpoints", 4, "found 4, expected a list of lines"),
+        ("watch", [3], "found [3], expected a list of names"),
+        ("watch", "me", "found 'me', expected a list of names"),
+        ("watch", None, "watch: found nothing, expected a value"),
+        ("robots.anna.watch", "me", "found 'me', expected a list of names"),
+        ("local_events", True, "found True, expected a list of names"),
+        ("script.path", "~no-such-user/x.aesl", "~no-such-user/x.aesl"),
         ("robots.anna.script.source", 3, "Wrong parameter type, expected 'Type.STRING'"),
-        ("robots.absent.script.source", 3, "3 found, expected text"),
+        ("robots.absent.script.source", 3, "found 3, expected text"),
         ("robots.absent.script.source", "var 3", "line 1, column 5"),
         ("scrip.source", "var a", "found unknown parameter scrip.source"),
         ("emit_reaches", "all", "expected network or robot"),
         ("script.path", "no_such_program", "no_such_program"),
     ],
 )
-def test_a_value_that_cannot_be_is_refused_with_its_reason(ros, runtime, name, value, found):
+def test_an_invalid_value_is_rejected_with_a_reason(ros, runtime, name, value, found):
     runtime("var me = 1", **TWO)
     result = set_parameters(ros, {name: value})
     assert not result.successful
@@ -138,11 +138,11 @@ def test_a_value_that_cannot_be_is_refused_with_its_reason(ros, runtime, name, v
     [
         ("watch", "me", "found 'me', expected a list"),
         ("breakpoints", 4, "found 4, expected a list"),
-        ("robots", ["/anna"], "'/anna' found, expected a namespace such as 'anna', or ''"),
-        ("robots", ["an na"], "'an na' found, expected a namespace"),
+        ("robots", ["/anna"], "found '/anna', expected a namespace such as 'anna', or ''"),
+        ("robots", ["an na"], "found 'an na', expected a namespace"),
     ],
 )
-def test_a_value_from_the_command_line_that_cannot_be_is_told_in_one_line(ros, name, value, found):
+def test_an_invalid_value_of_the_command_line_is_reported_in_one_line(ros, name, value, found):
     with pytest.raises(StartError, match=re.escape(found)):
         AsebaRuntime(ros.context, overrides={name: value})
 
@@ -157,9 +157,9 @@ def test_the_last_of_path_and_text_counts(ros, runtime):
     ros.until(lambda: status["program"] == "line_follower.aesl")
 
 
-def test_the_same_text_again_changes_nothing_and_a_reset_begins_anew(ros, runtime):
+def test_the_same_text_again_changes_nothing_and_a_reset_restarts(ros, runtime):
     robot = runtime("var me = 1\nonevent button.left\nme = 7").robots[0]
-    robot.device.set_variable("me", (9,))
+    robot.device.variables.set("me", (9,))
     assert set_parameters(ros, {"script.source": "var me = 1\nonevent button.left\nme = 7"}).successful
     assert get_variables(ros, "me") == [[9]]
     for verb in ("reset", "run"):
@@ -183,11 +183,11 @@ def test_another_program_ends_a_behaviour_and_the_behaviour_can_come_back(ros, r
     ros.until(lambda: get_variables(ros, "me") == [[2]])
 
 
-def test_a_file_that_was_written_anew_is_read_again(ros, runtime, tmp_path):
+def test_a_changed_file_is_read_again(ros, runtime, tmp_path):
     path = tmp_path / "counts.aesl"
     path.write_text("var me = 1\nonevent button.left\nme = 7")
     robot = runtime(path=str(path)).robots[0]
-    robot.device.set_variable("me", (9,))
+    robot.device.variables.set("me", (9,))
     assert set_parameters(ros, {"script.path": str(path)}).successful
     assert get_variables(ros, "me") == [[9]]
     path.write_text("var me = 2\nonevent button.left\nme = 7")
@@ -223,7 +223,7 @@ def state(*robots):
 def test_robots_that_stay_go_on_when_others_come_and_go(ros, runtime):
     node = runtime("var me = 1", robots=["anna"])
     simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
-    node.robots[0].device.set_variable("me", (42,))
+    node.robots[0].device.variables.set("me", (42,))
     simulator.publish(state("anna", "bert"))
     ros.until(lambda: len(node.robots) == 2)
     assert (me(ros, "anna"), me(ros, "bert")) == ([42], [1])
@@ -237,7 +237,7 @@ def test_robots_that_stay_go_on_when_others_come_and_go(ros, runtime):
     assert sorted(endpoints.number for endpoints in node.robots) == [1, 2]
 
 
-def test_a_robot_that_comes_later_gets_the_program_that_waits_for_it(ros, runtime):
+def test_a_robot_that_is_added_later_gets_its_program(ros, runtime):
     node = runtime("var me = 1", robots=["anna"])
     assert set_parameters(ros, {"robots.bert.script.source": "var me = 2"}).successful
     simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)

@@ -82,12 +82,12 @@ def test_variables_are_described(ros, runtime):
     assert nothing.type == ParameterType.PARAMETER_NOT_SET
 
 
-def test_a_watched_variable_has_a_latched_topic_that_changes_with_it(ros, runtime):
+def test_a_watched_variable_has_a_retained_topic(ros, runtime):
     runtime(SOURCE, watch=["list", "no.such"], watch_rate=100.0)
     counts_wanted = set_parameters(ros, {"watch": ["count", "prox.horizontal"]})
     assert counts_wanted.successful
-    counts = ros.collect(Int16MultiArray, "/aseba/variables/count", latched=True)
-    ranges = ros.collect(Int16MultiArray, "/aseba/variables/prox_horizontal", latched=True)
+    counts = ros.collect(Int16MultiArray, "/aseba/variables/count", transient_local=True)
+    ranges = ros.collect(Int16MultiArray, "/aseba/variables/prox_horizontal", transient_local=True)
     ros.until(lambda: counts and ranges)
     ros.publisher(Int16MultiArray, "/_raw/proximity").publish(Int16MultiArray(data=[7, 0, 0, 0, 0, 0, 0]))
     ros.until(lambda: list(counts[-1].data) == [4] and ranges[-1].data[0] == 7)
@@ -98,21 +98,21 @@ def test_a_watched_variable_has_a_latched_topic_that_changes_with_it(ros, runtim
 def test_a_robot_may_be_watched_alone(ros, runtime):
     runtime(SOURCE, robots=["anna", "bert"], follow_simulator=False, watch=["count"])
     assert set_parameters(ros, {"robots.bert.watch": ["list"]}).successful
-    lists = ros.collect(Int16MultiArray, "/bert/aseba/variables/list", latched=True)
+    lists = ros.collect(Int16MultiArray, "/bert/aseba/variables/list", transient_local=True)
     ros.until(lambda: lists and list(lists[-1].data) == [1, 2, 3, 4])
     ros.until(lambda: ros.node.count_publishers("/bert/aseba/variables/count") == 1)
     assert ros.node.count_publishers("/anna/aseba/variables/list") == 0
 
 
-def test_a_watched_variable_comes_with_the_program_that_has_it(ros, runtime):
+def test_a_watched_variable_gets_a_topic_with_the_program_that_declares_it(ros, runtime):
     runtime("var other", watch=["count"])
     assert ros.node.count_publishers("/aseba/variables/count") == 0
     assert set_parameters(ros, {"script.source": SOURCE}).successful
-    counts = ros.collect(Int16MultiArray, "/aseba/variables/count", latched=True)
+    counts = ros.collect(Int16MultiArray, "/aseba/variables/count", transient_local=True)
     ros.until(lambda: counts and list(counts[-1].data) == [3])
 
 
-def test_all_variables_come_in_one_table_while_somebody_listens(ros, runtime):
+def test_all_variables_are_in_one_table_while_it_has_subscribers(ros, runtime):
     node = runtime(SOURCE, watch_rate=50.0)
     tables = ros.collect(Int16MultiArray, "/_aseba/variables")
     ros.until(lambda: tables)
@@ -129,6 +129,6 @@ def test_all_variables_come_in_one_table_while_somebody_listens(ros, runtime):
     assert table()["_productId"] == [8]
     set_variables(ros, {"count": integer(99)})
     ros.until(lambda: table()["count"] == [99])
-    told = len(tables)
-    ros.until(lambda: len(tables) > told, what="the table again, for those who have just come")
-    assert node.robots[0].device.get_variable("count") == (99,)
+    reported = len(tables)
+    ros.until(lambda: len(tables) > reported, what="the table again, for those who have just come")
+    assert node.robots[0].device.variables.get("count") == (99,)

@@ -31,12 +31,12 @@ with dds_profile.alone() if sys.argv[1] == "alone" else contextlib.nullcontext()
 
 
 def matched(folder: Path, how: str) -> str:
-    """What a process says about a topic that it publishes and listens to."""
+    """Endpoints of a process that publishes and subscribes to a topic."""
     run = subprocess.run([sys.executable, "-c", MEET, how], cwd=folder, capture_output=True, text=True, check=True)
     return run.stdout.strip()
 
 
-def test_endpoints_of_a_process_alone_do_not_meet(tmp_path: Path) -> None:
+def test_endpoints_of_a_process_with_the_profile_do_not_match(tmp_path: Path) -> None:
     assert matched(tmp_path, "alone") == "matched 0"
     assert matched(tmp_path, "together") == "matched 1"
 
@@ -51,14 +51,14 @@ def test_the_environment_is_as_before_afterwards() -> None:
 @pytest.mark.parametrize(
     "name", [dds_profile.VARIABLE, "FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML"]
 )
-def test_a_profile_of_the_users_goes_first(name: str) -> None:
+def test_a_profile_of_the_user_has_priority(name: str) -> None:
     environment = {name: "theirs"}
     with dds_profile.alone(environment):
         assert environment == {name: "theirs"}
     assert environment == {name: "theirs"}
 
 
-def test_a_profile_in_the_working_folder_goes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_profile_in_the_working_folder_has_priority(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").touch()
     environment: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""Files of LTTng that our start made are gone after its end, those of others stay; broken ports hold nobody up."""
+"""New files of LTTng are removed, those of other processes are kept; incomplete ports do not block a start."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ def make(folder, name):
     return path
 
 
-def test_what_was_there_before_stays_and_what_is_new_goes(tmp_path):
+def test_only_new_files_are_removed(tmp_path):
     old = make(tmp_path, "lttng-ust-wait-6")
-    other = make(tmp_path, "somebody-else")
+    other = make(tmp_path, "other-file")
     before = shm_cleanup.present(tmp_path)
     new = make(tmp_path, "lttng-ust-wait-6-0")
     shm_cleanup.remove_new(before, tmp_path)
@@ -31,7 +31,7 @@ def test_what_was_there_before_stays_and_what_is_new_goes(tmp_path):
     assert not new.exists()
 
 
-def test_what_another_process_uses_stays(tmp_path):
+def test_files_that_another_process_uses_are_kept(tmp_path):
     before = shm_cleanup.present(tmp_path)
     new = make(tmp_path, "lttng-ust-wait-6-0")
     command = [sys.executable, "-c", HOLD, str(new)]
@@ -51,7 +51,7 @@ def age(path, seconds):
 
 
 @pytest.mark.parametrize("begin", [b"", bytes(52400), b"\x01" + bytes(52399)])
-def test_a_port_that_is_half_made_and_old_goes(tmp_path, begin):
+def test_an_old_incomplete_port_is_removed(tmp_path, begin):
     broken = tmp_path / "fastrtps_port7413"
     broken.write_bytes(begin)
     assert shm_cleanup.remove_incomplete_ports(tmp_path) == []  # it may be in the making
@@ -60,7 +60,7 @@ def test_a_port_that_is_half_made_and_old_goes(tmp_path, begin):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_ports_in_use_and_files_of_others_stay(tmp_path):
+def test_ports_in_use_and_other_files_are_kept(tmp_path):
     port, lock, other = (tmp_path / name for name in ("fastrtps_port7413", "fastrtps_port7413_el", "else"))
     port.write_bytes(b"\x02" + bytes(52399))
     lock.write_bytes(b"")
@@ -71,7 +71,7 @@ def test_ports_in_use_and_files_of_others_stay(tmp_path):
 
 
 @pytest.mark.process
-def test_a_node_starts_at_a_port_that_was_left_half_made():
+def test_a_node_starts_at_a_port_with_an_incomplete_file():
     """Fast DDS alone waits for ever there: the port at which the first participant of the domain listens."""
     pytest.importorskip("rclpy")
     domain = pytest.importorskip("thymio_sim_ros.testing.ros.domain")

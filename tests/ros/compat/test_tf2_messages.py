@@ -1,4 +1,4 @@
-"""TFMessage bytes, and a TFMessage type nobody compiled (docs/spec/ros-packaging.md section 1.3)."""
+"""Bytes of TFMessage, and its type built at run time (docs/spec/ros-packaging.md section 1.3)."""
 
 from __future__ import annotations
 
@@ -77,24 +77,24 @@ def test_ros_reads_the_bytes_as_a_transform_stamped(transform: Transform) -> Non
 
 
 @given(st.lists(transforms, max_size=5))
-def test_what_was_encoded_is_decoded(several: list[Transform]) -> None:
+def test_decode_inverts_encode(several: list[Transform]) -> None:
     assert decode(encode(several)) == tuple(several)
 
 
 @given(st.lists(transforms, min_size=1, max_size=2), st.data())
-def test_a_message_cut_short_is_refused(several: list[Transform], data: st.DataObject) -> None:
+def test_a_truncated_message_is_rejected(several: list[Transform], data: st.DataObject) -> None:
     whole = encode(several)
     cut = data.draw(st.integers(0, len(whole) - 1))
     with pytest.raises(TransformDataError):
         decode(whole[:cut])
 
 
-def test_big_endian_bytes_are_refused() -> None:
-    with pytest.raises(TransformDataError, match="not little-endian"):
+def test_big_endian_bytes_are_rejected() -> None:
+    with pytest.raises(TransformDataError, match="expected little-endian CDR"):
         decode(b"\x00\x00\x00\x00" + bytes(4))
 
 
-def test_a_string_without_room_for_its_end_is_refused() -> None:
+def test_a_string_without_room_for_its_end_is_rejected() -> None:
     with pytest.raises(TransformDataError, match="offset 8"):
         decode(encode([BASE])[:16] + bytes(120))
 
@@ -103,19 +103,19 @@ def test_the_type_is_available_here() -> None:
     assert tf2_messages.available()
 
 
-def test_the_stand_in_has_no_instances() -> None:
+def test_the_replacement_has_no_instances() -> None:
     with pytest.raises(TypeError, match="encode"):
-        tf2_messages._SerialisedTFMessage()
+        tf2_messages._SerializedTFMessage()
 
 
-def test_another_middleware_is_refused_by_name() -> None:
+def test_another_middleware_is_rejected_by_name() -> None:
     with pytest.raises(typesupport.TypeSupportError, match="rmw_cyclonedds_cpp"):
         typesupport.check_layouts("rmw_cyclonedds_cpp")
 
 
-def test_another_release_is_refused_with_both_versions(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_release_is_rejected_with_both_versions(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(typesupport, "release_of", lambda package: (5, 0))
-    with pytest.raises(typesupport.TypeSupportError, match=r"rosidl_runtime_c is 5\.0, known is 4\.6"):
+    with pytest.raises(typesupport.TypeSupportError, match=r"rosidl_runtime_c: found release 5\.0, expected 4\.6"):
         typesupport.check_layouts("rmw_fastrtps_cpp")
 
 
@@ -123,7 +123,7 @@ def test_a_package_that_is_not_installed_has_no_release() -> None:
     assert typesupport.release_of("no_such_package") is None
 
 
-def test_what_cannot_be_built_is_unavailable_with_one_warning(
+def test_a_type_that_cannot_be_built_is_unavailable_with_one_warning(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     class Metaclass(tf2_messages._Metaclass):
@@ -139,13 +139,13 @@ def test_what_cannot_be_built_is_unavailable_with_one_warning(
         assert not tf2_messages.available()
         assert not tf2_messages.available()
         assert [record.levelname for record in caplog.records] == ["WARNING"]
-        assert "rosidl_runtime_c is none, known is 4.6" in caplog.text
+        assert "rosidl_runtime_c: found release none, expected 4.6" in caplog.text
     finally:
         tf2_messages.available.cache_clear()
 
 
 class Peer:
-    """A node in a context of its own: what another process would see."""
+    """A node in its own context, as in another process."""
 
     def __init__(self, name: str, domain: int) -> None:
         self.context = Context()
@@ -162,7 +162,7 @@ class Peer:
         self.node.create_subscription(TFMessage, topic, lambda data: self.received.append(decode(data)), qos, raw=True)
 
     @property
-    def heard(self) -> int:
+    def matched_publishers(self) -> int:
         """Publishers that this peer's subscriptions are matched with: the publisher's side may know of it earlier."""
         return sum(subscription.get_publisher_count() for subscription in self.node.subscriptions)
 
@@ -197,7 +197,7 @@ def test_transforms_arrive_in_another_context_under_the_true_name_and_hash() -> 
     with _peers("simulator", "viewer") as (simulator, viewer):
         publisher = simulator.publisher("/tf")
         viewer.listen("/tf")
-        _until(lambda: publisher.get_subscription_count() == viewer.heard == 1, simulator, viewer)
+        _until(lambda: publisher.get_subscription_count() == viewer.matched_publishers == 1, simulator, viewer)
         publisher.publish(encode([BASE, WHEEL]))
         _until(lambda: bool(viewer.received), simulator, viewer)
         (endpoint,) = viewer.node.get_publishers_info_by_topic("/tf")
@@ -206,7 +206,7 @@ def test_transforms_arrive_in_another_context_under_the_true_name_and_hash() -> 
     assert str(endpoint.topic_type_hash) == HASH
 
 
-def test_a_latched_message_reaches_who_comes_later() -> None:
+def test_a_transient_local_message_reaches_a_late_subscriber() -> None:
     with _peers("simulator", "viewer") as (simulator, viewer):
         simulator.publisher("/tf_static", TRANSIENT_LOCAL).publish(encode([WHEEL]))
         viewer.listen("/tf_static", TRANSIENT_LOCAL)
@@ -222,7 +222,7 @@ def test_several_nodes_of_one_process_may_come_and_go() -> None:
         first, second, viewer = peers
         early = first.publisher("/tf")
         first.node.destroy_publisher(early)
-        # Latched: the publisher that went may still be counted as one of two when the viewer comes.
+        # Transient local: the publisher that went may still be counted as one of two when the viewer comes.
         publishers = [first.publisher("/tf", TRANSIENT_LOCAL), second.publisher("/tf", TRANSIENT_LOCAL)]
         viewer.listen("/tf", TRANSIENT_LOCAL)
         publishers[0].publish(encode([BASE]))
@@ -239,7 +239,7 @@ def test_the_events_executor_delivers_transforms() -> None:
         viewer.executor.remove_node(viewer.node)
         viewer.executor = experimental.EventsExecutor(context=viewer.context)
         viewer.executor.add_node(viewer.node)
-        _until(lambda: publisher.get_subscription_count() == viewer.heard == 1, simulator, viewer)
+        _until(lambda: publisher.get_subscription_count() == viewer.matched_publishers == 1, simulator, viewer)
         publisher.publish(encode([BASE]))
         _until(lambda: bool(viewer.received), simulator, viewer)
     assert viewer.received == [(BASE,)]
@@ -263,7 +263,7 @@ def _hash_of(description: Any) -> str:
     return "RIHS01_" + hashlib.sha256(json.dumps(value).encode()).hexdigest()
 
 
-def test_the_description_service_tells_the_type_whose_hash_it_is() -> None:
+def test_the_description_service_describes_the_type_of_the_hash() -> None:
     with _peers("simulator", "viewer") as (simulator, viewer):
         simulator.publisher("/tf")
         client = viewer.node.create_client(GetTypeDescription, "/simulator/get_type_description")
@@ -283,7 +283,7 @@ def test_the_description_service_tells_the_type_whose_hash_it_is() -> None:
     assert "geometry_msgs/msg/Quaternion" in sources
 
 
-def test_a_type_built_here_equals_the_compiled_one_and_talks_to_it() -> None:
+def test_a_built_type_equals_the_compiled_one_and_communicates_with_it() -> None:
     """MarkerArray has the shape of TFMessage and is compiled: the proof that the structures are right."""
     check_for_type_support(Marker)
     check_for_type_support(MarkerArray)
@@ -303,7 +303,7 @@ def test_a_type_built_here_equals_the_compiled_one_and_talks_to_it() -> None:
     with _peers("builder", "compiled") as (builder, compiled):
         publisher = builder.node.create_publisher(Built, "/markers", 10)
         compiled.node.create_subscription(MarkerArray, "/markers", received.append, 10)
-        _until(lambda: publisher.get_subscription_count() == compiled.heard == 1, builder, compiled)
+        _until(lambda: publisher.get_subscription_count() == compiled.matched_publishers == 1, builder, compiled)
         publisher.publish(serialize_message(sent))
         _until(lambda: bool(received), builder, compiled)
         (endpoint,) = compiled.node.get_publishers_info_by_topic("/markers")

@@ -36,7 +36,7 @@ TEXT = ParameterValue(
     ],
     ids=lambda message: type(message).__name__,
 )
-def test_very_many_parts_are_refused(message):
+def test_very_many_parts_are_rejected(message):
     with pytest.raises(TooManyPartsError):
         check_parts(serialize_message(message), type(message))
 
@@ -57,16 +57,16 @@ def test_long_texts_and_arrays_of_numbers_are_accepted(message):
     check_parts(serialize_message(message), type(message))
 
 
-def test_a_short_message_is_not_looked_at():
+def test_a_short_message_is_not_checked():
     message = SetParameters.Request(parameters=[Parameter(name="a", value=FLAG)] * 1000)
     check_parts(serialize_message(message), SetParameters.Request)
 
 
-def test_bytes_that_end_too_soon_are_left_to_the_deserializer():
+def test_bytes_that_are_too_short_are_left_to_deserialization():
     check_parts(b"\0\1\0\0" + b"\x10\0\0\0" + bytes(UNCHECKED_BYTES), SetParameters.Request)
 
 
-def test_a_length_beyond_all_bounds_is_refused_or_cut_short():
+def test_a_very_large_length_is_rejected_or_too_short():
     data = serialize_message(SetParameters.Request(parameters=[Parameter(name="a", value=TEXT)]))
     with pytest.raises(TooManyPartsError):
         check_parts(data[:4] + b"\xff" * 4 + bytes(len(data)), SetParameters.Request)

@@ -1,4 +1,4 @@
-"""docs/foxglove.md says what the bridge declares."""
+"""docs/foxglove.md lists the parameters that the bridge declares."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ PAGE = (Path(__file__).parents[3] / "docs" / "foxglove.md").read_text(encoding="
 def default_of(value):
     """A default value as the page shows it."""
     if value == (ASSETS,):
-        return "files of 3D models and pictures"
+        return "files of 3D models and images"
     if value == READ_ONLY_SERVICES:
-        return "those of ours that only read"
+        return "services of this project that only read"
     if isinstance(value, tuple):
         value = ", ".join(filter(None, value))
     text = str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,4 +1,4 @@
-"""Clients of the bridge name no files of this computer."""
+"""Clients of the bridge cannot open files of this computer."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 
 from tests.bridge.studio import set_and_answer
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros.foxglove.file_access import call_refusal, parameter_refusal
 
 PATHS = ["/etc/passwd", "line.json", "~/x.json", "../line", "file:///etc/passwd", "/proc/self/environ"]
 
 
 @pytest.mark.parametrize("path", [*PATHS, ""])
-def test_a_playground_is_no_path(path):
+def test_a_playground_must_not_be_a_path(path):
     assert "expected the name of a shipped playground" in parameter_refusal("playground", path)
 
 
@@ -28,7 +28,7 @@ def test_a_playground_is_a_name_or_a_text(value):
 
 
 @pytest.mark.parametrize("name", ["script.path", "robots.anna.script.path", "robots.a/b.script.path"])
-def test_a_program_is_no_path(name):
+def test_a_program_must_not_be_a_path(name):
     for path in PATHS:
         assert "expected the name of a built-in program" in parameter_refusal(name, path)
     for value in ("", "none", "line_follower", "menu"):
@@ -41,7 +41,7 @@ def test_other_parameters_are_left_alone(name, value):
 
 
 @pytest.mark.parametrize("service", ["SetParameters", "SetParametersAtomically"])
-def test_services_of_parameters_are_no_way_round(service):
+def test_services_of_parameters_are_checked_too(service):
     def request(name, text):
         value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=text)
         return SetParameters.Request(parameters=[RosParameter(name=name, value=value)])
@@ -54,7 +54,7 @@ def test_services_of_parameters_are_no_way_round(service):
 
 
 @pytest.mark.parametrize("is_nested", [False, True])
-def test_a_world_is_no_path(is_nested):
+def test_a_world_must_not_be_a_path(is_nested):
     def request(uri):
         resource = SimpleNamespace(uri=uri, resource_string="")
         return SimpleNamespace(world_resource=resource) if is_nested else resource
@@ -64,7 +64,7 @@ def test_a_world_is_no_path(is_nested):
     assert call_refusal("simulation_interfaces/srv/LoadWorld", request("")) == ""
 
 
-def test_a_client_that_names_a_file_is_refused_and_the_node_is_not_asked(ros, studio, tmp_path):
+def test_a_client_that_names_a_file_is_rejected_without_a_call_of_the_node(ros, studio, tmp_path):
     asked = []
     node = ros.add(Node("world", context=ros.context, enable_rosout=False))
     node.declare_parameter("playground", "line")

@@ -6,7 +6,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros.foxglove import assets
 from thymio_sim_ros.ros.foxglove.graph import connection_graph
 
@@ -79,7 +79,7 @@ def test_nodes_of_one_name_are_all_in_the_graph(ros, studio):
 
 def test_a_node_that_has_just_left_is_not_in_the_graph(ros):
     class Late:
-        """A node that still finds the name of one that is gone."""
+        """A node that still lists the name of a node that has ended."""
 
         def __getattr__(self, name):
             return getattr(ros.node, name)

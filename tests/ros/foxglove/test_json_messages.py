@@ -1,4 +1,4 @@
-"""JSON ↔ messages."""
+"""Conversion of JSON and messages."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_bytes_may_be_base64(kind, expected):
     assert serialize_message(message)
 
 
-def test_what_json_cannot_say_is_null():
+def test_nan_and_infinity_are_null():
     assert to_json(Float64(data=float("nan"))) == b'{"data":null}'
 
 
@@ -74,7 +74,7 @@ def test_what_json_cannot_say_is_null():
         (SolidPrimitive, b'{"dimensions": [1, 2, 3, 4]}', "message.dimensions: expected sequence<double, 3>, found 4"),
     ],
 )
-def test_json_that_does_not_fit_is_refused_with_its_place(kind, data, text):
+def test_json_that_does_not_fit_is_rejected_with_its_place(kind, data, text):
     with pytest.raises(JsonMessageError) as caught:
         from_json(data, kind)
     assert str(caught.value).startswith(text)

@@ -1,4 +1,4 @@
-"""From any thread into the executor's."""
+"""Values from any thread for the thread of an executor."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 
 @pytest.fixture(params=[make_executor, lambda context: SingleThreadedExecutor(context=context)])
 def executor(ros, request):
-    """Each kind of executor, with a node of its own."""
+    """Each kind of executor, with its own node."""
     executor = request.param(ros.context)
     node = Node("mailbox", context=ros.context, start_parameter_services=False, enable_rosout=False)
     executor.add_node(node)
@@ -55,7 +55,7 @@ def test_a_value_posted_without_an_executor_waits_for_the_next_drain(ros):
     assert handled == [1]
 
 
-def test_a_full_box_says_so_and_takes_more_all_the_same(ros):
+def test_a_full_mailbox_reports_it_and_accepts_more(ros):
     handled = []
     mailbox = Mailbox(ros.make_node("full"), handled.append, capacity=2)
     for number in range(3):
@@ -65,7 +65,7 @@ def test_a_full_box_says_so_and_takes_more_all_the_same(ros):
     assert (handled, mailbox.is_full()) == ([0, 1, 2], False)
 
 
-def test_a_closed_box_handles_nothing(ros):
+def test_a_closed_mailbox_handles_nothing(ros):
     handled = []
     mailbox = Mailbox(ros.make_node("closed"), handled.append)
     mailbox.close()
@@ -85,7 +85,7 @@ def test_posting_to_an_executor_that_has_ended_is_harmless(ros):
     node.destroy_node()
 
 
-def test_senders_are_served_in_turn_and_fill_their_own_place_only(ros):
+def test_senders_are_served_in_turn_and_have_separate_limits(ros):
     handled = []
     mailbox = Mailbox(ros.make_node("fair"), handled.append, sender=lambda value: value[0], capacity=3)
     for number in range(3):
@@ -97,7 +97,7 @@ def test_senders_are_served_in_turn_and_fill_their_own_place_only(ros):
     assert not mailbox.is_full(1)
 
 
-def test_heavy_values_fill_the_box_sooner(ros):
+def test_large_values_fill_the_mailbox_sooner(ros):
     mailbox = Mailbox(ros.make_node("heavy"), lambda value: None, weight=lambda value: value, capacity=10)
     mailbox.post(9)
     assert not mailbox.is_full()

@@ -1,4 +1,4 @@
-"""How the bridge starts and ends."""
+"""Start and end of the bridge."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError, make_executor
 
 
-def test_a_port_in_use_is_one_clear_line(ros):
+def test_a_port_in_use_is_reported_in_one_line(ros):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with pytest.raises(StartError, match=rf"cannot listen on 127\.0\.0\.1:{port}: address already in use"):
@@ -43,7 +43,7 @@ def test_closing_leaves_no_thread_no_port_and_no_node(ros):
         pass
 
 
-def test_the_greeting_says_where_to_connect(bridge):
+def test_the_startup_message_has_the_address_to_connect_to(bridge):
     life = bridge()
     assert f"ws://localhost:{life.port}" in life.startup_message
     assert f"ds.url=ws%3A%2F%2Flocalhost%3A{life.port}" in life.startup_message
@@ -52,7 +52,7 @@ def test_the_greeting_says_where_to_connect(bridge):
 @pytest.mark.parametrize(
     ("address", "host"), [("127.0.0.1", "localhost"), ("127.0.0.2", "127.0.0.2"), ("::1", "localhost")]
 )
-def test_the_greeting_names_the_address(ros, address, host):
+def test_the_startup_message_has_the_given_address(ros, address, host):
     try:
         life = FoxgloveBridge(context=ros.context, port=0, address=address)
     except StartError:

@@ -1,4 +1,4 @@
-"""Parameters of the bridge itself: what they change, and what is refused before it starts."""
+"""Parameters of the bridge itself: their effects, and rejected values."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from websockets.exceptions import ConnectionClosed
 from tests.bridge.certificates import make_certificate, trusting
 from tests.bridge.studio import Studio
 from thymio_sim_ros.bridge import Capability, Tokens
-from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
+from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros.foxglove.graph import allow_list
 from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, server_capabilities
@@ -28,7 +28,7 @@ def certificate(tmp_path):
     return str(cert), str(key)
 
 
-def test_a_client_comes_by_tls(ros, bridge, certificate):
+def test_a_client_connects_with_tls(ros, bridge, certificate):
     cert, key = certificate
     life = bridge(tls=True, certfile=cert, keyfile=key)
     assert f"wss://localhost:{life.port}" in life.startup_message
@@ -40,20 +40,23 @@ def test_a_client_comes_by_tls(ros, bridge, certificate):
 @pytest.mark.parametrize(
     ("parameters", "text"),
     [
-        ({"tls": True}, "tls needs a certificate: set certfile and keyfile"),
+        ({"tls": True}, "parameter tls: no certificate given; set certfile and keyfile"),
         ({"tls": True, "certfile": "/no/such.pem"}, "the certificate '/no/such.pem' cannot be used: No such file"),
-        ({"topic_whitelist": ("/a", "*")}, r"parameter topic_whitelist: '\*' is no regular expression: nothing to rep"),
-        ({"asset_uri_allowlist": ("(",)}, r"parameter asset_uri_allowlist: '\(' is no regular expression"),
-        ({"capabilities": ("fly",)}, "parameter capabilities: 'fly' found, expected some of clientPublish, "),
+        (
+            {"topic_whitelist": ("/a", "*")},
+            r"parameter topic_whitelist: '\*' is not a regular expression: nothing to rep",
+        ),
+        ({"asset_uri_allowlist": ("(",)}, r"parameter asset_uri_allowlist: '\(' is not a regular expression"),
+        ({"capabilities": ("fly",)}, "parameter capabilities: found 'fly', expected some of clientPublish, "),
     ],
 )
-def test_what_cannot_be_used_is_refused_by_name(ros, parameters, text):
+def test_an_invalid_parameter_is_rejected_by_name(ros, parameters, text):
     with pytest.raises(StartError, match=text):
         FoxgloveBridge(context=ros.context, defaults=FoxgloveParams(port=0, **parameters))
     assert "foxglove_bridge" not in ros.node.get_node_names()
 
 
-def test_a_file_that_is_no_certificate_is_refused(ros, tmp_path):
+def test_an_invalid_certificate_is_rejected(ros, tmp_path):
     (tmp_path / "cert.pem").write_text("no certificate")
     values = FoxgloveParams(port=0, tls=True, certfile=str(tmp_path / "cert.pem"))
     with pytest.raises(StartError, match=r"the certificate '.*cert\.pem' cannot be used: "):
@@ -68,7 +71,7 @@ def test_time_is_announced_exactly_with_simulated_time():
     assert server_capabilities(only, uses_sim_time=False) == (Capability.SERVICES,)
 
 
-def test_what_is_not_announced_is_refused(ros, bridge):
+def test_a_request_without_its_capability_is_rejected(ros, bridge):
     with Studio(bridge(capabilities=("services",)).port, ros.until) as studio:
         assert studio.next(ms.ServerInfo).capabilities == (Capability.SERVICES,)
         studio.advertise(1, "/cmd_vel", "geometry_msgs/msg/Twist")
@@ -85,7 +88,7 @@ def test_a_frame_longer_than_the_user_allows_ends_its_connection(ros, bridge):
         assert studio.next(ms.ServerInfo).name == "thymio_sim_ros"
 
 
-def test_the_number_of_clients_is_published_where_it_is_wanted(ros, bridge):
+def test_the_number_of_clients_is_published_on_demand(ros, bridge):
     counts = []
     profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     ros.node.create_subscription(UInt32, "/foxglove_bridge/client_count", lambda m: counts.append(m.data), profile)
@@ -96,25 +99,25 @@ def test_the_number_of_clients_is_published_where_it_is_wanted(ros, bridge):
     ros.until(lambda: counts[-1] == 0)
 
 
-def test_a_fetch_is_judged_by_the_users_list(ros, bridge):
+def test_fetches_follow_the_allow_list(ros, bridge):
     with Studio(bridge(asset_uri_allowlist=(r"package://only/.*",)).port, ros.until) as studio:
         studio.send(ms.FetchAsset("package://std_msgs/a.stl", 3))
         assert "asset_uri_allowlist does not allow it" in studio.next(ms.AssetResponse).error
 
 
-def test_parameters_that_the_bridge_does_not_have_are_told(monkeypatch):
-    told = []
-    monkeypatch.setattr(RcutilsLogger, "warning", lambda self, text, **_: told.append(text))
+def test_unknown_parameters_are_logged(monkeypatch):
+    warnings = []
+    monkeypatch.setattr(RcutilsLogger, "warning", lambda self, text, **_: warnings.append(text))
     context = Context()
     context.init(args=["--ros-args", "-p", "num_threads:=2", "-p", "use_sim_time:=false", "-p", "port:=0"])
     FoxgloveBridge(context=context).close()
     context.shutdown()
-    assert told == [
+    assert warnings == [
         "parameter num_threads is not a parameter of foxglove_bridge and has no effect; see docs/foxglove.md"
     ]
 
 
-def test_in_the_network_the_bridge_makes_tokens_of_its_own(ros, bridge, monkeypatch):
+def test_in_the_network_the_bridge_creates_tokens(ros, bridge, monkeypatch):
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     life = bridge(address="0.0.0.0")
     assert life.tokens.is_required
@@ -124,7 +127,7 @@ def test_in_the_network_the_bridge_makes_tokens_of_its_own(ros, bridge, monkeypa
         assert secret not in life.startup_message
 
 
-def test_no_token_is_needed_where_the_user_says_so(bridge, monkeypatch):
+def test_no_token_is_needed_if_the_user_disables_them(bridge, monkeypatch):
     monkeypatch.setenv(TOKEN_VARIABLE, "fromenv")
     life = bridge(address="0.0.0.0", require_token=False)
     assert not life.tokens.is_required
@@ -139,14 +142,14 @@ def test_tokens_come_from_the_environment(bridge, monkeypatch):
 
 
 @pytest.mark.parametrize(("full", "read_only"), [("a b", ""), ("abc", ""), ("same", "same")])
-def test_what_cannot_be_a_token_is_refused(ros, monkeypatch, full, read_only):
+def test_invalid_tokens_are_rejected(ros, monkeypatch, full, read_only):
     monkeypatch.setenv(TOKEN_VARIABLE, full)
     monkeypatch.setenv(READ_ONLY_VARIABLE, read_only)
     with pytest.raises(StartError, match="token"):
         FoxgloveBridge(context=ros.context, defaults=FoxgloveParams(port=0))
 
 
-def test_a_token_given_as_a_parameter_is_no_parameter_that_can_be_read(ros, monkeypatch):
+def test_a_token_given_as_a_parameter_cannot_be_read(ros, monkeypatch):
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     warned = []
     monkeypatch.setattr(RcutilsLogger, "warning", lambda self, text, **options: warned.append(text))
@@ -163,7 +166,7 @@ def test_a_token_given_as_a_parameter_is_no_parameter_that_can_be_read(ros, monk
         context.try_shutdown()
 
 
-def test_services_that_change_nothing_are_those_of_ours_that_only_read():
+def test_read_only_services_are_those_of_this_project_that_only_read():
     is_read_only_service = allow_list(FoxgloveParams().read_only_services)
     reading = ("/aseba/get_variables", "/a/aseba/list_variables", "/aseba_runtime/check", "/simulator/get_playground")
     changing = ("/aseba/set_variables", "/aseba/stop", "/simulator/reset", "/simulator/set_poses", "/x/get_coffee")

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
-from thymio_sim_ros.bridge.messages import Parameter
+from thymio_sim_ros.bridge.protocol.messages import Parameter
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
 
 INT64 = st.integers(-(2**63), 2**63 - 1)
@@ -39,18 +39,18 @@ def test_every_ros_value_survives_the_way_to_a_client_and_back(value):
     assert to_ros(from_ros("/n.p", value), value.type) == value
 
 
-def test_doubles_say_that_they_are_doubles():
+def test_doubles_are_marked_as_doubles():
     value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=2.0)
     assert from_ros("/n.p", value) == Parameter("/n.p", 2.0, "float64")
 
 
-def test_bytes_travel_as_base64():
+def test_bytes_are_sent_as_base64():
     value = ParameterValue(type=ParameterType.PARAMETER_BYTE_ARRAY, byte_array_value=[b"\x01", b"\xff"])
     assert from_ros("/n.p", value) == Parameter("/n.p", "Af8=", "byte_array")
 
 
 @pytest.mark.parametrize(("number", "text"), [(math.inf, "inf"), (-math.inf, "-inf"), (math.nan, "nan")])
-def test_what_json_cannot_say_is_text(number, text):
+def test_nan_and_infinity_are_text(number, text):
     assert from_ros("/n.p", ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=number)).value == text
     row = ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=[1.0, number])
     assert from_ros("/n.p", row).value == ("1.0", text)
@@ -73,7 +73,7 @@ def test_a_parameter_that_is_not_set_has_no_value():
         ((), ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY),
     ],
 )
-def test_the_type_in_force_decides_what_a_number_means(value, current, kind):
+def test_the_current_type_determines_the_type_of_a_number(value, current, kind):
     assert to_ros(Parameter("/n.p", value), current).type == kind
 
 
@@ -82,8 +82,8 @@ def test_the_type_in_force_decides_what_a_number_means(value, current, kind):
     [
         (Parameter("p", 2**63), "expected an integer of 64 bits"),
         (Parameter("p", (1, 2**63)), "expected an integer of 64 bits"),
-        (Parameter("p", (1, "x")), "a list must have elements of one kind"),
-        (Parameter("p", (True, 1)), "a list must have elements of one kind"),
+        (Parameter("p", (1, "x")), "expected a list with elements of one type"),
+        (Parameter("p", (True, 1)), "expected a list with elements of one type"),
         (Parameter("p", "x", "float64"), "expected a number, found 'x'"),
         (Parameter("p", True, "float64"), "expected a number, found True"),
         (Parameter("p", 10**400, "float64"), "expected a number, found 1000"),
@@ -92,6 +92,6 @@ def test_the_type_in_force_decides_what_a_number_means(value, current, kind):
         (Parameter("p", "\ud800"), "expected Unicode text"),
     ],
 )
-def test_a_value_that_ros_cannot_have_is_refused(parameter, text):
+def test_a_value_that_ros_does_not_support_is_rejected(parameter, text):
     with pytest.raises(UnfitValueError, match=f"^{text}"):
         to_ros(parameter)

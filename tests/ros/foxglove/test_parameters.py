@@ -9,9 +9,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from tests.bridge.studio import Studio, set_and_answer
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import StatusLevel
-from thymio_sim_ros.bridge.switchboard import MAX_REFUSALS
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.switchboard.outcome import MAX_REFUSALS
 
 
 def test_parameters_of_all_nodes_can_be_read(studio, peer):
@@ -20,26 +20,26 @@ def test_parameters_of_all_nodes_can_be_read(studio, peer):
     assert studio.parameter("/foxglove_bridge.port") == 0
 
 
-def test_a_parameter_is_set_and_its_old_complaint_removed(studio, peer):
+def test_a_parameter_is_set_and_its_earlier_status_removed(studio, peer):
     studio.parameter("/peer.program")
-    told = set_and_answer(studio, ms.Parameter("/peer.program", "better"))
-    assert told == [
+    messages = set_and_answer(studio, ms.Parameter("/peer.program", "better"))
+    assert messages == [
         ms.RemoveStatus(("parameter:/peer.program",)),
         ms.ParameterValues((ms.Parameter("/peer.program", "better"),), "mine"),
     ]
     assert peer.get_parameter("program").value == "better"
 
 
-def test_a_refused_value_is_told_before_the_answer_with_the_value_in_force(studio, peer):
+def test_a_rejection_is_reported_before_the_answer_with_the_current_value(studio, peer):
     studio.parameter("/peer.program")
-    told = set_and_answer(studio, ms.Parameter("/peer.program", "bad"))
-    assert told == [
+    messages = set_and_answer(studio, ms.Parameter("/peer.program", "bad"))
+    assert messages == [
         ms.Status(StatusLevel.ERROR, "/peer.program: line 3, column 5: bad", "parameter:/peer.program"),
         ms.ParameterValues((ms.Parameter("/peer.program", "good"),), "mine"),
     ]
 
 
-def test_several_values_are_answered_together_each_with_its_own_fate(studio, peer):
+def test_several_values_are_answered_together_each_with_its_own_result(studio, peer):
     studio.parameter("/peer.program")
     debug_options = ms.Parameter("/peer.speed", 2), ms.Parameter("/peer.program", "bad"), ms.Parameter("/no/node.x", 1)
     removed, *complaints, answer = set_and_answer(studio, *debug_options)
@@ -54,19 +54,22 @@ def test_several_values_are_answered_together_each_with_its_own_fate(studio, pee
     [
         (ms.Parameter("/peer.fixed", 2), "/peer.fixed: "),
         (ms.Parameter("/peer.speed", "fast"), "/peer.speed: "),
-        (ms.Parameter("/peer.count", (1, "x")), "/peer.count: a list must have elements of one kind"),
+        (
+            ms.Parameter("/peer.count", (1, "x")),
+            "/peer.count: expected a list with elements of one type, found several types",
+        ),
         (ms.Parameter("/peer", 1), "/peer: not offered by this bridge"),
         (ms.Parameter("/peer.count", 2**70), "/peer.count: expected an integer of 64 bits"),
     ],
 )
-def test_what_cannot_be_set_is_refused_with_a_reason(studio, peer, wish, text):
+def test_a_parameter_that_cannot_be_set_is_rejected_with_the_reason(studio, peer, wish, text):
     studio.parameter("/peer.program")
     status, _ = set_and_answer(studio, wish)
     assert status.message.startswith(text)
     assert len(status.message) > len(text) or text.count(":") == 1
 
 
-def test_a_change_from_elsewhere_reaches_those_who_asked(ros, bridge, peer):
+def test_a_change_by_another_client_reaches_watching_clients(ros, bridge, peer):
     port = bridge().port
     with Studio(port, ros.until) as watcher, Studio(port, ros.until) as setter:
         setter.parameter("/peer.speed")
@@ -77,7 +80,7 @@ def test_a_change_from_elsewhere_reaches_those_who_asked(ros, bridge, peer):
         assert watcher.next(ms.ParameterValues).parameters == (ms.Parameter("/peer.speed", 3.5, "float64"),)
 
 
-def test_a_change_by_the_node_itself_reaches_those_who_asked(studio, peer):
+def test_a_change_by_the_node_reaches_watching_clients(studio, peer):
     studio.parameter("/peer.count")
     studio.send(ms.SubscribeParameterUpdates(("/peer.count",)))
     studio.send(ms.GetParameters((), "settle"))
@@ -97,7 +100,7 @@ def test_unlisted_parameters_are_neither_shown_nor_set(ros, bridge, peer):
 
 
 def test_a_parameter_that_was_never_set_hides_no_other(ros, studio, peer):
-    """rclpy answers with no value at all then; what was raised in the answer's callback ended the process."""
+    """rclpy then answers without any value; an exception in the callback of the answer once ended the process."""
     node = ros.add(Node("later", context=ros.context, enable_rosout=False))
     node.declare_parameter("now", 7)
     node.declare_parameter("later", Parameter.Type.STRING)
@@ -106,7 +109,7 @@ def test_a_parameter_that_was_never_set_hides_no_other(ros, studio, peer):
     assert studio.parameter("/later.later") == "here"
 
 
-def test_what_a_node_does_not_have_is_refused_and_the_bridge_lives(studio, peer):
+def test_an_unknown_parameter_is_rejected_and_the_bridge_continues(studio, peer):
     studio.parameter("/peer.program")
     status, _ = set_and_answer(studio, ms.Parameter("/peer.nothing", 1))
     assert status.message.startswith("/peer.nothing: ")
@@ -117,14 +120,14 @@ def test_what_a_node_does_not_have_is_refused_and_the_bridge_lives(studio, peer)
     assert set_and_answer(studio, ms.Parameter("/peer.program", "better"))[-1].parameters[0].value == "better"
 
 
-def test_of_many_refusals_some_are_told(studio, peer):
+def test_of_many_rejections_only_some_are_reported(studio, peer):
     studio.parameter("/peer.program")
-    *told, _ = set_and_answer(studio, *(ms.Parameter(f"/no/node.x{number}", 1) for number in range(1000)))
-    assert len(told) == MAX_REFUSALS + 1
-    assert told[-1].message == f"{1000 - MAX_REFUSALS} more parameters were refused"
+    *statuses, _ = set_and_answer(studio, *(ms.Parameter(f"/no/node.x{number}", 1) for number in range(1000)))
+    assert len(statuses) == MAX_REFUSALS + 1
+    assert statuses[-1].message == f"{1000 - MAX_REFUSALS} more parameters were rejected"
 
 
-def test_a_node_that_does_not_answer_at_first_is_asked_again(ros, bridge):
+def test_a_request_that_was_not_answered_is_repeated(ros, bridge):
     server = bridge()
     server._calls._timeout_s = 0.2
     slow = Node("slow", context=ros.context, enable_rosout=False)
@@ -137,7 +140,7 @@ def test_a_node_that_does_not_answer_at_first_is_asked_again(ros, bridge):
 
 
 class Stranger:
-    """A node that notes which of its parameter services are asked."""
+    """A node that records calls of its parameter services."""
 
     def __init__(self, ros, name="stranger"):
         node = ros.make_node(name)
@@ -155,8 +158,8 @@ class Stranger:
         return response
 
 
-def test_strangers_are_not_asked_before_a_client_asks(ros, bridge, peer):
-    """A node that is asked may print warnings in a student's terminal."""
+def test_nodes_get_no_requests_before_a_client_requests_parameters(ros, bridge, peer):
+    """A request may print warnings in a student's terminal."""
     stranger = Stranger(ros)
     server = bridge()
     ros.until(lambda: "/stranger" in server._parameters._present)
@@ -172,7 +175,7 @@ def test_strangers_are_not_asked_before_a_client_asks(ros, bridge, peer):
         assert stranger.asked == ["ListParameters_Request", "GetParameters_Request"]
 
 
-def test_new_strangers_are_not_asked_when_the_last_client_has_left(ros, bridge, peer):
+def test_new_nodes_get_no_requests_after_the_last_client_has_disconnected(ros, bridge, peer):
     server = bridge()
     with Studio(server.port, ros.until) as studio:
         studio.send(ms.GetParameters((), "all"))
@@ -197,7 +200,7 @@ def test_a_node_that_does_not_answer_delays_the_first_answer_by_a_second_only(ro
     mute.destroy_node()
 
 
-def test_a_watched_node_that_comes_later_is_asked_then(ros, bridge):
+def test_a_watched_node_that_starts_later_gets_requests_then(ros, bridge):
     with Studio(bridge().port, ros.until) as studio:
         studio.send(ms.SubscribeParameterUpdates(("/later.now",)))
         node = ros.add(Node("later", context=ros.context, enable_rosout=False))
@@ -205,7 +208,7 @@ def test_a_watched_node_that_comes_later_is_asked_then(ros, bridge):
         assert studio.next(ms.ParameterValues).parameters == (ms.Parameter("/later.now", 7),)
 
 
-def test_2000_wishes_at_once_are_set_or_refused_and_others_are_served(ros, bridge, peer):
+def test_2000_requests_at_once_are_set_or_rejected_and_others_are_served(ros, bridge, peer):
     port = bridge().port
     with Studio(port, ros.until) as busy, Studio(port, ros.until) as other:
         assert other.parameter("/peer.count") == 3

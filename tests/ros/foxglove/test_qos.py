@@ -1,4 +1,4 @@
-"""QoS from what the graph tells, and which names are shown."""
+"""QoS derived from the graph, and visible names."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from thymio_sim_ros.ros.foxglove.graph import allow_list, is_parameter_service, 
 from thymio_sim_ros.ros.foxglove.qos import SubscriptionQos, publisher_qos, subscription_qos
 
 
-def endpoint(*, reliable=True, latched=False, depth=0):
+def endpoint(*, reliable=True, transient_local=False, depth=0):
     return SimpleNamespace(
         qos_profile=SimpleNamespace(  # as Fast DDS reports it; a QoSProfile warns of depth 0
             depth=depth,
             reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-            durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if transient_local else DurabilityPolicy.VOLATILE,
         )
     )
 
@@ -24,17 +24,17 @@ def endpoint(*, reliable=True, latched=False, depth=0):
 @pytest.mark.parametrize(
     ("publishers", "expected"),
     [
-        ([], SubscriptionQos(is_reliable=False, kept=0, depth=10)),
-        ([endpoint()], SubscriptionQos(is_reliable=True, kept=0, depth=10)),
-        ([endpoint(), endpoint(reliable=False)], SubscriptionQos(is_reliable=False, kept=0, depth=10)),
-        ([endpoint(latched=True)], SubscriptionQos(is_reliable=True, kept=1, depth=10)),
-        ([endpoint(latched=True, depth=3)] * 2, SubscriptionQos(is_reliable=True, kept=25, depth=10)),
-        ([endpoint(latched=True), endpoint()], SubscriptionQos(is_reliable=True, kept=0, depth=10)),
-        ([endpoint(depth=12)], SubscriptionQos(is_reliable=True, kept=0, depth=12)),
-        ([endpoint(latched=True, depth=1000)], SubscriptionQos(is_reliable=True, kept=25, depth=25)),
+        ([], SubscriptionQos(is_reliable=False, retained=0, depth=10)),
+        ([endpoint()], SubscriptionQos(is_reliable=True, retained=0, depth=10)),
+        ([endpoint(), endpoint(reliable=False)], SubscriptionQos(is_reliable=False, retained=0, depth=10)),
+        ([endpoint(transient_local=True)], SubscriptionQos(is_reliable=True, retained=1, depth=10)),
+        ([endpoint(transient_local=True, depth=3)] * 2, SubscriptionQos(is_reliable=True, retained=25, depth=10)),
+        ([endpoint(transient_local=True), endpoint()], SubscriptionQos(is_reliable=True, retained=0, depth=10)),
+        ([endpoint(depth=12)], SubscriptionQos(is_reliable=True, retained=0, depth=12)),
+        ([endpoint(transient_local=True, depth=1000)], SubscriptionQos(is_reliable=True, retained=25, depth=25)),
     ],
 )
-def test_subscriptions_suit_all_publishers(publishers, expected):
+def test_subscriptions_match_all_publishers(publishers, expected):
     assert subscription_qos(publishers, min_depth=10, max_depth=25) == expected
 
 
@@ -42,8 +42,8 @@ def test_a_subscription_may_be_best_effort_whatever_is_published():
     assert not subscription_qos([endpoint()], min_depth=10, max_depth=25, best_effort=True).is_reliable
 
 
-def test_the_profile_says_the_same_to_rclpy():
-    profile = SubscriptionQos(is_reliable=True, kept=1, depth=7).profile
+def test_the_profile_has_the_same_qos_for_rclpy():
+    profile = SubscriptionQos(is_reliable=True, retained=1, depth=7).profile
     assert (profile.reliability, profile.durability, profile.depth) == (
         ReliabilityPolicy.RELIABLE,
         DurabilityPolicy.TRANSIENT_LOCAL,
@@ -51,11 +51,11 @@ def test_the_profile_says_the_same_to_rclpy():
     )
 
 
-def test_a_clients_publisher_is_reliable_and_latched_where_others_expect_it():
-    plain, latched = endpoint(depth=1), endpoint(latched=True, depth=1)
+def test_a_publisher_for_clients_is_reliable_and_transient_local_if_another_endpoint_is():
+    plain, transient_local = endpoint(depth=1), endpoint(transient_local=True, depth=1)
     assert publisher_qos([], [plain]).durability == DurabilityPolicy.VOLATILE
-    assert publisher_qos([], [plain, latched]).durability == DurabilityPolicy.TRANSIENT_LOCAL
-    assert publisher_qos([latched], []).reliability == ReliabilityPolicy.RELIABLE
+    assert publisher_qos([], [plain, transient_local]).durability == DurabilityPolicy.TRANSIENT_LOCAL
+    assert publisher_qos([transient_local], []).reliability == ReliabilityPolicy.RELIABLE
 
 
 def test_names_are_allowed_by_whole_matches():

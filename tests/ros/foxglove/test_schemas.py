@@ -1,4 +1,4 @@
-"""Definition texts, type names, assets: what is looked up in installed packages."""
+"""Definitions, type names and assets of installed packages."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_a_type_that_is_not_installed_is_missed_by_name(name):
         load_type(name)
 
 
-def test_asking_for_a_type_imports_no_strange_module():
+def test_loading_a_type_imports_no_other_module():
     for name in ("this/msg/Zen", "antigravity/srv/Fly"):
         with pytest.raises(MissingTypeError, match="there is no package"):
             load_type(name)
@@ -130,7 +130,7 @@ def package(monkeypatch, tmp_path):
 
 
 @pytest.mark.usefixtures("package")
-def test_a_file_of_a_package_is_given():
+def test_a_file_of_a_package_is_loaded():
     assert load_asset("package://robot/meshes/body%20part.STL") == b"mesh"
 
 
@@ -139,35 +139,35 @@ def test_a_file_of_a_package_is_given():
     ("uri", "text"),
     [
         ("file:///etc/passwd", "expected package://"),
-        ("package://robot/secret.txt", "is not given: asset_uri_allowlist"),
-        ("package://robot/../outside.stl", "leaves its package"),
-        ("package://robot/%2e%2e/outside.stl", "leaves its package"),
-        ("package://../outside.stl", "leaves its package"),
+        ("package://robot/secret.txt", "is rejected: asset_uri_allowlist"),
+        ("package://robot/../outside.stl", "is not inside its package"),
+        ("package://robot/%2e%2e/outside.stl", "is not inside its package"),
+        ("package://../outside.stl", "is not inside its package"),
         (f"package://robot/{'a' * 300}.stl", "does not exist"),
         (f"package://robot/{'a/' * 3000}b.stl", "does not exist"),
         ("package://robot/\ud800.stl", "does not exist"),
-        ("package:///outside.stl", "leaves its package"),
+        ("package:///outside.stl", "is not inside its package"),
         ("package://robot//outside.stl", "does not exist"),
         ("package://robot/link.stl", "does not exist"),
         ("package://robot/folder.stl", "does not exist"),
         ("package://robot/no.stl", "does not exist"),
-        ("package://robot/\0.stl", "leaves its package"),
+        ("package://robot/\0.stl", "is not inside its package"),
     ],
 )
-def test_nothing_else_is_given(uri, text):
+def test_other_files_are_rejected(uri, text):
     with pytest.raises(AssetError, match=text):
         load_asset(uri)
 
 
 @pytest.mark.usefixtures("package")
-def test_what_is_given_can_be_chosen():
+def test_the_allowed_uris_can_be_set():
     assert load_asset("package://robot/secret.txt", (r"package://robot/.*\.txt",)) == b"secret"
     with pytest.raises(AssetError, match="asset_uri_allowlist"):
         load_asset("package://robot/meshes/body%20part.STL", (r"package://robot/.*\.txt",))
 
 
 @pytest.mark.usefixtures("package")
-def test_a_huge_file_is_not_given(monkeypatch):
+def test_a_very_large_file_is_rejected(monkeypatch):
     monkeypatch.setattr(assets, "_MAX_SIZE", 3)
     with pytest.raises(AssetError, match="is larger than"):
         load_asset("package://robot/meshes/body%20part.STL")

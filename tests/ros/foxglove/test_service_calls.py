@@ -11,7 +11,7 @@ from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 
 
 class Service:
-    """What rclpy's client shows of a service that answers when it is told to."""
+    """Replaces a client of rclpy; the test decides when its service answers."""
 
     def __init__(self):
         self.requests = []
@@ -40,7 +40,7 @@ class Service:
 
 
 class Node:
-    """Makes clients, and keeps what is logged."""
+    """Creates clients, and records log messages."""
 
     def __init__(self):
         self.services = {}
@@ -69,7 +69,7 @@ def calls(node):
     return ServiceCalls(node)
 
 
-def test_few_requests_are_on_their_way_at_a_time(node, calls):
+def test_requests_in_flight_are_limited(node, calls):
     answers = []
     for number in range(20):
         calls.call(str, "/s", f"{number % 4}/{number}", lambda response, _: answers.append(response), sender=number % 4)
@@ -87,8 +87,8 @@ def test_a_sender_with_many_calls_delays_another_by_two(node, calls):
     assert [request for request, _ in node.services["/s"].requests] == ["busy 0", "busy 1", "quiet"]
 
 
-def test_readiness_is_asked_of_services_not_of_calls(node, calls):
-    """A thousand open calls once cost a million questions a second."""
+def test_readiness_is_polled_for_each_service_not_for_each_call(node, calls):
+    """A thousand open calls once caused a million queries per second."""
     calls.call(str, "/s", "first", lambda *_: None)
     node.services["/s"].is_ready = False
     for number in range(1000):
@@ -98,7 +98,7 @@ def test_readiness_is_asked_of_services_not_of_calls(node, calls):
     assert node.services["/s"].checks == 1
 
 
-def test_a_callback_may_call_on_and_on_without_recursion(node, calls):
+def test_a_callback_may_make_many_calls_without_recursion(node, calls):
     depth = []
 
     def again(_response, _reason):
@@ -128,7 +128,7 @@ def test_calls_of_a_vanished_service_fail(node, calls):
     for number in range(3):
         calls.call(str, "/s", number, lambda _, reason: reasons.append(reason))
     calls.forget("/s")
-    assert reasons == ["service /s is gone"] * 3
+    assert reasons == ["service /s no longer exists"] * 3
     assert not calls.poll()
 
 

@@ -9,8 +9,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_srvs.srv import SetBool, Trigger
 
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import CDR, JSON
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 from thymio_sim_ros.ros.foxglove import node
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 
@@ -49,12 +49,12 @@ def test_a_service_carries_the_definitions_of_both_sides(ros, studio):
 @pytest.mark.parametrize(
     ("encoding", "payload", "text"),
     [
-        (CDR, b"", "/flip: undecodable request"),
-        (JSON, b'{"no": 1}', "/flip: undecodable request: message: no field no"),
-        ("protobuf", b"", "/flip: undecodable request: expected encoding cdr or json, found protobuf"),
+        (CDR, b"", "/flip: cannot decode the request"),
+        (JSON, b'{"no": 1}', "/flip: cannot decode the request: message: no field no"),
+        ("protobuf", b"", "/flip: cannot decode the request: expected encoding cdr or json, found protobuf"),
     ],
 )
-def test_an_undecodable_request_fails_with_a_status_beside_it(ros, studio, encoding, payload, text):
+def test_a_request_that_cannot_be_decoded_fails_with_a_status(ros, studio, encoding, payload, text):
     ros.node.create_service(SetBool, "/flip", flip)
     studio.send(ms.ServiceRequest(studio.service("/flip").id, 1, encoding, payload))
     failure = studio.next(ms.ServiceCallFailure)

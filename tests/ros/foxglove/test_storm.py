@@ -1,4 +1,4 @@
-"""Clients that send rubbish, and clients that come and go: they harm nobody else and leave nothing behind."""
+"""Clients that send damaged frames, connect and disconnect: others are not affected, and nothing is left behind."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 from tests.bridge.studio import Studio, set_and_answer
-from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.constants import CDR, JSON
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 
 
 def flip(request, response):
@@ -25,7 +25,7 @@ def flip(request, response):
     return response
 
 
-def test_a_storm_of_changed_bytes_harms_nobody_else(ros, bridge, peer):
+def test_many_damaged_frames_do_not_affect_other_clients(ros, bridge, peer):
     rng = random.Random(7)
     ros.node.create_subscription(Twist, "/cmd_vel", lambda _: None, 10)
     ros.node.create_service(SetBool, "/flip", flip)
@@ -98,7 +98,7 @@ def test_nodes_that_come_and_go_while_clients_do_are_followed(ros, bridge):
         assert not [status for status in watcher.received if isinstance(status, ms.Status)]
 
 
-def test_a_client_that_vanishes_while_its_call_is_answered_harms_nobody(ros, bridge):
+def test_a_client_that_disconnects_during_its_call_does_not_affect_others(ros, bridge):
     calls = []
 
     def slow(request, response):

@@ -1,4 +1,4 @@
-"""Simulated time, told to a real client."""
+"""Simulated time for a real client."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
 
 
-def test_simulated_time_is_told_and_a_step_back_begins_a_new_session(ros, bridge):
+def test_simulated_time_is_sent_and_a_jump_back_starts_a_new_session(ros, bridge):
     publisher = ros.node.create_publisher(Clock, "/clock", 1)
     with Studio(bridge(use_sim_time=True).port, ros.until) as studio:
         first = studio.next(ms.ServerInfo)
@@ -36,7 +36,7 @@ def test_messages_are_stamped_with_simulated_time(ros, bridge):
         assert studio.next(ms.MessageData).time_ns == 5_000_000_000
 
 
-def test_without_simulated_time_none_is_told(studio):
+def test_without_simulated_time_no_time_is_sent(studio):
     assert "time" not in studio.next(ms.ServerInfo).capabilities
 
 

@@ -1,4 +1,4 @@
-"""Topics of ROS as channels for a real client: bytes, types, latched messages, comings and goings."""
+"""ROS topics as channels for a real client: bytes, types, retained messages, publishers that start and end."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Bool, String
 
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove.topics import Topics
 
@@ -40,7 +40,7 @@ def test_a_topic_with_subscribers_only_is_a_channel_too(ros, studio):
     assert studio.channel("/cmd_vel").schema_name == "geometry_msgs/msg/Twist"
 
 
-def test_ros_is_subscribed_only_while_somebody_watches(ros, studio):
+def test_ros_is_subscribed_only_while_a_client_subscribes(ros, studio):
     publisher = ros.node.create_publisher(String, "/chat", 10)
     studio.subscribe(1, "/chat")
     ros.until(lambda: publisher.get_subscription_count() == 1)
@@ -56,7 +56,7 @@ def test_a_client_that_leaves_ends_its_subscriptions(ros, bridge):
     ros.until(lambda: publisher.get_subscription_count() == 0)
 
 
-def test_a_best_effort_publisher_is_heard(ros, studio):
+def test_messages_of_a_best_effort_publisher_are_received(ros, studio):
     publisher = ros.node.create_publisher(String, "/chat", BEST_EFFORT)
     studio.subscribe(1, "/chat")
     ros.until(publisher.get_subscription_count)
@@ -80,7 +80,7 @@ def test_the_user_decides_what_is_received_without_guarantee(ros, bridge):
             assert info.qos_profile.reliability == expected
 
 
-def test_a_latched_message_is_given_to_every_newcomer_once(ros, bridge):
+def test_a_retained_message_is_sent_to_every_new_client_once(ros, bridge):
     publisher = ros.node.create_publisher(String, "/description", TRANSIENT_LOCAL)
     publisher.publish(String(data="old"))
     port = bridge().port
@@ -95,7 +95,7 @@ def test_a_latched_message_is_given_to_every_newcomer_once(ros, bridge):
             assert deserialize_message(client.next(ms.MessageData).payload, String).data == "new"
 
 
-def test_a_latched_publisher_that_comes_after_the_client_is_heard(ros, studio):
+def test_a_transient_local_publisher_that_starts_after_the_client_is_received(ros, studio):
     ros.node.create_subscription(String, "/description", lambda _: None, 1)
     studio.subscribe(1, "/description")
     publisher = ros.node.create_publisher(String, "/description", TRANSIENT_LOCAL)
@@ -124,7 +124,7 @@ def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_el
         asked.clear()
         return found
 
-    def heard(name):
+    def reliability(name):
         (info,) = ros.node.get_subscriptions_info_by_topic(name)
         return info.qos_profile.reliability
 
@@ -132,12 +132,12 @@ def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_el
     ros.node.create_publisher(String, "/one", BEST_EFFORT)
     ros.until(lambda: ros.node.count_publishers("/one") == 2)
     assert "/one" in refresh_one_by_one(1)
-    assert [heard(name) for name in names] == [ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE]
+    assert [reliability(name) for name in names] == [ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE]
     ros.node.destroy_publisher(first["/two"])
     ros.node.create_publisher(String, "/two", BEST_EFFORT)
     ros.until(lambda: ros.node.count_publishers("/two") == 1)
     assert refresh_one_by_one(10) == ["/one", "/two"]
-    assert heard("/two") == ReliabilityPolicy.BEST_EFFORT
+    assert reliability("/two") == ReliabilityPolicy.BEST_EFFORT
     topics.close()
 
 

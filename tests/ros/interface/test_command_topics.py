@@ -1,4 +1,4 @@
-"""Commands as messages: what a program commands arrives unchanged, what cannot be is refused."""
+"""Commands as messages: commands of programs arrive unchanged, invalid messages are rejected."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_every_row_gives_commands_that_an_actuator_takes():
         assert type(decode(topic, message)) in accepted
 
 
-def test_the_pen_is_moved_colored_and_turned_round():
+def test_the_pen_is_moved_colored_and_used_as_eraser():
     assert decode("pen/down", Bool(data=True)) == SetPen(down=True)
     assert decode("_pen/color", ColorRGBA(r=1.0, g=0.5, b=2.0, a=1.0)) == SetPen(color=(1.0, 0.5, 1.0), erase=False)
     assert decode("_pen/color", ColorRGBA(a=0.0)).erase
@@ -119,10 +119,10 @@ def test_an_alarm_is_switched():
     assert decode("_alarm", Bool(data=True)) == SetAlarm(True)
 
 
-@pytest.mark.parametrize(("number", "told"), [(-129, -128), (127, 127), (128, 127), (32767, 127)])
-def test_a_number_that_is_no_sound_of_the_robot_is_one_that_a_message_can_hold(number, told):
+@pytest.mark.parametrize(("number", "reported"), [(-129, -128), (127, 127), (128, 127), (32767, 127)])
+def test_an_unknown_sound_number_fits_into_the_message(number, reported):
     message = BY_TOPIC["_sound/system"].encode(PlaySystemSound(number))
-    assert decode("_sound/system", message) == PlaySystemSound(told)
+    assert decode("_sound/system", message) == PlaySystemSound(reported)
 
 
 def test_a_sound_is_stopped_by_a_negative_number():
@@ -136,18 +136,18 @@ def test_a_sound_is_stopped_by_a_negative_number():
         ("sound/tone", Float32MultiArray(data=[440.0]), r"found 1 values, expected \[Hz, s\]"),
         ("sound/tone", Float32MultiArray(data=[float("nan"), 1.0]), "frequency is nan"),
         ("sound/tone", Float32MultiArray(data=[440.0, float("inf")]), "duration is inf"),
-        ("_sound/volume", Int8(data=9), "9 found, expected 0"),
+        ("_sound/volume", Int8(data=9), "found 9, expected 0"),
         ("_sound/wave", Int8MultiArray(data=[1, 2]), "found 2 values, expected 142 samples"),
-        ("_sound/samples", UInt8MultiArray(data=bytes(5_000_000)), "5000000 samples found"),
+        ("_sound/samples", UInt8MultiArray(data=bytes(5_000_000)), "found 5000000 samples"),
         ("_led/single", Int16MultiArray(data=[1]), "found 1 values"),
         ("_led/gesture/blink", Float32(data=0.0), "period 0 s found, expected 0.1 to 60"),
         ("_led/own", Float32MultiArray(data=[1.0]), "group '' found"),
         ("led/circle", Float32MultiArray(data=[1.0]), "found 1 values, expected 8 intensities"),
         ("_sound_threshold", Float32(data=float("nan")), "threshold is nan"),
-        ("_pen/width", Float32(data=0.5), "0.5 m found, expected 0.001 to 0.1"),
+        ("_pen/width", Float32(data=0.5), "found 0.5 m, expected 0.001 to 0.1"),
         ("_pen/color", ColorRGBA(r=float("inf")), "color is inf"),
     ],
 )
-def test_what_cannot_be_is_refused(topic, message, found):
+def test_invalid_messages_are_rejected(topic, message, found):
     with pytest.raises(CommandError, match=found):
         decode(topic, message)

@@ -108,7 +108,7 @@ def test_odometry_and_truth_have_their_frames_and_covariances():
 
 
 @pytest.mark.parametrize("tilt", [Tilt(0.0, 0.8), Tilt(0.8, 0.0), Tilt(-0.3, 0.4), Tilt(0.0, 0.0)])
-def test_the_truth_tells_how_a_robot_leans(tilt):
+def test_the_true_pose_has_the_tilt(tilt):
     rest = BodyMotion(0.0, 0.0)
     reading = readings.PoseReading(0, (), Pose(0, 0, 0), rest, Pose(0, 0, math.pi / 2), rest, tilt)
     q = encode("_ground_truth/odom", reading).pose.pose.orientation
@@ -179,7 +179,7 @@ def test_events_become_words_of_a_topic(event, word):
     assert topic_word(event) == word
 
 
-def test_rays_are_as_long_as_what_they_measure_and_tell_a_hit_by_color():
+def test_rays_have_the_measured_length_and_a_color_for_obstacles():
     marker = encode("_proximity/rays", PROXIMITY, SECOND)
     assert marker.header.frame_id == "thymio_2/base_link"
     pairs = list(zip(marker.points[::2], marker.points[1::2], strict=True))

@@ -52,7 +52,7 @@ def test_temperature_has_tenths_and_a_variance():
 
 
 @pytest.mark.parametrize("is_charging", [False, True])
-def test_the_battery_tells_what_it_knows(is_charging):
+def test_the_battery_publishes_voltage_and_charge(is_charging):
     message = encode("_battery", readings.BatteryReading(0, (796, 796, 0), 4.0, 0.75, is_charging))
     assert (message.voltage, message.percentage, message.present) == (4.0, 0.75, True)
     assert (message.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING) == is_charging
@@ -66,12 +66,12 @@ def test_events_carry_their_values():
     assert encode("_collision", readings.CollisionReading(0, (), True)) == Bool(data=True)
 
 
-def test_only_loud_sounds_are_told():
+def test_only_loud_sounds_are_published():
     assert encode("_sound", readings.SoundReading(0, (51, 256), True)) == Float32(data=0.2)
     assert encode("_sound", readings.SoundReading(0, (51, 256), False)) is None
 
 
-def test_an_operator_is_felt_on_topics(ros, simulation):
+def test_stimuli_of_an_operator_reach_the_topics(ros, simulation):
     sim = simulation()
     imu, taps, keys = ros.collect(Imu, "/imu"), ros.collect(Empty, "/_tap"), ros.collect(Int8, "/_remote")
     sounds, warm = ros.collect(Float32, "/_sound"), ros.collect(Temperature, "/_temperature")
@@ -90,7 +90,7 @@ def test_an_operator_is_felt_on_topics(ros, simulation):
     assert sounds[-1].data == pytest.approx(191 / 255)
 
 
-def test_a_program_gets_the_words_of_the_senses(ros, simulation, runtime):
+def test_a_program_gets_the_words_of_the_sensors(ros, simulation, runtime):
     sim = simulation()
     runtime(
         "mic.threshold = 100\nonevent rc5\ncall leds.rc(rc5.command)\n"
@@ -98,7 +98,7 @@ def test_a_program_gets_the_words_of_the_senses(ros, simulation, runtime):
         "onevent acc\nif acc[1] > 20 then\ncall leds.prox.v(5, 6)\nend\n"
         "onevent mic\ncall leds.temperature(mic.intensity / 10, 1)"
     )
-    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     ros.publisher(Int16MultiArray, "/_press/rc5").publish(Int16MultiArray(data=[3, 11]))
     ros.publisher(Empty, "/_press/tap").publish(Empty())
     ros.publisher(Float32MultiArray, "/_press/tilt").publish(Float32MultiArray(data=[0.0, -1.5]))
@@ -127,7 +127,7 @@ def test_programs_of_two_robots_talk_by_infrared(ros, simulation, runtime):
         "onevent prox.comm\ncall leds.top(prox.comm.rx - 100, 0, 0)",
         robots=["anna", "bert"],
     )
-    states = [ros.collect(Float32MultiArray, f"/{name}/_led/state", latched=True) for name in ("anna", "bert")]
+    states = [ros.collect(Float32MultiArray, f"/{name}/_led/state", transient_local=True) for name in ("anna", "bert")]
     sim.until(lambda: all(states) and [round(32 * state[-1].data[0]) for state in states] == [2, 1])
 
 

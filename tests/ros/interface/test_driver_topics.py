@@ -102,26 +102,26 @@ def test_every_group_of_lights_has_a_number(number):
 @pytest.mark.parametrize(
     ("topic", "message", "found"),
     [
-        ("led", TYPES.Led(id=7, values=[1.0] * 8), "group 7 found, expected 0 to 6: circle"),
+        ("led", TYPES.Led(id=7, values=[1.0] * 8), "found group 7, expected 0 to 6: circle"),
         ("led", TYPES.Led(id=0, values=[1.0]), "found 1 values, expected 8 intensities"),
         ("led", TYPES.Led(id=5, values=[math.nan]), "intensity is nan"),
-        ("led/gesture", wave(leds=2), "a gesture of the buttons lights found"),
+        ("led/gesture", wave(leds=2), "found a gesture of the buttons lights"),
         ("led/gesture", wave(period=math.nan), "period is nan"),
         ("led/gesture", wave(period=0.0), "period 0 s found"),
         ("sound/play", TYPES.Sound(frequency=math.inf), "frequency is inf"),
     ],
 )
-def test_what_cannot_be_is_refused(topic, message, found):
+def test_invalid_messages_are_rejected(topic, message, found):
     with pytest.raises(CommandError, match=found):
         taken(topic, message)
 
 
-def test_lights_beyond_full_are_told():
+def test_lights_beyond_full_brightness_are_reported():
     assert INPUTS["led"].limit_check(TYPES.Led(id=5, values=[32.0])) == "found intensity 32, expected 0 to 1"
     assert INPUTS["led"].limit_check(TYPES.Led(id=5, values=[1.0, 32.0])) == ""
 
 
-def test_an_infrared_frame_is_told_with_all_that_was_heard():
+def test_an_infrared_frame_is_published_with_payloads_and_intensities():
     (row,) = DRIVER.rows["comm"]
     message = row.encode(CommReading(0, (7, *range(7), *range(100, 107))), None, None)
     assert message.value == 7

@@ -79,6 +79,6 @@ def test_a_message_becomes_a_command(topic, message, command):
         ("_press/battery", Float32(data=float("nan")), "SetBattery: volts nan"),
     ],
 )
-def test_what_cannot_be_is_refused(topic, message, found):
+def test_invalid_messages_are_rejected(topic, message, found):
     with pytest.raises(CommandError, match=found):
         decode(topic, message)

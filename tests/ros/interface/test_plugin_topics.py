@@ -32,14 +32,14 @@ def test_the_actuator_of_the_page_obeys_its_topic(ros, simulation):
 
 def test_the_shape_of_the_page_is_drawn(ros, simulation):
     sim = simulation(playground="slalom_field")
-    shown = ros.collect(MarkerArray, "/_markers", latched=True)
+    shown = ros.collect(MarkerArray, "/_markers", transient_local=True)
     sim.until(lambda: shown)
     assert sum(marker.ns == "solid/posts" for marker in shown[-1].markers) == 5
 
 
 def test_the_playground_of_the_page_is_listed(ros, simulation):
     sim = simulation()
-    lists = ros.collect(String, "/simulator/_playgrounds", latched=True)
+    lists = ros.collect(String, "/simulator/_playgrounds", transient_local=True)
     sim.until(lambda: lists)
     assert "slalom_field" in [shown["name"] for shown in json.loads(lists[-1].data)]
 

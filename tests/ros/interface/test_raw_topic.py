@@ -1,4 +1,4 @@
-"""The integers of all robots in one message: its form, and what a runtime makes of it."""
+"""The integer readings of all robots in one message: its form, and its use by a runtime."""
 
 from __future__ import annotations
 
@@ -32,32 +32,34 @@ def message(*parts, data):
 
 
 @given(readings)
-def test_the_message_is_an_array_with_a_dimension_for_each_reading(told):
-    found = deserialize_message(encode(told), Int16MultiArray)
-    labels = [f"{robot}/{sensor}" if robot else sensor for robot, sensor, _ in told]
-    sizes = [len(words) for _, _, words in told]
+def test_the_message_is_an_array_with_a_dimension_for_each_reading(reported):
+    found = deserialize_message(encode(reported), Int16MultiArray)
+    labels = [f"{robot}/{sensor}" if robot else sensor for robot, sensor, _ in reported]
+    sizes = [len(words) for _, _, words in reported]
     assert [(dim.label, dim.size, dim.stride) for dim in found.layout.dim] == list(
         zip(labels, sizes, sizes, strict=True)
     )
-    assert list(found.data) == [word for _, _, words in told for word in words]
+    assert list(found.data) == [word for _, _, words in reported for word in words]
 
 
 @given(st.lists(readings, max_size=3))
-def test_what_was_told_is_read_also_the_second_time(messages):
+def test_an_encoded_message_is_decoded_also_the_second_time(messages):
     decoder = RawDecoder()
     for _ in range(2):
-        for told in messages:
-            assert [(robot, sensor, tuple(words)) for robot, sensor, words in decoder.decode(encode(told))] == told
+        for message in messages:
+            assert [
+                (robot, sensor, tuple(words)) for robot, sensor, words in decoder.decode(encode(message))
+            ] == message
 
 
 def test_many_kinds_of_messages_are_read():
     decoder = RawDecoder()
     for count in range(1500):
-        told = [(f"r{count}", "motor", (count, 1))]
-        assert list(decoder.decode(encode(told))) == told
+        reported = [(f"r{count}", "motor", (count, 1))]
+        assert list(decoder.decode(encode(reported))) == reported
 
 
-def test_a_message_that_somebody_else_has_written_is_read():
+def test_a_message_of_another_serializer_is_decoded():
     data = serialize_message(message(("a/motor", 2), ("tap", 1), data=[1, 2, 3]))
     padded = data + bytes(4)
     decoder = RawDecoder()
@@ -66,18 +68,18 @@ def test_a_message_that_somebody_else_has_written_is_read():
             assert list(decoder.decode(written)) == [("a", "motor", (1, 2)), ("", "tap", (3,))]
 
 
-def test_words_that_belong_to_nothing_are_refused():
-    with pytest.raises(ValueError, match="3 words found, expected 2"):
+def test_surplus_words_are_rejected():
+    with pytest.raises(ValueError, match="found 3 words, expected 2"):
         list(RawDecoder().decode(serialize_message(message(("a/motor", 2), data=[1, 2, 3]))))
 
 
 @pytest.mark.parametrize("broken", [b"", b"\0\1\0\0\1\0\0\0", encode([("a", "motor", (1, 2))])[:-3]])
-def test_what_is_no_message_is_refused(broken):
+def test_other_bytes_are_rejected(broken):
     with pytest.raises(RuntimeError):
         list(RawDecoder().decode(broken))
 
 
-def test_a_runtime_hears_all_robots_of_a_simulator_at_once(ros, simulation, runtime):
+def test_a_runtime_gets_all_robots_of_a_simulator_in_one_topic(ros, simulation, runtime):
     sim = simulation(playground="two_robots")
     runtime(COUNTER)
     robots = list(sim.world.robots)
@@ -100,20 +102,20 @@ def test_each_reading_is_one_event(ros, simulation, runtime):
     ros.until(lambda: ros.node.count_subscribers("/simulator/_raw"), what="the runtime's ears")
     heard = ros.collect(Int16MultiArray, "/simulator/_raw")
     sim.until(lambda: heard)
-    sim.simulator.pause(True)
+    sim.simulator.runner.pause(True)
     ros.settle()
     motors, looks = count()
     done = len(heard)
     for _ in range(30):
-        sim.simulator.step(1)
+        sim.simulator.runner.step(1)
 
-    def told(word):
+    def reported(word):
         return sum(dim.label == word for one in list(heard)[done:] for dim in one.layout.dim)
 
-    ros.until(lambda: told("motor") == 30, what="the readings of 30 ticks")
+    ros.until(lambda: reported("motor") == 30, what="the readings of 30 ticks")
     ros.settle()
-    assert count() == [motors + 30, looks + told("proximity")]
-    assert told("proximity") == 3
+    assert count() == [motors + 30, looks + reported("proximity")]
+    assert reported("proximity") == 3
 
 
 @pytest.fixture
@@ -129,7 +131,7 @@ def told_by_single_topics(ros, *, speed):
     ros.until(lambda: get_variables(ros, "motor.left.speed", robot="/anna")[0] == [speed], what="a single reading")
 
 
-def test_where_the_simulator_has_gone_a_robot_has_topics_of_its_own(ros, runtime, simulator):
+def test_without_its_simulator_a_robot_uses_its_own_topics(ros, runtime, simulator):
     runtime(COUNTER)
     simulator(raw="/simulator/_raw")
     common = ros.publisher(Int16MultiArray, "/simulator/_raw")
@@ -140,21 +142,21 @@ def test_where_the_simulator_has_gone_a_robot_has_topics_of_its_own(ros, runtime
     told_by_single_topics(ros, speed=6)
 
 
-def test_a_simulator_without_the_common_topic_is_heard_by_single_ones(ros, runtime, simulator):
+def test_a_simulator_without_the_common_topic_uses_one_topic_per_sensor(ros, runtime, simulator):
     runtime(COUNTER)
     simulator()
     told_by_single_topics(ros, speed=7)
     assert ros.node.count_subscribers("/simulator/_raw") == 0
 
 
-def test_a_message_that_is_none_ends_nothing(ros, simulation, runtime):
+def test_an_invalid_message_does_not_stop_the_runtime(ros, simulation, runtime):
     sim = simulation()
     node = runtime(COUNTER)
-    node._on_raw(b"\0\1\0\0nonsense")
+    node._follower._on_raw(b"\0\1\0\0nonsense")
     before = get_variables(ros, "motors")[0][0]
     sim.until(lambda: get_variables(ros, "motors")[0][0] > before)
 
 
-def test_a_robot_that_no_simulator_tells_of_is_heard_by_its_own_topics(ros, runtime):
+def test_a_robot_without_a_simulator_uses_its_own_topics(ros, runtime):
     runtime(COUNTER, robots=["anna"])
     told_by_single_topics(ros, speed=8)

@@ -1,4 +1,4 @@
-"""What is beyond the robot is limited, and told: once in the log for each topic, counted in the diagnostics."""
+"""Values beyond a limit of the robot are clamped, logged once per topic, and counted in the diagnostics."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from std_msgs.msg import (
 
 from tests.ros.test_every_topic import SENT
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import MAX_SAMPLES
+from thymio_sim_ros.ros.interface.command_codecs import MAX_SAMPLES
 from thymio_sim_ros.ros.interface.robot_inputs import WORLD, InputContext, robot_inputs
 from thymio_sim_ros.sim.audio.synthesis import HIGHEST_HZ, LOWEST_HZ
 from thymio_sim_ros.sim.commands import LED_GROUPS
@@ -90,11 +90,11 @@ BEYOND = {
     "_press/sound": (Float32(data=-0.5), Float32(data=0.0), "found loudness -0.5"),
     "_press/light": (Float32(data=2.0), Float32(data=1.0), "found light 2"),
 }
-"""A message beyond, one just within, and what is said of the first."""
+"""A message beyond the limits, one just within, and the description of the first."""
 
 
 @pytest.mark.parametrize("topic", BEYOND)
-def test_what_is_beyond_the_robot_is_said(topic):
+def test_values_beyond_a_limit_are_described(topic):
     one, (message, within, said) = INPUTS[topic], BEYOND[topic]
     assert one.limit_check(message).startswith(said)
     assert one.limit_check(within) == ""
@@ -163,7 +163,7 @@ GOOD = {topic: message for topic, (message, _) in SENT.items()}
 
 
 def answer(one, message):
-    """What a user is told of a message: why it is refused, what is limited, or nothing."""
+    """Return the report about a message: the reason of a rejection, the clamped value, or nothing."""
     try:
         commands = one.commands(message, NOW)
     except CommandError as error:
@@ -173,7 +173,7 @@ def answer(one, message):
 
 
 @pytest.mark.parametrize("one", OWN, ids=[one.topic for one in OWN])
-def test_nothing_that_a_robot_cannot_do_goes_without_a_word(one):
+def test_every_value_beyond_a_limit_is_described(one):
     silent = [message for message in bad_messages(one) if not answer(one, message)]
     # a tone of negative length is how a sound is stopped
     silent = [message for message in silent if one.topic != "sound/tone" or message.data[1] >= 0.0]
@@ -181,7 +181,7 @@ def test_nothing_that_a_robot_cannot_do_goes_without_a_word(one):
 
 
 @pytest.mark.parametrize("one", OWN, ids=[one.topic for one in OWN])
-def test_a_good_message_goes_without_a_word(one):
+def test_a_message_within_the_limits_is_not_reported(one):
     assert answer(one, GOOD[one.topic]) == ""
 
 
@@ -192,7 +192,7 @@ def test_every_input_but_switches_is_tried_with_bad_messages():
 
 @pytest.mark.parametrize("number", [-1, 15, 40])
 def test_a_light_that_there_is_not_is_refused(number):
-    with pytest.raises(CommandError, match=f"light {number} found, expected 0 to 39, but for 15"):
+    with pytest.raises(CommandError, match=f"found light {number}, expected 0 to 39, but for 15"):
         INPUTS["_led/single"].commands(Int16MultiArray(data=[number, 5]), NOW)
 
 
@@ -207,7 +207,7 @@ def test_tones_are_limited_to_what_the_wave_can_have_either_sign_and_however_lon
     assert limit_check(outwards).startswith("found frequency")
 
 
-def test_a_command_beyond_the_robot_is_limited_told_once_and_counted(ros, simulation):
+def test_a_command_beyond_a_limit_is_clamped_logged_once_and_counted(ros, simulation):
     sim = simulation()
     logs = ros.collect(Log, "/rosout", where=lambda log: "clamped" in log.msg)
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")

@@ -1,4 +1,4 @@
-"""Who listens decides which sensors are looked at, and when the next tick matters."""
+"""Subscribers determine which sensors are read, and when the next reading is due."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from thymio_sim_ros.sim.model.clock import NEVER_NS
 MS = 1_000_000
 
 
-def test_without_listeners_nothing_is_ever_due():
+def test_without_subscribers_no_reading_is_due():
     demand = SubscriberDemand()
     assert demand.sensors == frozenset()
     assert demand.due_ns(0) == NEVER_NS
 
 
-def test_the_earliest_reading_that_is_heard_is_due():
+def test_the_earliest_reading_with_a_subscriber_is_due():
     demand = SubscriberDemand()
     demand.add(TopicDemand("proximity"))
     assert demand.due_ns(0) == 100 * MS
@@ -27,7 +27,7 @@ def test_the_earliest_reading_that_is_heard_is_due():
     assert demand.sensors == {"proximity"}
 
 
-def test_a_sensor_is_looked_at_until_the_last_listener_goes():
+def test_a_sensor_is_read_until_its_last_subscriber_leaves():
     demand = SubscriberDemand()
     demand.add(TopicDemand("pose"))
     demand.add(TopicDemand("pose"))
@@ -44,7 +44,7 @@ def test_a_topic_slower_than_its_sensor_is_due_at_its_own_pace():
 
 
 @pytest.mark.parametrize("topic", [TopicDemand("buttons", is_periodic=False), TopicDemand("loudspeaker")])
-def test_what_happens_now_and_then_is_never_due_but_looked_at(topic):
+def test_an_event_driven_reading_is_never_due_but_read(topic):
     demand = SubscriberDemand()
     demand.add(topic)
     assert demand.due_ns(0) == NEVER_NS

@@ -21,7 +21,7 @@ def test_senders_take_turns_and_each_keeps_its_order():
     assert len(queue) == 0
 
 
-def test_a_sender_that_is_not_free_is_passed_over():
+def test_a_blocked_sender_is_skipped():
     queue = filled(("a", 1), ("b", 1))
     assert queue.pop(lambda sender: sender != "a") == ("b", 1)
     with pytest.raises(IndexError):

@@ -46,5 +46,5 @@ def test_else_a_temporary_folder_is_taken_and_reported(capsys, tmp_path, environ
     folder = Path(found["ROS_LOG_DIR"])
     assert folder.is_dir()
     assert folder.parent == tmp_path
-    told = f"thymio-sim: log files go to {folder}: {reason}; set ROS_LOG_DIR to choose another\n"
-    assert capsys.readouterr().err == told
+    reported = f"thymio-sim: log files go to {folder}: {reason}; set ROS_LOG_DIR to choose another\n"
+    assert capsys.readouterr().err == reported

@@ -1,4 +1,4 @@
-"""Nodes come and go while the others run; who comes late sees what is latched; time may jump back."""
+"""Nodes start and end while others run; late subscribers get retained messages; time may jump back."""
 
 from __future__ import annotations
 
@@ -63,19 +63,20 @@ def test_a_program_starts_again_with_its_node(ros, simulation, runtime):
         (String, "/robot_description"),
         (String, "/simulator/_state"),
         (String, "/simulator/_playgrounds"),
+        (String, "/simulator/_sensors"),
         (MarkerArray, "/_markers"),
         (MarkerArray, "/_markers/objects"),
         (Float32MultiArray, "/_led/state"),
     ],
 )
-def test_who_comes_late_sees_what_is_latched(ros, simulation, kind, topic):
+def test_a_late_subscriber_gets_retained_messages(ros, simulation, kind, topic):
     sim = simulation()
     sim.step(0.5)
     messages = ros.collect(kind, topic)
     ros.until(lambda: messages)
 
 
-def test_who_comes_late_sees_the_fixed_frames(ros, simulation):
+def test_a_late_subscriber_gets_the_static_frames(ros, simulation):
     sim = simulation()
     sim.step(0.5)
     received = []
@@ -85,7 +86,7 @@ def test_who_comes_late_sees_the_fixed_frames(ros, simulation):
     assert {"base_footprint", "laser_link", "proximity_center_link", "ground_left_link"} <= children
 
 
-def test_who_comes_while_time_stands_still_gets_the_clock(ros, simulation):
+def test_a_subscriber_that_arrives_while_paused_gets_the_clock(ros, simulation):
     sim = simulation()
     sim.step(0.5)
     clocks = ros.collect(Clock, "/clock")
@@ -94,7 +95,7 @@ def test_who_comes_while_time_stands_still_gets_the_clock(ros, simulation):
     assert clocks[-1].clock.nanosec == 500_000_000
 
 
-def test_after_a_reset_latched_topics_come_before_the_clock_and_the_clock_before_readings(ros, simulation):
+def test_after_a_reset_retained_topics_precede_the_clock_and_the_clock_precedes_readings(ros, simulation):
     sim = simulation()
     sim.step(0.5)
     order = []
@@ -126,7 +127,7 @@ def test_a_new_playground_goes_back_in_time_and_keeps_the_program(ros, simulatio
 
 
 class Stumbling:
-    """A life whose first turns fail."""
+    """A node whose first iterations fail."""
 
     def __init__(self, node, faults):
         self.node, self.faults, self.turns = node, faults, 0
@@ -135,25 +136,25 @@ class Stumbling:
         self.turns += 1
         executor.spin_once(timeout_sec=0.0)
         if self.turns <= self.faults:
-            raise ZeroDivisionError("nobody thought of it")
+            raise ZeroDivisionError("unexpected")
 
 
-def test_a_fault_of_ours_does_not_end_a_node(ros, monkeypatch):
-    told = []
-    monkeypatch.setattr(RcutilsLogger, "error", lambda self, text, **_: told.append(text))
-    life = Stumbling(Node("stumbling", context=ros.context), faults=MAX_CONSECUTIVE_ERRORS - 1)
-    run_node(life, ros.context, lambda: life.turns == MAX_CONSECUTIVE_ERRORS + 1)
-    assert len(told) == MAX_CONSECUTIVE_ERRORS - 1
-    assert all("nobody thought of it" in text for text in told)
-    life.node.destroy_node()
+def test_an_internal_error_does_not_end_a_node(ros, monkeypatch):
+    reported = []
+    monkeypatch.setattr(RcutilsLogger, "error", lambda self, text, **_: reported.append(text))
+    runnable = Stumbling(Node("stumbling", context=ros.context), faults=MAX_CONSECUTIVE_ERRORS - 1)
+    run_node(runnable, ros.context, lambda: runnable.turns == MAX_CONSECUTIVE_ERRORS + 1)
+    assert len(reported) == MAX_CONSECUTIVE_ERRORS - 1
+    assert all("unexpected" in text for text in reported)
+    runnable.node.destroy_node()
 
 
-def test_but_a_node_that_does_nothing_else_ends(ros):
-    life = Stumbling(Node("stumbling", context=ros.context), faults=1000)
+def test_a_node_that_only_fails_ends(ros):
+    runnable = Stumbling(Node("stumbling", context=ros.context), faults=1000)
     with pytest.raises(ZeroDivisionError):
-        run_node(life, ros.context, lambda: life.turns == 1000)
-    assert life.turns == MAX_CONSECUTIVE_ERRORS
-    life.node.destroy_node()
+        run_node(runnable, ros.context, lambda: runnable.turns == 1000)
+    assert runnable.turns == MAX_CONSECUTIVE_ERRORS
+    runnable.node.destroy_node()
 
 
 def test_nothing_of_a_simulator_is_left_in_the_graph(ros, simulation):
@@ -167,13 +168,13 @@ def test_nothing_of_a_simulator_is_left_in_the_graph(ros, simulation):
 @pytest.fixture
 def logged(monkeypatch):
     """What nodes wrote to the log at these two levels."""
-    told = []
+    reported = []
     for level in ("info", "warning"):
-        monkeypatch.setattr(RcutilsLogger, level, lambda self, text, **_: told.append(text))
-    return told
+        monkeypatch.setattr(RcutilsLogger, level, lambda self, text, **_: reported.append(text))
+    return reported
 
 
-def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, runtime):
+def test_an_executable_logs_what_runs_and_where(ros, logged, simulation, runtime):
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
     hosts = [page, simulation(playground="two_robots").simulator, runtime(COUNTS, robots=["anna"])]
     assert list(announce(hosts)) == hosts
@@ -191,7 +192,7 @@ def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, run
         (WebPage, "web_ui", "", "ros2-tools.md"),
     ],
 )
-def test_a_misspelt_parameter_is_told_with_the_nearest(ros_domain, logged, node, name, near, page):
+def test_a_misspelled_parameter_is_reported_with_the_nearest_name(ros_domain, logged, node, name, near, page):
     context = Context()
     context.init(args=["--ros-args", "-p", "playgroud:=maze", "-p", "use_sim_time:=false"])
     node(context, *([WebParams(port=0)] if node is WebPage else [])).close()
@@ -202,23 +203,23 @@ def test_a_misspelt_parameter_is_told_with_the_nearest(ros_domain, logged, node,
 
 
 @pytest.mark.parametrize(("argument", "code"), [("--help", 0), ("playground:=maze", 2), ("extra", 2)])
-def test_an_argument_that_is_not_of_ros_is_answered_and_nothing_starts(capfd, argument, code):
+def test_an_argument_outside_ros_args_is_reported_and_nothing_starts(capfd, argument, code):
     assert run_main(lambda context: pytest.fail("started"), [argument, "--ros-args", "-p", "seed:=1"]) == code
     out, err = capfd.readouterr()
     assert "--ros-args -p PARAMETER:=VALUE" in (out if code == 0 else err)
-    assert (f"argument '{argument}' found" in err) == bool(code)
+    assert (f"found argument '{argument}'" in err) == bool(code)
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (["-p", "seed=3"], "ROS cannot be initialized: Couldn't parse parameter override rule: '-p seed=3'"),
         (["--foo"], "not ROS arguments: ['--foo']"),
     ],
 )
-def test_an_argument_that_ros_does_not_understand_is_told_in_one_line(capfd, words, told):
+def test_an_invalid_ros_argument_is_reported_in_one_line(capfd, words, reported):
     assert run_main(lambda context: pytest.fail("started"), ["--ros-args", *words]) == 2
-    assert f"thymio-sim: {told}" in capfd.readouterr().err.splitlines()
+    assert f"thymio-sim: {reported}" in capfd.readouterr().err.splitlines()
 
 
 SLOW_TO_CLOSE = """
@@ -261,6 +262,8 @@ import sys, threading, time
 from rclpy.node import Node
 from thymio_sim_ros.ros.rclpy_ext import node_runner
 
+ALL_RUN = threading.Event()
+
 class Turning:
     def __init__(self, context, name):
         self.node = Node(name, context=context)
@@ -276,6 +279,7 @@ class Turning:
 
 class InPython(Turning):
     def run_once(self, executor):
+        ALL_RUN.wait()
         print("begun", flush=True)
         here = True
         while here:
@@ -283,6 +287,7 @@ class InPython(Turning):
 
 class InC(Turning):
     def run_once(self, executor):
+        ALL_RUN.wait()
         print("begun", flush=True)
         threading.Lock().acquire() and time.sleep(1e6)
 
@@ -298,6 +303,7 @@ def build(context):
 
 node_runner.LEAVE_S = 10.0
 def ready():
+    ALL_RUN.set()
     if not {"python", "c"} & set(sys.argv[1].split(",")):  # a stuck node says so itself, once it is stuck
         print("begun", flush=True)
 

@@ -65,7 +65,7 @@ def loaded(ros, node, path):
 
 
 @pytest.mark.parametrize("node", MAKERS)
-def test_what_was_dumped_is_loaded_without_a_change(ros, node, tmp_path):
+def test_dumped_parameters_load_without_a_change(ros, node, tmp_path):
     life = ros.live(MAKERS[node](ros.context))
     before = values_of(ros, node)
     changes = []
@@ -77,7 +77,7 @@ def test_what_was_dumped_is_loaded_without_a_change(ros, node, tmp_path):
 
 
 @pytest.mark.parametrize("node", MAKERS)
-def test_what_was_dumped_starts_a_node_with_the_same_values(ros, node, tmp_path):
+def test_dumped_parameters_start_a_node_with_the_same_values(ros, node, tmp_path):
     life = ros.live(MAKERS[node](ros.context))
     before = values_of(ros, node)
     path = dumped(before, node, tmp_path / "dump.yaml")
@@ -102,7 +102,7 @@ def test_what_was_dumped_starts_a_node_with_the_same_values(ros, node, tmp_path)
 def test_loading_restarts_no_program_and_no_world(ros, simulation, tmp_path):
     sim = simulation(playground="two_robots")
     runtime = ros.live(MAKERS["aseba_runtime"](ros.context))
-    runtime.robots[0].device.set_variable("count", (42,))
+    runtime.robots[0].device.variables.set("count", (42,))
     sim.step(0.5)
     world = sim.world
     for node in ("simulator", "aseba_runtime"):
@@ -122,7 +122,7 @@ def test_loading_restarts_no_program_and_no_world(ros, simulation, tmp_path):
         ([0.5, 0.5], ["1e-05", "2e-7"], [1e-5, 2e-7]),
     ],
 )
-def test_a_number_that_comes_as_text_is_taken_as_a_number(ros, present, wanted, found):
+def test_a_number_given_as_text_is_converted(ros, present, wanted, found):
     node = ros.add(ParameterNode("numbers", context=ros.context))
     node.declare_parameter("value", present)
     assert node.set_parameters_atomically([Parameter("value", value=wanted)]).successful
@@ -133,13 +133,13 @@ def test_a_number_that_comes_as_text_is_taken_as_a_number(ros, present, wanted, 
 @pytest.mark.parametrize(
     ("present", "wanted"), [(0.5, "fast"), ([0.5], "[fast]"), ([0.5], ["fast"]), ([0.5], "{}"), (1, "1"), ("text", 3)]
 )
-def test_what_is_no_number_is_refused_as_ever(ros, present, wanted):
+def test_text_without_a_number_is_rejected(ros, present, wanted):
     node = ros.add(ParameterNode("numbers", context=ros.context))
     node.declare_parameter("value", present)
     assert "Wrong parameter type" in node.set_parameters_atomically([Parameter("value", value=wanted)]).reason
 
 
-def test_a_fixed_parameter_may_be_set_to_what_it_is_and_to_nothing_else(ros):
+def test_a_fixed_parameter_accepts_only_its_current_value(ros):
     node = ros.add(ParameterNode("fixed", context=ros.context))
     node.declare_parameter("value", 4, ParameterDescriptor(read_only=True))
     assert node.set_parameters_atomically([Parameter("value", value=4)]).successful

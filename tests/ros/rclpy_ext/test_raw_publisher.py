@@ -1,4 +1,4 @@
-"""The short way past rclpy gives what the usual one gives."""
+"""The direct calls below rclpy give the same results as rclpy."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_words_in_the_order_of_another_processor_are_read():
 
 
 @pytest.mark.parametrize("broken", [b"", b"\0\1\0\0", b"\0\1\0\0" + bytes(8) + b"\xff\xff\xff\xff\1\0"])
-def test_what_is_no_message_is_refused(broken):
+def test_other_bytes_are_rejected(broken):
     with pytest.raises(RuntimeError):
         raw_publisher.words_of(broken)
 

@@ -38,13 +38,13 @@ def stranger(ros):
 
 
 def beaten(simulator):
-    """Let the simulator do what it does once a second; what it says about its inputs."""
-    simulator._type_mismatches._next_s = 0.0  # a slow machine would make it wait longer than a test does
+    """Publish the heartbeat of the simulator and return its mismatches."""
+    simulator._diagnostics._type_mismatches._next_s = 0.0  # a slow machine would make it wait longer than a test does
     simulator._publish_heartbeat(0)
-    return simulator._type_mismatches.mismatches
+    return simulator._diagnostics._type_mismatches.mismatches
 
 
-def test_a_stamped_velocity_is_noticed_said_once_and_shown(ros, simulation, stranger):
+def test_a_stamped_velocity_is_detected_logged_once_and_shown(ros, simulation, stranger):
     sim = simulation()
     logs = ros.collect(Log, "/rosout", where=lambda log: "publisher of" in log.msg)
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")
@@ -65,10 +65,10 @@ def test_a_stamped_velocity_is_noticed_said_once_and_shown(ros, simulation, stra
     assert [log.msg for log in logs] == [said]
     node.destroy_node()
     ros.until(lambda: not beaten(sim.simulator))
-    assert sim.simulator._type_mismatches.status().level == DiagnosticStatus.OK
+    assert sim.simulator._diagnostics._type_mismatches.status().level == DiagnosticStatus.OK
 
 
-def test_the_right_type_is_nothing_to_tell(ros, simulation, stranger):
+def test_the_right_type_is_not_reported(ros, simulation, stranger):
     sim = simulation()
     stranger(Twist, "/cmd_vel")
     ros.until(lambda: ros.node.count_publishers("/cmd_vel"))
@@ -77,9 +77,9 @@ def test_the_right_type_is_nothing_to_tell(ros, simulation, stranger):
     assert mismatches.mismatches == ()
 
 
-def test_every_input_of_every_robot_is_looked_at(ros, simulation, stranger):
+def test_every_input_of_every_robot_is_checked(ros, simulation, stranger):
     sim = simulation(playground="two_robots")
-    robots = [names.name for names in sim.simulator.names.values()]
+    robots = [names.name for names in sim.simulator.endpoints.robots.names.values()]
     topics = [*(f"/{robot}/{one.topic}" for robot in robots for one in robot_inputs()), "/simulator/_place"]
     node = stranger(String, topics[0])
     for topic in topics[1:]:
@@ -95,13 +95,13 @@ def test_every_input_of_every_robot_is_looked_at(ros, simulation, stranger):
     assert {(one.node, one.found) for one in mismatches.mismatches} == {("/teleop", TEXT)}
 
 
-def test_robots_that_come_are_looked_at_too(ros, simulation, stranger):
+def test_added_robots_are_checked_too(ros, simulation, stranger):
     sim = simulation(playground="two_robots")
-    (name, *_) = [names.name for names in sim.simulator.names.values()]
+    (name, *_) = [names.name for names in sim.simulator.endpoints.robots.names.values()]
     mismatches = TypeMismatches(sim.simulator.node)
     mismatches.poll()
     sim.world.remove(name)
-    sim.simulator.update_robots()
+    sim.simulator.runner.update_robots()
     stranger(String, f"/{name}/_alarm", "late")
     ros.until(lambda: ros.node.count_publishers(f"/{name}/_alarm"))
     mismatches._next_s = 0.0
@@ -109,21 +109,21 @@ def test_robots_that_come_are_looked_at_too(ros, simulation, stranger):
     assert mismatches.mismatches == ()
 
 
-def test_a_runtime_looks_at_its_inputs(ros, runtime, stranger):
+def test_a_runtime_checks_the_types_of_its_inputs(ros, runtime, stranger):
     made = runtime("onevent prox")
     stranger(Twist, "/_aseba/emit")
 
     def found():
-        made._type_mismatches._next_s = 0.0
-        made._publish_diagnostics()
-        return made._type_mismatches.mismatches
+        made._diagnostics._type_mismatches._next_s = 0.0
+        made._diagnostics.publish_all(made.robots)
+        return made._diagnostics._type_mismatches.mismatches
 
     ros.until(found)
-    assert [one.topic for one in made._type_mismatches.mismatches] == ["/_aseba/emit"]
+    assert [one.topic for one in made._diagnostics._type_mismatches.mismatches] == ["/_aseba/emit"]
 
 
 @pytest.mark.parametrize(
-    ("topic", "found", "wanted", "told"),
+    ("topic", "found", "wanted", "reported"),
     [
         ("/r/cmd_vel", STAMPED, TWIST, "Publish it on /r/cmd_vel_stamped, or start the simulator with stamped_cmd"),
         ("/r/cmd_vel_stamped", TWIST, STAMPED, "Publish it on /r/cmd_vel"),
@@ -131,9 +131,9 @@ def test_a_runtime_looks_at_its_inputs(ros, runtime, stranger):
         ("/r/alarm", STAMPED, "std_msgs/msg/Bool", "Publish std_msgs/msg/Bool there"),
     ],
 )
-def test_the_cure_is_what_can_be_done(topic, found, wanted, told):
+def test_the_cure_names_the_right_topic_or_type(topic, found, wanted, reported):
     inputs = {"/s/cmd_vel": TWIST, "/r/cmd_vel": TWIST, "/r/cmd_vel_stamped": STAMPED, "/r/alarm": "std_msgs/msg/Bool"}
-    assert type_mismatch.cure(topic, found, wanted, inputs).startswith(told)
+    assert type_mismatch.cure(topic, found, wanted, inputs).startswith(reported)
 
 
 def test_with_stamped_velocities_the_cure_is_the_other_topic():

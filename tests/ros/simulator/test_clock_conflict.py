@@ -1,4 +1,4 @@
-"""Two simulators with one clock notice each other; a silent publisher, or one of another clock, is none."""
+"""Two simulators with one clock detect each other; a silent publisher, or one of another clock, is no conflict."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ def simulator(ros):
 
 
 def levels(messages) -> list[bytes]:
-    """What all simulators say about their clock, as levels."""
+    """Return the levels of all statuses about clocks."""
     return [status.level for message in messages for status in message.status if status.name == CLOCK]
 
 
 def beat(*simulators) -> None:
-    """Let each simulator do what it does once a second."""
+    """Publish the heartbeat of each simulator."""
     for one in simulators:
         one._publish_heartbeat(0)
 
 
-def rivals(simulator):
-    return simulator._world_endpoints._clock_conflict
+def conflict(simulator):
+    return simulator.endpoints.clock.conflict
 
 
 def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):
@@ -43,7 +43,7 @@ def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):
 
     def both_found() -> bool:
         beat(first, second)
-        return rivals(first).is_found and rivals(second).is_found
+        return conflict(first).is_found and conflict(second).is_found
 
     ros.until(both_found)
     ros.until(lambda: len(logs) == 2)
@@ -63,16 +63,16 @@ def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):
 
     def is_alone() -> bool:
         beat(first)
-        return not rivals(first).is_found
+        return not conflict(first).is_found
 
     ros.until(is_alone)
     diagnostics.clear()
     beat(first)
     ros.until(lambda: levels(diagnostics) == [DiagnosticStatus.OK])
-    assert rivals(first)._subscription is None
+    assert conflict(first)._subscription is None
 
 
-def test_a_publisher_that_says_nothing_is_no_simulator(ros, simulator):
+def test_a_silent_publisher_is_no_conflict(ros, simulator):
     """As one that was killed: discovery keeps it for some time."""
     alone = simulator()
     ros.node.create_publisher(Clock, "/clock", qos.CLOCK)
@@ -80,7 +80,7 @@ def test_a_publisher_that_says_nothing_is_no_simulator(ros, simulator):
 
     def is_watched() -> bool:
         beat(alone)
-        return rivals(alone)._subscription is not None
+        return conflict(alone)._subscription is not None
 
     ros.until(is_watched)
     ros.settle()
@@ -91,17 +91,17 @@ def test_a_publisher_that_says_nothing_is_no_simulator(ros, simulator):
         return len(heard) >= 10
 
     ros.until(has_subscribers)
-    assert not rivals(alone).is_found
-    assert rivals(alone).status().level == DiagnosticStatus.OK
+    assert not conflict(alone).is_found
+    assert conflict(alone).status().level == DiagnosticStatus.OK
 
 
-def test_a_simulator_with_another_clock_is_none(ros, simulator, simulator_with):
+def test_a_simulator_with_another_clock_is_no_conflict(ros, simulator, simulator_with):
     alone = simulator()
     other = simulator_with("-r", "/clock:=/lab1/clock", start_paused=True)
     ros.until(lambda: ros.node.count_publishers("/lab1/clock"))
     beat(alone, other)
-    assert rivals(alone)._subscription is None
-    assert rivals(other)._subscription is None
+    assert conflict(alone)._subscription is None
+    assert conflict(other)._subscription is None
 
 
 def test_without_a_clock_there_is_nothing_to_find(ros, simulation):

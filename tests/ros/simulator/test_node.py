@@ -71,15 +71,15 @@ def test_cmd_vel_moves_the_robot(ros, simulation):
     assert abs(last.pose.pose.position.y) < 0.02
 
 
-def test_a_fault_of_ours_stops_the_world_and_says_so_and_the_node_lives(ros, simulation, monkeypatch):
+def test_an_internal_error_pauses_the_world_and_is_logged(ros, simulation, monkeypatch):
     sim = simulation()
     logs, states = ros.collect(Log, "/rosout"), ros.collect(String, "/simulator/_state")
 
     def fail():
-        raise ZeroDivisionError("nobody thought of it")
+        raise ZeroDivisionError("unexpected")
 
-    monkeypatch.setattr(sim.simulator.world, "step", fail)
-    assert sim.simulator.paused
+    monkeypatch.setattr(sim.world, "step", fail)
+    assert sim.simulator.runner.paused
     answer = ros.call(Trigger, "/simulator/step", Trigger.Request())
     ros.until(lambda: any("the world stopped at 0 ns" in log.msg and "in fail" in log.msg for log in logs))
     assert not answer.success
@@ -88,19 +88,19 @@ def test_a_fault_of_ours_stops_the_world_and_says_so_and_the_node_lives(ros, sim
     ros.until(lambda: states and json.loads(states[-1].data)["paused"])
 
 
-def test_what_is_latched_is_told_anew_after_a_reset(ros, simulation):
+def test_retained_topics_are_published_again_after_a_reset(ros, simulation):
     sim = simulation()
     ros.publisher(Bool, "/pen/down").publish(Bool(data=True))
     ros.publisher(Float32MultiArray, "/sound/tone").publish(Float32MultiArray(data=[440.0, 1000.0]))
     ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
     sounds, trails = (
         ros.collect(Float32MultiArray, "/_sound/state"),
-        ros.collect(MarkerArray, "/_pen/trail", latched=True),
+        ros.collect(MarkerArray, "/_pen/trail", transient_local=True),
     )
     sim.until(lambda: sounds and sounds[-1].data[0] > 0 and trails and len(trails[-1].markers) > 1)
     assert ros.call(Trigger, "/simulator/reset", Trigger.Request()).success
-    late_sounds = ros.collect(Float32MultiArray, "/_sound/state", latched=True)
-    late_trails = ros.collect(MarkerArray, "/_pen/trail", latched=True)
+    late_sounds = ros.collect(Float32MultiArray, "/_sound/state", transient_local=True)
+    late_trails = ros.collect(MarkerArray, "/_pen/trail", transient_local=True)
     ros.until(lambda: late_sounds and late_trails)
     assert list(late_sounds[-1].data) == [0.0, 0.0, 1.0]
     assert [marker.action for marker in late_trails[-1].markers] == [Marker.DELETEALL]
@@ -196,9 +196,9 @@ def test_a_pressed_button_is_seen_once(ros, simulation):
     assert [message.data for message in pressed] in ([False, True], [True])
 
 
-def test_leds_shine_as_told(ros, simulation):
+def test_leds_show_the_commanded_levels(ros, simulation):
     sim = simulation()
-    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     ros.publisher(ColorRGBA, "/led/body/top").publish(ColorRGBA(r=1.0, g=0.5, b=0.0, a=1.0))
     sim.until(lambda: state and list(state[-1].data[:3]) == [1.0, 0.5, 0.0])
     labels = {dimension.label: dimension.size for dimension in state[-1].layout.dim}
@@ -207,7 +207,7 @@ def test_leds_shine_as_told(ros, simulation):
 
 def test_a_short_led_array_is_refused(ros, simulation):
     sim = simulation()
-    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", transient_local=True)
     publisher = ros.publisher(Float32MultiArray, "/led/circle")
     publisher.publish(Float32MultiArray(data=[1.0]))
     publisher.publish(Float32MultiArray(data=[1.0] * 8))
@@ -233,7 +233,7 @@ def test_reset_repeats_the_run_bit_for_bit(ros, simulation):
     odometry = ros.collect(Odometry, "/odom")
     poses = []
     for _ in range(2):
-        sim.simulator.reset()
+        sim.simulator.runner.reset()
         sim.world.post("thymio", sim_twist())
         sim.step(2.0)
         poses.append(sim.world.robots["thymio"].pose)
@@ -254,13 +254,13 @@ def test_pause_step_and_run(ros, simulation):
     refused = ros.call(Trigger, "/simulator/step")
     assert not refused.success
     assert "pause" in refused.message
-    states = ros.collect(String, "/simulator/_state", latched=True)
+    states = ros.collect(String, "/simulator/_state", transient_local=True)
     ros.until(lambda: states and json.loads(states[-1].data)["paused"] is False)
 
 
-def test_where_a_robot_stands_is_repeated_while_time_stands_still(ros, simulation):
+def test_the_true_pose_is_repeated_while_paused(ros, simulation):
     sim = simulation(playground="base")
-    sim.simulator.pause(True)
+    sim.simulator.runner.pause(True)
     odometry = ros.collect(Odometry, "/_ground_truth/odom")
     idle = make_executor(ros.context)
 
@@ -276,7 +276,7 @@ def test_where_a_robot_stands_is_repeated_while_time_stands_still(ros, simulatio
 
 def test_the_playground_can_be_changed_and_a_bad_one_is_refused(ros, simulation):
     sim = simulation(playground="base")
-    markers = ros.collect(MarkerArray, "/_markers", latched=True)
+    markers = ros.collect(MarkerArray, "/_markers", transient_local=True)
     ros.until(lambda: markers)
     world = sim.world
     bad = set_parameter(ros, "playground", '{"format": 1, "title": "x", "shapes": [{"kind": "bx"}]}')
@@ -299,7 +299,7 @@ def test_a_change_of_playground_and_seed_builds_one_world_of_both(ros, simulatio
     sim = simulation(playground="base")
     built = []
     monkeypatch.setattr(
-        "thymio_sim_ros.ros.simulator.node.World",
+        "thymio_sim_ros.ros.simulator.prepared_playground.World",
         lambda *args, **options: built.append(World(*args, **options)) or built[-1],
     )
     wanted = [Parameter("seed", value=7), Parameter("playground", value="obstacle")]
@@ -312,7 +312,7 @@ def test_a_change_of_playground_and_seed_builds_one_world_of_both(ros, simulatio
 
 def test_a_command_to_a_robot_that_has_gone_with_its_playground_is_dropped(ros, simulation):
     sim = simulation(playground="two_robots")
-    late = sim.simulator._command_sender("red")
+    late = sim.simulator.endpoints.robots["red"]._owner.post
     assert set_parameter(ros, "playground", "base").successful
     late(BodyTwist(0.1, 0.0))
     sim.step(0.1)
@@ -329,14 +329,14 @@ def test_a_refused_upload_names_its_file_and_the_old_world_stays(ros, simulation
     assert sim.world is world
 
 
-def test_the_state_tells_what_a_file_could_not_express(ros, simulation):
+def test_the_state_lists_what_could_not_be_converted(ros, simulation):
     simulation(
         playground='<aseba-playground><color name="w"/><world w="90" h="90" color="w"/><feeder/></aseba-playground>'
     )
-    states = ros.collect(String, "/simulator/_state", latched=True)
+    states = ros.collect(String, "/simulator/_state", transient_local=True)
     ros.until(lambda: states)
     (note,) = json.loads(states[-1].data)["notes"]
-    assert note.startswith("line 1: <feeder> left out")
+    assert note.startswith("line 1: <feeder> skipped")
 
 
 def set_parameter(ros, name, value):
@@ -366,7 +366,7 @@ def test_the_graph_has_the_driver_s_names(ros, simulation):
     assert {name: topics.get(name) for name in expected} == {name: [kind] for name, kind in expected.items()}
 
 
-def test_a_refused_start_parameter_says_why(ros):
+def test_a_rejected_start_parameter_has_a_reason(ros):
     from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 
@@ -376,7 +376,7 @@ def test_a_refused_start_parameter_says_why(ros):
 
 def test_a_pen_draws_a_trail(ros, simulation):
     sim = simulation()
-    trails = ros.collect(MarkerArray, "/_pen/trail", latched=True)
+    trails = ros.collect(MarkerArray, "/_pen/trail", transient_local=True)
     ros.publisher(ColorRGBA, "/_pen/color").publish(ColorRGBA(r=1.0, a=1.0))
     ros.publisher(Float32, "/_pen/width").publish(Float32(data=0.03125))
     ros.publisher(Bool, "/pen/down").publish(Bool(data=True))
@@ -387,12 +387,12 @@ def test_a_pen_draws_a_trail(ros, simulation):
     assert (line.color.r, line.color.g, line.color.b) == (1.0, 0.0, 0.0)
 
 
-def test_a_sound_from_ros_is_played_and_told(ros, simulation):
+def test_a_sound_from_ros_is_played_and_published(ros, simulation):
     sim = simulation()
-    told = ros.collect(Float32MultiArray, "/_sound/state")
+    reported = ros.collect(Float32MultiArray, "/_sound/state")
     ros.publisher(Float32MultiArray, "/sound/tone").publish(Float32MultiArray(data=[440.0, 0.5]))
-    sim.until(lambda: len(told) >= 2)
-    assert [list(message.data[:2]) for message in told] == [[440.0, 0.5], [0.0, 0.0]]
+    sim.until(lambda: len(reported) >= 2)
+    assert [list(message.data[:2]) for message in reported] == [[440.0, 0.5], [0.0, 0.0]]
 
 
 def test_an_unknown_motor_model_is_refused(ros):

@@ -1,4 +1,4 @@
-"""The simulator's parameters: what they change, and why a value is refused."""
+"""The simulator's parameters: their effects, and the reasons of rejected values."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from visualization_msgs.msg import MarkerArray
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
-from thymio_sim_ros.ros.simulator import node
+from thymio_sim_ros.ros.simulator import prepared_playground
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 
 TWO = json.dumps(
@@ -41,7 +41,7 @@ def set_parameter(ros, name, value):
     ("name", "value", "reason"),
     [
         ("out_of_range", "nan", "out_of_range is 'nan', expected rep117 or driver"),
-        ("pose_covariance_diagonal", [1.0], "pose_covariance_diagonal: 1 values found, expected 6"),
+        ("pose_covariance_diagonal", [1.0], "pose_covariance_diagonal: found 1 values, expected 6"),
         ("twist_covariance_diagonal", [1.0] * 5 + [-1.0], "twist_covariance_diagonal[5] is -1.0, expected at least 0"),
         ("real_time_factor", -1.0, "real_time_factor"),
         ("real_time_factor", float("nan"), "real_time_factor"),
@@ -51,13 +51,13 @@ def set_parameter(ros, name, value):
         ("proximity.left.fov", 9.0, "proximity.left.fov"),
     ],
 )
-def test_a_refused_value_says_why_and_changes_nothing(ros, simulation, name, value, reason):
+def test_a_rejected_value_has_a_reason_and_changes_nothing(ros, simulation, name, value, reason):
     sim = simulation()
-    before = sim.simulator.params
+    before = sim.simulator.params.values
     result = set_parameter(ros, name, value)
     assert not result.successful
     assert reason in result.reason
-    assert sim.simulator.params == before
+    assert sim.simulator.params.values == before
 
 
 def test_the_present_playground_again_changes_nothing_unless_its_file_does(ros, simulation, tmp_path):
@@ -67,29 +67,29 @@ def test_the_present_playground_again_changes_nothing_unless_its_file_does(ros, 
     sim.step(0.2)
     world = sim.world
     assert set_parameter(ros, "playground", str(path)).successful
-    assert sim.simulator.world is world
+    assert sim.world is world
     path.write_text(TWO.replace("anna", "carl"))
     assert set_parameter(ros, "playground", str(path)).successful
-    assert "carl" in sim.simulator.world.robots
+    assert "carl" in sim.world.robots
 
 
-def test_the_present_world_is_loaded_anew_by_who_wants_a_world(ros, simulation):
+def test_loading_the_current_playground_restarts_the_world(ros, simulation):
     sim = simulation(playground=TWO)
     sim.step(0.2)
-    assert sim.simulator.load(TWO) == ""
+    assert sim.simulator.parameter_callbacks.load_playground(TWO) == ""
     assert sim.world.now_ns == 0
 
 
 def test_the_present_values_of_seed_and_pace_change_nothing(ros, simulation):
     sim = simulation(seed=3, real_time_factor=2.0)
     sim.step(0.2)
-    world, pacer = sim.world, sim.simulator._pacer
+    world, pacer = sim.world, sim.simulator.runner.scheduler._pacer
     assert set_parameter(ros, "seed", 3).successful
     assert set_parameter(ros, "real_time_factor", 2.0).successful
-    assert (sim.simulator.world, sim.simulator._pacer) == (world, pacer)
+    assert (sim.world, sim.simulator.runner.scheduler._pacer) == (world, pacer)
 
 
-def test_simulated_time_of_somebody_else_is_refused(ros, simulation):
+def test_simulated_time_of_another_node_is_rejected(ros, simulation):
     simulation()
     result = set_parameter(ros, "use_sim_time", True)
     assert (result.successful, result.reason) == (
@@ -99,30 +99,30 @@ def test_simulated_time_of_somebody_else_is_refused(ros, simulation):
     assert set_parameter(ros, "use_sim_time", False).successful
 
 
-def test_simulated_time_of_somebody_else_is_left_out_at_the_start(simulator_with, capfd):
+def test_simulated_time_of_another_node_is_ignored_at_the_start(simulator_with, capfd):
     simulator = simulator_with("-p", "use_sim_time:=true")
     assert simulator.node.get_parameter("use_sim_time").value is False
     assert "use_sim_time is ignored: the simulator is the source of simulated time" in capfd.readouterr().err
 
 
-def test_a_fault_of_ours_in_reading_a_playground_is_a_refusal(ros, simulation, monkeypatch):
-    """A file that nobody thought of must not end the simulator of a class."""
+def test_an_internal_error_while_reading_a_playground_rejects_it(ros, simulation, monkeypatch):
+    """An internal error while reading a file must not end the simulator of a class."""
     sim = simulation()
     logs = ros.collect(Log, "/rosout")
 
     def fail(_value):
-        raise ZeroDivisionError("nobody thought of it")
+        raise ZeroDivisionError("unexpected")
 
-    monkeypatch.setattr(node, "load_playground", fail)
+    monkeypatch.setattr(prepared_playground, "load_playground", fail)
     result = set_parameter(ros, "playground", "strange.json")
-    assert (result.successful, result.reason) == (False, "ZeroDivisionError: nobody thought of it")
+    assert (result.successful, result.reason) == (False, "ZeroDivisionError: unexpected")
     ros.until(lambda: any("in fail" in log.msg for log in logs))
     sim.step(1)
 
 
-def test_a_home_folder_that_is_not_there_is_no_playground(ros, simulation):
+def test_a_missing_home_folder_is_rejected(ros, simulation):
     simulation()
-    assert "no playground '~nobody-knows/x.json'" in set_parameter(ros, "playground", "~nobody-knows/x.json").reason
+    assert "no playground '~no-such-user/x.json'" in set_parameter(ros, "playground", "~no-such-user/x.json").reason
 
 
 @pytest.mark.parametrize(
@@ -133,7 +133,7 @@ def test_a_home_folder_that_is_not_there_is_no_playground(ros, simulation):
         ({"robot_names": ["bert"], "playground": TWO}, "robot_names: found 'bert' twice"),
     ],
 )
-def test_a_start_that_cannot_be_says_why(ros, wrong, reason):
+def test_an_invalid_start_has_a_reason(ros, wrong, reason):
     with pytest.raises(StartError, match=reason):
         Simulator(ros.context, SimulatorParams(**wrong))
 
@@ -167,7 +167,7 @@ def test_covariances_follow_their_parameters(ros, simulation):
     assert list(odometry[-1].pose.covariance[::7]) == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
 
 
-def test_a_new_seed_begins_anew_with_another_noise(ros, simulation):
+def test_a_new_seed_restarts_the_world_with_other_noise(ros, simulation):
     sim = simulation(seed=1)
     counts = ros.collect(Int16MultiArray, "/_raw/ground")
     sim.until(lambda: len(counts) == 5)
@@ -180,7 +180,7 @@ def test_a_new_seed_begins_anew_with_another_noise(ros, simulation):
         assert ([list(message.data) for message in counts] == first) == (seed == 1)
 
 
-def test_robots_are_called_as_wanted(ros, simulation):
+def test_robots_have_the_requested_names(ros, simulation):
     sim = simulation(robot_names=["thymio0"])
     odometry = ros.collect(Odometry, "/thymio0/odom")
     joints = ros.collect(JointState, "/thymio0/joint_states")
@@ -189,7 +189,7 @@ def test_robots_are_called_as_wanted(ros, simulation):
     assert joints[-1].name == ["thymio0/left_wheel_joint", "thymio0/right_wheel_joint"]
 
 
-def test_frames_and_joints_are_called_as_wanted(ros, simulation):
+def test_frames_and_joints_have_the_requested_names(ros, simulation):
     sim = simulation(
         odom_frame="wheels", robot_frame="body", map_frame="world", left_wheel_joint="l", right_wheel_joint="r",
         tf_prefix="lab",
@@ -231,7 +231,7 @@ def test_transforms_of_two_robots_share_a_topic(ros, simulation):
     assert ("map", "anna/odom") in frames()
 
 
-def test_what_is_not_wanted_is_not_published(ros, simulation):
+def test_topics_that_are_switched_off_are_not_published(ros, simulation):
     sim = simulation(
         publish_map_tf=False, publish_wheel_tf=False, publish_static_tf=False, publish_description=False,
         publish_ground_truth=False, publish_clock=False,
@@ -252,7 +252,7 @@ def test_odometry_and_joints_have_their_rate(ros, simulation, rate, count):
 
 
 @pytest.mark.parametrize(("rate", "period_s"), [(0.0, 0.1), (25.0, 0.04), (100.0, 0.01)])
-def test_a_laser_scan_says_how_long_it_is_until_the_next(ros, simulation, rate, period_s):
+def test_a_laser_scan_has_the_time_until_the_next_one(ros, simulation, rate, period_s):
     sim = simulation(sensor_rate=rate)
     scans = ros.collect(LaserScan, "/_proximity/laser")
     sim.until(lambda: len(scans) >= 5, seconds=2.0)
@@ -314,7 +314,7 @@ def test_reliability_can_be_overridden(simulator_with):
         ("depth", "true", "found True, expected 0 to 2147483647"),
     ],
 )
-def test_a_quality_of_service_that_is_none_is_refused_at_the_start(simulator_with, policy, value, reason):
+def test_an_invalid_qos_override_is_rejected_at_the_start(simulator_with, policy, value, reason):
     """Also that of a robot which may come later, and could not then."""
     name = f"qos_overrides./later/odom.publisher.{policy}"
     with pytest.raises(StartError) as refusal:

@@ -49,12 +49,12 @@ def poses(ros, *names):
     return [list(value.double_array_value) for value in values]
 
 
-def test_the_playground_is_told_as_a_file_of_ours(ros, simulation):
+def test_the_playground_is_returned_as_json(ros, simulation):
     simulation(playground=ROOM)
     answer = ros.call(Trigger, "/simulator/get_playground", Trigger.Request())
-    told, given = playgrounds.loads(answer.message, "told.json"), playgrounds.loads(ROOM, "room.json")
+    reported, given = playgrounds.loads(answer.message, "answer.json"), playgrounds.loads(ROOM, "room.json")
     assert answer.success
-    assert (told.shapes, told.robots) == (given.shapes, given.robots)
+    assert (reported.shapes, reported.robots) == (given.shapes, given.robots)
 
 
 def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulation):
@@ -69,7 +69,7 @@ def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulatio
     ros.until(lambda: [robot["robot"] for robot in json.loads(states[-1].data)["robots"]] == ["thymio"])
 
 
-def test_the_state_says_which_robots_fell(ros, simulation):
+def test_the_state_lists_robots_that_fell(ros, simulation):
     sim = simulation(playground=ROOM)
     states = ros.collect(String, "/simulator/_state")
     ros.until(lambda: states and json.loads(states[-1].data)["robots"][0]["fallen"] is False)
@@ -92,7 +92,7 @@ def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
     [
         ("thymio", numbers(-0.5, 0.5), "the name 'thymio' is taken"),
         ("crate", numbers(-0.5, 0.5), "the name 'crate' is taken"),
-        ("anna", numbers(0.0, 0.5), "'anna' cannot stand at 0.000, 0.500 m: 'post' is in its way"),
+        ("anna", numbers(0.0, 0.5), "'anna' cannot be placed at 0.000, 0.500 m: occupied by 'post'"),
         ("anna", numbers(1.0), "anna: found [1.0], expected [x, y, yaw] in m and rad"),
         ("anna", ParameterValue(), "anna: found nothing, expected [x, y, yaw] in m and rad"),
         ("an na", numbers(-0.5, 0.5), "name: found 'an na', expected a ROS name"),
@@ -102,7 +102,7 @@ def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
         ("anna", ParameterValue(type=42), "anna: found a value of unknown type 42"),
     ],
 )
-def test_a_robot_that_cannot_be_is_refused_with_a_reason(ros, simulation, name, value, reason):
+def test_an_invalid_robot_is_rejected_with_a_reason(ros, simulation, name, value, reason):
     sim = simulation(playground=ROOM)
     assert ask(ros, "spawn", **{name: value})[name].startswith(reason)
     assert list(sim.world.robots) == ["thymio"]
@@ -116,7 +116,7 @@ def test_each_name_has_an_answer_of_its_own(ros, simulation):
     sim.step(0.1)
 
 
-def test_robots_and_things_are_put_somewhere(ros, simulation):
+def test_robots_and_objects_are_moved(ros, simulation):
     sim = simulation(playground=ROOM)
     reasons = ask(ros, "set_poses", thymio=numbers(-0.5, 0.0, 1.0), crate=numbers(0.25, 0.25), post=numbers(0.0, 0.0))
     assert (reasons["thymio"], reasons["crate"]) == ("", "")
@@ -124,11 +124,11 @@ def test_robots_and_things_are_put_somewhere(ros, simulation):
     sim.step(0.01)
     thymio, crate, post = poses(ros, "thymio", "crate", "post")
     assert (thymio, crate, post) == ([-0.5, 0.0, 1.0], [0.25, 0.25, 0.0], [])
-    assert "'post' is in its way" in ask(ros, "set_poses", crate=numbers(0.0, 0.5))["crate"]
+    assert "occupied by 'post'" in ask(ros, "set_poses", crate=numbers(0.0, 0.5))["crate"]
 
 
 @pytest.mark.parametrize("place", [numbers(-0.5, 0.5, math.nan), numbers(math.inf, 0.5)])
-def test_a_place_that_is_none_is_refused_and_the_world_goes_on(ros, simulation, place):
+def test_an_invalid_pose_is_rejected_and_the_world_continues(ros, simulation, place):
     sim = simulation(playground=json.dumps(json.loads(ROOM) | {"shapes": json.loads(ROOM)["shapes"][:1]}))
     assert "expected finite numbers" in ask(ros, "set_poses", thymio=place)["thymio"]
     sim.step(0.1)
@@ -137,7 +137,7 @@ def test_a_place_that_is_none_is_refused_and_the_world_goes_on(ros, simulation, 
 def test_two_are_not_put_into_one_another_by_one_request(ros, simulation):
     simulation(playground=ROOM)
     reasons = ask(ros, "set_poses", thymio=numbers(-0.5, 0.5), crate=numbers(-0.5, 0.5))
-    assert reasons == {"thymio": "", "crate": "'crate' cannot stand at -0.500, 0.500 m: 'thymio' is in its way"}
+    assert reasons == {"thymio": "", "crate": "'crate' cannot be placed at -0.500, 0.500 m: occupied by 'thymio'"}
 
 
 def transform(child, x, y, yaw=0.0, frame="map"):
@@ -151,7 +151,7 @@ def transform(child, x, y, yaw=0.0, frame="map"):
 
 
 @pytest.mark.parametrize(("name", "child"), [("thymio", "thymio"), ("thymio", "base_link"), ("crate", "crate")])
-def test_what_a_viewer_drags_goes_there(ros, simulation, name, child):
+def test_a_dragged_robot_moves(ros, simulation, name, child):
     sim = simulation(playground=ROOM)
     ros.publisher(TransformStamped, "/simulator/_place").publish(transform(child, -0.5, 0.25, 0.5))
     sim.until(lambda: poses(ros, name) == [pytest.approx([-0.5, 0.25, 0.5])], seconds=0.1)
@@ -159,10 +159,10 @@ def test_what_a_viewer_drags_goes_there(ros, simulation, name, child):
 
 @pytest.mark.parametrize(
     "refused",
-    [transform("thymio", 0.0, 0.5), transform("nobody", 0.0, 0.0), transform("crate", 0.0, 0.0, frame="odom")],
+    [transform("thymio", 0.0, 0.5), transform("unknown", 0.0, 0.0), transform("crate", 0.0, 0.0, frame="odom")],
 )
 def test_a_drag_to_nowhere_is_refused_and_counted(ros, simulation, refused):
     sim = simulation(playground=ROOM)
     ros.publisher(TransformStamped, "/simulator/_place").publish(refused)
-    ros.until(lambda: sim.simulator._refused == 1)
+    ros.until(lambda: sim.simulator._counters.rejected == 1)
     assert poses(ros, "thymio") == [[0.0, 0.0, 0.0]]

@@ -9,7 +9,7 @@ import socket
 
 import pytest
 
-from thymio_sim_ros import banner, resources
+from thymio_sim_ros import addresses, resources
 from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.web import node
@@ -48,7 +48,7 @@ def test_the_page_and_its_configuration_are_served(ros, built_page):
 
 
 @pytest.mark.parametrize("wanted", ["gzip", "gzip, deflate, br, zstd", "br;q=1.0, gzip;q=0.8", "deflate,gzip"])
-def test_text_is_compressed_for_who_can_read_it(ros, built_page, tmp_path, wanted):
+def test_text_is_compressed_for_clients_that_accept_it(ros, built_page, tmp_path, wanted):
     (tmp_path / "assets" / "main.js").write_text("export {};" * 100)
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
     response, body = get(page.port, "/assets/main.js?v=2", Accept_Encoding=wanted)
@@ -58,7 +58,7 @@ def test_text_is_compressed_for_who_can_read_it(ros, built_page, tmp_path, wante
 
 
 @pytest.mark.parametrize("wanted", ["", "identity", "br", "gzip;q=0", "gzip; q=0.0, br", "x-gzip-like"])
-def test_others_get_text_as_it_is(ros, built_page, tmp_path, wanted):
+def test_other_clients_get_uncompressed_text(ros, built_page, tmp_path, wanted):
     (tmp_path / "assets" / "main.js").write_text("export {};" * 100)
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
     response, body = get(page.port, "/assets/main.js", Accept_Encoding=wanted)
@@ -66,7 +66,7 @@ def test_others_get_text_as_it_is(ros, built_page, tmp_path, wanted):
     assert body == b"export {};" * 100
 
 
-def test_what_is_not_there_is_not_there_compressed_either(ros, built_page):
+def test_a_missing_file_is_also_missing_compressed(ros, built_page):
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
     for path in ("/assets/none.js", "/%2e%2e/secret.txt", "/assets"):
         response, body = get(page.port, path, Accept_Encoding="gzip")
@@ -84,7 +84,7 @@ def test_shipped_playgrounds_are_served_with_their_pictures_inside(ros, built_pa
     assert get(page.port, "/playgrounds/line_gradient.json")[1] == body
 
 
-def test_a_playground_that_cannot_be_read_is_named_with_what_is_wrong(ros, built_page, tmp_path, monkeypatch):
+def test_an_invalid_playground_is_reported_with_the_reason(ros, built_page, tmp_path, monkeypatch):
     broken = tmp_path / "broken.json"
     broken.write_text('{"format": 1}')
     monkeypatch.setattr(resources, "playgrounds", lambda: {"broken": broken})
@@ -129,7 +129,7 @@ def test_head_is_get_without_the_body(ros, built_page, path):
     connection.close()
 
 
-def test_without_a_built_page_it_says_how_to_build_it(ros, monkeypatch):
+def test_without_a_built_page_the_answer_says_how_to_build_it(ros, monkeypatch):
     monkeypatch.setattr(resources, "page", lambda: None)
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
     response, body = get(page.port, "/")
@@ -137,14 +137,14 @@ def test_without_a_built_page_it_says_how_to_build_it(ros, monkeypatch):
     assert resources.PAGE_BUILD_HINT in body.decode()
 
 
-def test_without_aiohttp_it_says_what_to_install(ros, monkeypatch):
+def test_without_aiohttp_the_error_says_what_to_install(ros, monkeypatch):
     monkeypatch.setattr(node.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(StartError, match="python3-aiohttp"):
         WebPage(ros.context, WebParams(port=0))
 
 
-def test_tokens_are_in_the_invitation_and_not_in_the_greeting(ros, built_page, monkeypatch):
-    monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
+def test_tokens_are_in_the_access_urls_and_not_in_the_startup_message(ros, built_page, monkeypatch):
+    monkeypatch.setattr(addresses, "own_address", lambda: "10.1.2.3")
     page = ros.live(WebPage(ros.context, WebParams(port=0, address="0.0.0.0"), Tokens("fulltoken", "looktoken")))
     assert page.access_urls.splitlines() == [
         f"Page      http://localhost:{page.port}/#token=fulltoken, from other computers "
@@ -155,7 +155,7 @@ def test_tokens_are_in_the_invitation_and_not_in_the_greeting(ros, built_page, m
     assert "token" not in page.startup_message
 
 
-def test_a_port_in_use_is_one_clear_sentence(ros):
+def test_a_port_in_use_is_reported_in_one_sentence(ros):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

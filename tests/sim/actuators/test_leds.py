@@ -104,7 +104,7 @@ def test_the_native_of_single_lights_saturates() -> None:
     assert native.command([3, -1]) == SetLed(3, 32)
 
 
-def test_the_robot_s_own_rules_show_until_somebody_takes_the_group_over() -> None:
+def test_firmware_indicators_show_until_a_group_is_taken_over() -> None:
     state = LedState()
     ACTUATOR.apply(state, ShowOnLeds("ground", (3, 4)), 0)
     assert state.levels["ground"] == (3, 4)

@@ -120,20 +120,20 @@ def test_a_sound_of_no_length_finishes_at_once() -> None:
     assert play([PlaySamples(b"")], 20_000_000).finished == 1
 
 
-def test_the_world_tells_what_sounds_and_when_it_finished() -> None:
+def test_the_world_reports_what_sounds_and_when_it_has_finished() -> None:
     world = World(make([FLOOR]))
     send(world, PlaySystemSound(2))
     steps = run(world, 0.5)
-    told = readings(steps, "loudspeaker")
-    assert [(reading.frequency_hz, reading.duration_ns) for reading in told] == [
+    reported = readings(steps, "loudspeaker")
+    assert [(reading.frequency_hz, reading.duration_ns) for reading in reported] == [
         (110, 7 * BLOCK_NS), (220, 7 * BLOCK_NS), (0.0, 0)
     ]  # fmt: skip
-    assert [reading.began_ns for reading in told] == [0, 7 * BLOCK_NS, 14 * BLOCK_NS]
+    assert [reading.began_ns for reading in reported] == [0, 7 * BLOCK_NS, 14 * BLOCK_NS]
     (finished,) = readings(steps, "sound_finished")
-    assert finished.stamp_ns == told[-1].stamp_ns == 240_000_000
+    assert finished.stamp_ns == reported[-1].stamp_ns == 240_000_000
 
 
-def test_the_world_tells_samples_volume_and_silence() -> None:
+def test_the_world_reports_samples_volume_and_silence() -> None:
     world = World(make([FLOOR]))
     send(world, SetVolume(3))
     send(world, PlaySamples(CLICK))
@@ -147,7 +147,7 @@ def test_the_world_tells_samples_volume_and_silence() -> None:
     assert readings(steps, "sound_finished") == []
 
 
-def test_who_is_silent_and_stopped_has_nothing_to_tell() -> None:
+def test_a_silent_loudspeaker_that_is_stopped_reports_nothing() -> None:
     world = World(make([FLOOR]))
     send(world, StopSound())
     assert readings(run(world, 0.1), "loudspeaker") == []

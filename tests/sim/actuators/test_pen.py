@@ -196,15 +196,15 @@ def test_a_reset_world_is_clean_again() -> None:
     assert measure_one(world, "ground").words[2:4] == (938, 938)
 
 
-def test_the_trail_is_told_when_it_grew_and_not_otherwise() -> None:
+def test_the_trail_is_published_only_when_it_has_grown() -> None:
     world = World(make([FLOOR]), noise=False)
     assert readings(run(world, 1.0), "pen") == []
     send(world, SetPen(down=True, color=RED))
     send(world, MotorTargets(300, 300))
-    told = readings(run(world, 1.0), "pen")
-    assert len(told) == 5
-    assert (told[0].down, told[0].color) == (True, RED)
-    ends = [reading.strokes[-1].points[-1][0] for reading in told]
+    reported = readings(run(world, 1.0), "pen")
+    assert len(reported) == 5
+    assert (reported[0].down, reported[0].color) == (True, RED)
+    ends = [reading.strokes[-1].points[-1][0] for reading in reported]
     assert ends == sorted(ends)
     send(world, MotorTargets(0, 0))
     run(world, 0.3)

@@ -17,12 +17,12 @@ SECOND = 1_000_000_000 // SAMPLE_NS
 CLICK = bytes(range(256))
 
 
-def stream(*told: tuple[float, Command]) -> SoundStream:
-    """What a robot says that is told these commands at these seconds, for three seconds."""
+def stream(*reported: tuple[float, Command]) -> SoundStream:
+    """The readings of three seconds of a robot that gets these commands at these times."""
     world, heard = World(make([FLOOR])), SoundStream()
     steps = []
     for tick in range(300):
-        for seconds, command in told:
+        for seconds, command in reported:
             if round(seconds * 100) == tick:
                 send(world, command)
         steps += run(world, 0.01)
@@ -31,7 +31,7 @@ def stream(*told: tuple[float, Command]) -> SoundStream:
     return heard
 
 
-def test_nothing_heard_is_silence() -> None:
+def test_without_sounds_the_mixer_is_silent() -> None:
     assert set(SoundStream().samples(0, 1000).tolist()) == {0}
 
 
@@ -65,7 +65,7 @@ def test_samples_come_back_as_they_were() -> None:
     assert not said[first + 256 :].any()
 
 
-def test_after_the_last_sample_is_silence_though_nobody_has_told_so_yet() -> None:
+def test_after_the_last_sample_is_silence_even_before_the_next_reading() -> None:
     heard = SoundStream()
     heard.hear(LoudspeakerReading(0, (), 0, 0.0, len(CLICK) * SAMPLE_NS, TRIANGLE, CLICK, 0))
     assert heard.samples(200, 100).tolist() == [sample - 128 for sample in CLICK[200:]] + [0] * 44

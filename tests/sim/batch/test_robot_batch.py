@@ -87,8 +87,8 @@ def assert_same(one: list[StepResult], other: list[StepResult], *, within: float
         for (_, _, left), (_, _, right) in zip(a.readings, b.readings, strict=True):
             assert left.words == right.words
             assert list(numbers(left)) == pytest.approx(list(numbers(right)), abs=within)
-        told = [[(contact.robot, contact.other, contact.is_new) for contact in step.contacts] for step in (a, b)]
-        assert told[0] == told[1]
+        reported = [[(contact.robot, contact.other, contact.is_new) for contact in step.contacts] for step in (a, b)]
+        assert reported[0] == reported[1]
 
 
 def numbers(value: Any) -> Iterator[float]:
@@ -123,7 +123,7 @@ def test_one_robot_may_be_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
     assert_same(*runs)
 
 
-def test_things_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_objects_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     door = {
         "kind": "door", "name": "gate", "closed_x_m": 0.14, "closed_y_m": -1.0, "opened_x_m": 0.14, "opened_y_m": -1.6,
         "move_s": 1.0, "size_x_m": 0.02, "size_y_m": 0.3, "height_m": 0.1, "color": "#808080",
@@ -214,11 +214,11 @@ def test_readings_may_be_looked_at_much_later(monkeypatch: pytest.MonkeyPatch) -
 def test_robots_that_come_and_go_take_along_what_their_sensors_remember(
     monkeypatch: pytest.MonkeyPatch, batch: int
 ) -> None:
-    """With 12 as the limit they are now a crowd and now each alone."""
+    """With 12 as the limit they are sometimes a batch, sometimes updated one by one."""
     runs = [come_and_go(monkeypatch, limit, busy(random.Random(5), 12)) for limit in (ONE_BY_ONE, batch)]
     assert_same(*runs)
-    told = {name for step in runs[0] for _, name, _ in step.readings}
-    assert {"tap", "current", "collision", "accelerometer", "sound", "buttons"} <= told
+    reported = {name for step in runs[0] for _, name, _ in step.readings}
+    assert {"tap", "current", "collision", "accelerometer", "sound", "buttons"} <= reported
 
 
 def come_and_go(monkeypatch: pytest.MonkeyPatch, batch: int, scene: Playground) -> list[StepResult]:

@@ -27,7 +27,7 @@ def test_robots_rest_where_measured(scene: Scene) -> None:
 
 
 @pytest.mark.enki("collision", pushed=True)
-def test_things_rest_where_measured(scene: Scene) -> None:
+def test_objects_rest_where_measured(scene: Scene) -> None:
     """Within 3 mm, a twenty-fifth of the way that they went, and three standard errors."""
     found = mean_rows([play(scene, seed=seed) for seed in SEEDS])[-1]
     first, expected, std = scene["mean"][0], scene["mean"][-1], scene["std"][-1]

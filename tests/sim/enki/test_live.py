@@ -1,4 +1,4 @@
-"""What a running playground of the reference told over its port."""
+"""Readings recorded from a running playground of the reference."""
 
 from __future__ import annotations
 

@@ -148,7 +148,7 @@ def test_an_effect_as_an_attribute_is_refused(effect: str) -> None:
 
 def test_an_attribute_in_the_name_space_of_svg_is_refused() -> None:
     body = '<g xmlns:s="http://www.w3.org/2000/svg" s:style="filter:blur(9px)"/>'
-    assert refused(svg_uri(body)).found == "the attribute svg:style with a name space"
+    assert refused(svg_uri(body)).found == "the attribute svg:style with a namespace"
 
 
 def test_a_mask_is_refused() -> None:
@@ -196,7 +196,7 @@ def test_an_svg_that_repeats_itself_without_end_is_refused(kind: str) -> None:
     ],
 )
 def test_an_svg_that_is_too_deep_is_refused(body: str) -> None:
-    assert refused(svg_uri(body)).found == "elements more than 40 deep"
+    assert refused(svg_uri(body)).found == "elements nested more than 40 deep"
 
 
 @pytest.mark.parametrize(
@@ -258,16 +258,16 @@ def test_entities_in_an_svg_are_refused() -> None:
         "data:",
     ],
 )
-def test_what_is_no_picture_is_refused_with_its_key(uri: str) -> None:
+def test_anything_but_an_image_is_refused_with_its_key(uri: str) -> None:
     assert refused(uri).key.startswith("image")
 
 
 @pytest.mark.parametrize("side", [8193, 60_000, 2**31 - 1])
-def test_a_picture_of_too_many_pixels_is_refused_before_it_is_unpacked(side: int) -> None:
+def test_an_image_of_too_many_pixels_is_refused_before_it_is_unpacked(side: int) -> None:
     assert "pixels" in refused(data_uri(png_of_size(side, side), "image/png")).found
 
 
-def test_a_picture_to_look_at_may_be_made_smaller() -> None:
+def test_an_image_for_display_may_be_scaled_down() -> None:
     rows = [[WHITE] * 100] * 40
     smaller = decode(data_uri(image_io.encode_png(pixels(rows), most=50), "image/png"))
     assert (smaller.columns, smaller.rows) == (50, 20)
@@ -277,7 +277,7 @@ def test_a_picture_to_look_at_may_be_made_smaller() -> None:
     ("module", "package", "uri"),
     [("resvg_py", "resvg-py", svg_uri("<rect/>")), ("PIL.Image", "Pillow", png_uri([[WHITE]]))],
 )
-def test_without_its_package_a_picture_is_refused_with_the_way_out(
+def test_without_its_package_an_image_is_refused_with_the_remedy(
     monkeypatch: pytest.MonkeyPatch, module: str, package: str, uri: str
 ) -> None:
     monkeypatch.setitem(sys.modules, module, None)
@@ -293,7 +293,7 @@ def test_an_svg_that_takes_too_long_is_refused() -> None:
         assert "longer than 2 s" in refused(svg_uri(body)).found
 
 
-def test_the_pictures_of_a_playground_share_the_time_to_draw(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_images_of_a_playground_share_the_time_to_draw(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(image_io.svg, "draw", lambda *_, seconds: (png([[WHITE]]), seconds / 2 + 0.6))
     with image_io.budgeted() as budget:
         for _ in range(2):
@@ -301,12 +301,12 @@ def test_the_pictures_of_a_playground_share_the_time_to_draw(monkeypatch: pytest
     assert budget.svg_seconds == pytest.approx(2.0 - 1.6 - 0.8)
 
 
-def test_the_pictures_of_a_playground_share_a_budget_of_pixels() -> None:
+def test_the_images_of_a_playground_share_a_budget_of_pixels() -> None:
     picture = data_uri(png_of_size(5000, 4000), "image/png")
     with image_io.budgeted() as budget:
         budget.pixels = 19_000_000
         error = refused(picture)
-        assert error.found == "5000 x 4000 pixels, where 19000000 of the playground's 32000000 are left for pictures"
+        assert error.found == "5000 x 4000 pixels, with 19000000 of 32000000 left for images of this playground"
         assert budget.pixels == 19_000_000
         image_io.decode(png_uri([[WHITE] * 3] * 2), key="image", width_m=0.1)
     assert budget.pixels == 19_000_000 - 6
@@ -328,7 +328,7 @@ def test_a_jpeg_that_is_painted_over_and_over_is_refused() -> None:
 
 
 @pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "RGB", "RGBA", "I;16"])
-def test_bands_give_the_same_pixels_as_the_whole_picture(mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bands_give_the_same_pixels_as_the_whole_image(mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
     source = image.effect_noise((70, 50), 80).convert("RGB")
     if mode == "I;16":
         whole = image.frombytes("I;16", (70, 50), bytes(n % 251 for n in range(7000)))

@@ -34,11 +34,11 @@ def test_the_process_draws_what_the_package_draws() -> None:
     assert 0.0 < seconds < 30.0
 
 
-def test_a_picture_that_takes_too_long_is_refused_in_time() -> None:
+def test_an_image_that_takes_too_long_is_refused_in_time() -> None:
     error = refused(LAYERS, seconds=0.5)
     assert (error.found, error.expected) == (
-        "SVG pictures that take longer than 2 s to draw",
-        "simpler ones, or PNG pictures",
+        "SVG images that take longer than 2 s to draw",
+        "simpler SVG images, or PNG images",
     )
 
 
@@ -48,7 +48,7 @@ def test_no_process_is_started_when_no_time_is_left(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is limited on Linux")
-def test_a_picture_that_takes_too_much_memory_is_refused() -> None:
+def test_an_image_that_takes_too_much_memory_is_refused() -> None:
     assert "512 MB" in refused(NESTED, seconds=30.0).expected
 
 
@@ -57,7 +57,7 @@ def test_the_process_limits_its_own_processor_time() -> None:
     assert "2 s" in refused(LAYERS, seconds=60.0).found
 
 
-def test_a_broken_picture_is_refused_with_the_reason() -> None:
+def test_a_broken_image_is_refused_with_the_reason() -> None:
     error = refused("<svg")
     assert error.found.startswith("an SVG that cannot be drawn (")
 
@@ -67,13 +67,13 @@ def test_a_program_that_embeds_python_is_not_started(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(sys, "executable", executable)
     monkeypatch.setattr(subprocess, "run", None)
     error = refused(PLAIN)
-    assert "a program without a Python of its own" in error.found
+    assert "a program that embeds Python" in error.found
     assert "PNG" in error.expected
 
 
 def test_an_interpreter_that_is_gone_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python3"))
-    assert "no process to draw it in" in refused(PLAIN).found
+    assert "no process could be started" in refused(PLAIN).found
 
 
 def test_the_worker_imports_neither_the_package_nor_ros() -> None:

@@ -72,7 +72,7 @@ def rastered(mark: Print) -> npt.NDArray[np.uint8]:
     return np.concatenate([words for _, words in bands(mark, 0.001, (-50, -1), (2, 100))])[..., None].view(np.uint8)
 
 
-def test_a_picture_finer_than_the_ground_is_averaged() -> None:
+def test_an_image_finer_than_the_ground_is_averaged() -> None:
     stripes: Rows = [[WHITE, BLACK] * 100] * 4
     colors = rastered(printed(stripes, 0.1, 0.002))
     assert {tuple(color) for color in colors[:, :, :3].reshape(-1, 3).tolist()} == {(128, 128, 128)}

@@ -52,7 +52,7 @@ def test_a_hairline_is_a_pixel_wide_and_without_gaps() -> None:
     assert (np.diff(columns) == 1).all()
 
 
-def test_what_changed_is_told() -> None:
+def test_the_changed_area_is_returned() -> None:
     left, bottom, right, top = sheet().draw_segment(0.3, 0.5, 0.4, 0.5, 0.01, RED) or (0, 0, 0, 0)
     assert (left, bottom) == pytest.approx((295, 495), abs=1)
     assert (right, top) == pytest.approx((405, 505), abs=1)

@@ -23,7 +23,7 @@ def test_what_is_clear_is_left_out() -> None:
     assert [tile.left for tile in mosaic(pixels([[CLEAR, WHITE]]))] == [0.5]
 
 
-def test_a_picture_full_of_details_gets_coarser() -> None:
+def test_an_image_full_of_details_gets_coarser() -> None:
     noise = np.random.default_rng(1).integers(0, 256, (500, 500, 4)).astype(np.uint8)
     tiles = mosaic(Pixels(500, 500, noise.tobytes()))
     assert 1000 < len(tiles) <= 4000

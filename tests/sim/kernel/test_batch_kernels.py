@@ -22,7 +22,7 @@ WHERE = ("physics.batch_driver", "physics.broadphase_batch", "mechanics.wheels")
 
 
 def steps(monkeypatch: pytest.MonkeyPatch, scene: Playground, elsewhere: Pose, *, is_compiled: bool) -> Iterator[bytes]:
-    """What a crowd that drives, pushes, falls, is moved and looked at has become, tick by tick."""
+    """The state, tick by tick, of a batch whose robots drive, push, fall, are moved and read."""
     for module in WHERE:
         monkeypatch.setattr(f"thymio_sim_ros.sim.{module}.is_available", lambda: is_compiled)
     world = World(scene)
@@ -39,7 +39,7 @@ def steps(monkeypatch: pytest.MonkeyPatch, scene: Playground, elsewhere: Pose, *
         result = world.step()
         batch = world._batch
         assert batch is not None
-        told = repr([(contact.robot, contact.other, contact.is_new) for contact in result.contacts])
+        reported = repr([(contact.robot, contact.other, contact.is_new) for contact in result.contacts])
         values = [
             batch.batch_driver.poses,
             *batch.batch_driver.motion,
@@ -47,14 +47,14 @@ def steps(monkeypatch: pytest.MonkeyPatch, scene: Playground, elsewhere: Pose, *
             batch.wheels.odometry,
         ]
         values += [batch.wheels.speeds, batch.wheels.angles]
-        yield told.encode() + b"".join(np.ascontiguousarray(part + 0.0).tobytes() for part in values)
+        yield reported.encode() + b"".join(np.ascontiguousarray(part + 0.0).tobytes() for part in values)
         if tick % 50 == 7:
             yield repr([(robot.pose, robot.wheels.odometry) for robot in world.robots.values()]).encode()
 
 
 @pytest.mark.usefixtures("kernels")
 @pytest.mark.parametrize("scene", ["busy", "classroom"])
-def test_a_crowd_drives_bit_for_bit(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_batch_drives_bit_for_bit(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
     playground, elsewhere = (
         (busy(random.Random(4), 18), Pose(0.02, 0.95, 1.0))
         if scene == "busy"
@@ -63,7 +63,7 @@ def test_a_crowd_drives_bit_for_bit(scene: str, monkeypatch: pytest.MonkeyPatch)
     by_numpy = list(steps(monkeypatch, playground, elsewhere, is_compiled=False))
     by_kernels = list(steps(monkeypatch, playground, elsewhere, is_compiled=True))
     assert len(set(by_numpy)) > 200
-    assert sum(not told.startswith(b"[]") for told in by_numpy) > 50
+    assert sum(not reported.startswith(b"[]") for reported in by_numpy) > 50
     first = next((tick for tick, pair in enumerate(zip(by_numpy, by_kernels, strict=True)) if pair[0] != pair[1]), None)
     assert first is None
 

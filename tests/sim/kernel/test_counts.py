@@ -63,7 +63,7 @@ def test_proximity_counts_bit_for_bit(model: str) -> None:
     for _ in range(300):
         numbers = np.array(sorted(dice.sample(range(sensors), dice.randint(0, sensors))), dtype=np.intp)
         distances = np.array([[distance(dice) for _ in cosines] for _ in numbers]).reshape(-1, len(cosines))
-        distances[: dice.randrange(3)] = 0.0  # somebody leans on a wall
+        distances[: dice.randrange(3)] = 0.0  # a robot touches a wall
         noise = np.array([dice.gauss(0.0, 10.0) for _ in numbers])
         expected = np.zeros(sensors)
         values = proximity.responses(distances, model) + noise

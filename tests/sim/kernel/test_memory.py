@@ -26,14 +26,14 @@ def test_what_room_says_is_enough() -> None:
 
 
 def test_a_full_memory_says_so() -> None:
-    with pytest.raises(MemoryError, match=r"an array of 9000: found 65536 bytes, expected 72000"):
+    with pytest.raises(MemoryError, match=r"an array of 9000: found 65536 free bytes, expected 72000"):
         KernelMemory(1000).array(9000, np.float64)
 
 
-def test_arrays_of_elsewhere_are_refused() -> None:
+def test_arrays_of_another_memory_are_refused() -> None:
     memory = KernelMemory(1000)
     for array in (np.zeros(1), memory.array(2, np.int32), memory.array((2, 2), np.float64)[:, 0]):
-        with pytest.raises(KernelError, match="expected float64 in one piece in this memory"):
+        with pytest.raises(KernelError, match="expected a contiguous array of float64 in the kernel's memory"):
             memory.bind(samples, samples.early, array)
 
 

@@ -82,7 +82,7 @@ def test_the_ground_sensors_read_nothing_before_and_after_the_fall() -> None:
     assert {reading.words for reading in readings(run(world, 3.0), "ground")} == {(0,) * 6}
 
 
-def test_a_fallen_robot_is_seen_and_touched_by_nobody_and_sees_nothing() -> None:
+def test_a_fallen_robot_is_invisible_untouchable_and_sees_nothing() -> None:
     wall = box(EDGE_M + 0.11, 0.0, 0.02, 0.4)
     world = at_edge(wall, others=({**ROBOT, "name": "other", "x_m": EDGE_M - 0.3},))
     assert measure_one(world, "proximity").words[2] > 0
@@ -123,14 +123,14 @@ def test_reset_puts_a_fallen_robot_back() -> None:
     assert world.robots["thymio"].tilt == LEVEL
 
 
-def test_nobody_falls_where_there_is_no_floor_at_all() -> None:
+def test_no_robot_falls_where_there_is_no_floor_at_all() -> None:
     world = World(make([]), noise=False)
     send(world, MotorTargets(500, 500))
     run(world, 2.0)
     assert world.robots["thymio"].tilt == LEVEL
 
 
-def test_a_thing_pushed_over_the_edge_is_gone() -> None:
+def test_an_object_pushed_over_the_edge_is_gone() -> None:
     place = {"x_m": EDGE_M - 0.1, "y_m": 0.0, "radius_m": 0.03, "height_m": 0.1}
     can = {"kind": "cylinder", "name": "can", **place, "color": GRAY, "mass_kg": 0.05}
     world = World(make([FLOOR, can], ({**ROBOT, "x_m": EDGE_M - 0.25},)), noise=False)
@@ -143,7 +143,7 @@ def test_a_thing_pushed_over_the_edge_is_gone() -> None:
     assert measure_one(world, "proximity").words == (0,) * 7
 
 
-def test_a_thing_that_starts_past_the_edge_is_not_there() -> None:
+def test_an_object_that_starts_past_the_edge_is_not_there() -> None:
     crate = {**box(EDGE_M + 0.3, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}
     found = make([FLOOR, crate])
     assert found.notes == ("shapes: 'crate' starts where there is no floor",)

@@ -1,4 +1,4 @@
-"""Wheels count what they are told, less what an obstacle takes."""
+"""Wheels turn as commanded, less what an obstacle takes."""
 
 from __future__ import annotations
 

@@ -32,14 +32,14 @@ def test_a_period_that_is_no_whole_number_of_ticks_keeps_its_rate() -> None:
     assert len(times_due(16_384_000, 1000)) == 610
 
 
-def test_a_schedule_tells_all_that_is_due_in_order() -> None:
+def test_a_schedule_returns_all_that_is_due_in_order() -> None:
     schedule = Schedule([(20_000_000, 0), (10_000_000, 0), (1 << 62, 0)])
     assert [schedule.due(tick * TICK_NS) for tick in (1, 2, 3)] == [[1], [0, 1], [1]]
 
 
 @pytest.mark.parametrize("period_ns", [10_000_000, 16_384_000, 50_000_000, 62_500_000, 7_000_000])
 @pytest.mark.parametrize("phase_ns", [0, 10_000_000, 25_000_000])
-def test_the_next_time_is_told_without_asking_every_tick(period_ns: int, phase_ns: int) -> None:
+def test_the_next_due_time_is_known_without_asking_every_tick(period_ns: int, phase_ns: int) -> None:
     ticks = times_due(period_ns, 200, phase_ns)
     for tick in range(150):
         assert next_due_ns(period_ns, phase_ns, tick * TICK_NS) == next(due for due in ticks if due > tick) * TICK_NS
@@ -63,7 +63,7 @@ def test_what_cannot_be_caught_up_is_dropped_and_counted() -> None:
     assert pacer.owed(SECOND_NS + TICK_NS) == 1
 
 
-def test_the_achieved_factor_tells_what_was_dropped() -> None:
+def test_the_achieved_factor_shows_what_was_dropped() -> None:
     pacer = Pacer(1.0, max_batch=10)
     for now in range(0, 5 * SECOND_NS, SECOND_NS // 5):
         pacer.owed(now)
@@ -79,7 +79,7 @@ def test_a_fast_pace_may_owe_more_than_a_batch_at_once() -> None:
     assert pacer.dropped_ticks == 100
 
 
-def test_the_achieved_factor_is_first_told_after_a_tenth_of_a_second() -> None:
+def test_the_achieved_factor_is_known_after_a_tenth_of_a_second() -> None:
     pacer = Pacer(1.0)
     achieved = []
     for tick in range(12):

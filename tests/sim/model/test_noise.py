@@ -41,7 +41,7 @@ def test_normal_numbers_are_normal() -> None:
     assert sum(abs(number) > 4.0 for number in numbers) / len(numbers) == pytest.approx(0.0455, abs=0.005)
 
 
-def test_a_bank_gives_everybody_the_even_numbers_that_are_theirs() -> None:
+def test_a_bank_gives_each_user_its_own_uniform_numbers() -> None:
     alone, together = users(3), users(3)
     bank = UniformBank(together)
     for count in (2, 100, 1, 77, 128):
@@ -49,7 +49,7 @@ def test_a_bank_gives_everybody_the_even_numbers_that_are_theirs() -> None:
         assert bank.draw(0.973, 1.027, count).T.tolist() == expected
 
 
-def test_a_bank_gives_everybody_the_normal_numbers_that_are_theirs() -> None:
+def test_a_bank_gives_each_user_its_own_normal_numbers() -> None:
     dice = random.Random(3)
     alone, together = users(5), users(5)
     for noise in (*alone[:2], *together[:2]):

@@ -9,7 +9,7 @@ def test_a_place_on_a_border_belongs_to_the_square_above_it() -> None:
     assert (cell_of(0.49, -0.01), cell_of(0.5, 0.0)) == ((0, -1), (1, 0))
 
 
-def test_a_thing_is_found_wherever_its_bounds_touch_and_once() -> None:
+def test_an_object_is_found_wherever_its_bounds_touch_and_once() -> None:
     squares: SpatialGrid[str] = SpatialGrid()
     squares.add("beam", (0.1, 0.1, 2.4, 0.2))
     squares.add("dot", (3.0, 3.0, 3.1, 3.1))

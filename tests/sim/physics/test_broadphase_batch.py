@@ -18,7 +18,7 @@ from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 
 WAY_M = CHECK_INTERVAL_TICKS * MAX_TICK_DISTANCE_M
 LOOSE_M = 0.05
-"""A robot nearer than this to a fixed outline, beside its way, may be told to be near; farther it is not."""
+"""A robot nearer than this to a fixed outline, beside its way, may be reported as near; farther it is not."""
 TRIANGLE = Polygon(((0.0, 0.0), (0.1, 0.0), (0.0, 0.08)))
 Place = tuple[float, float, float]
 
@@ -52,7 +52,7 @@ def look(
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_nobody_who_could_reach_anything_is_overlooked_and_few_others_are_told(seed: int) -> None:
+def test_all_robots_that_can_reach_something_are_found_and_few_others(seed: int) -> None:
     dice = random.Random(seed)
     outlines = [Box(dice.uniform(0.01, 1.0), dice.uniform(0.01, 0.2)), Disc(0.05), TRIANGLE, Box(0.05, 0.08)]
     fixed = [
@@ -93,7 +93,7 @@ def test_two_robots_are_near_each_other_when_both_can_come_closer() -> None:
 
 
 @pytest.mark.parametrize("is_compiled", [None, False])
-def test_who_has_fallen_is_near_nobody_and_nothing(is_compiled: bool | None) -> None:
+def test_a_fallen_robot_is_near_nothing(is_compiled: bool | None) -> None:
     places = [(0.0, 0.0, 0.0), (0.17, 0.0, math.pi), (5.0, 0.0, 0.0)]
     post = obstacle_of(Solid("post", Pose(0.17, 0.0, 0.0), Disc(0.02), 0.1, (0, 0, 0)))
     for fixed in ([], [post]):
@@ -102,6 +102,6 @@ def test_who_has_fallen_is_near_nobody_and_nothing(is_compiled: bool | None) -> 
         assert look(broadphase, places, fallen=1) == [False, False, False]
 
 
-def test_alone_in_an_empty_world_nobody_is_near() -> None:
+def test_a_robot_alone_in_an_empty_world_is_near_nothing() -> None:
     assert look(BroadphaseBatch([]), [(0.0, 0.0, 0.0)]) == [False]
     assert look(BroadphaseBatch([]), []) == []

@@ -37,7 +37,7 @@ def place_of(world: World, name: str) -> Pose:
 
 
 @pytest.mark.parametrize("batch", [3, 1], ids=["one by one", "in a batch"])
-def test_a_thing_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
+def test_an_object_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
     monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     other = {**ROBOT, "name": "other", "x_m": 0.6, "y_m": 0.6, "yaw_rad": -math.pi / 2}
     world = quiet(crate(0.2), robots=(ROBOT, other))
@@ -51,14 +51,14 @@ def test_a_thing_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
 @pytest.mark.parametrize(("height_m", "is_seen"), [(0.03, False), (0.1, True)])
-def test_proximity_sensors_look_over_a_low_thing(
+def test_proximity_sensors_look_over_a_low_object(
     monkeypatch: pytest.MonkeyPatch, batch: int, height_m: float, is_seen: bool
 ) -> None:
     monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     assert any(measure_one(quiet(crate(0.15, height_m=height_m)), "proximity").words) == is_seen
 
 
-def test_a_thing_that_turns_on_the_spot_is_not_at_rest() -> None:
+def test_an_object_that_turns_on_the_spot_is_not_at_rest() -> None:
     (solid,) = (solid for solid in make([FLOOR, crate(0.5)]).solids if solid.load is not None)
     thing = MovableBody(solid, pymunk.Body(body_type=pymunk.Body.STATIC), set())
     for spin, is_moving in ((1.0, True), (1e-9, False)):
@@ -68,7 +68,7 @@ def test_a_thing_that_turns_on_the_spot_is_not_at_rest() -> None:
 
 
 @pytest.mark.parametrize("thing", [crate(0.2), can(0.2)], ids=lambda thing: thing["name"])
-def test_a_light_thing_is_pushed_before_the_robot(thing: dict[str, Any]) -> None:
+def test_a_light_object_is_pushed_before_the_robot(thing: dict[str, Any]) -> None:
     world = quiet(thing)
     send(world, MotorTargets(300, 300))
     run(world, 4.0)
@@ -90,7 +90,7 @@ def test_pushing_costs_speed_in_proportion_to_the_friction() -> None:
     assert lost[2] == pytest.approx(3.0 * 0.25 * 0.4 * 9.81 / 27, rel=0.1)
 
 
-def test_a_heavy_thing_stalls_the_robot_and_stays_where_it_is() -> None:
+def test_a_heavy_object_stalls_the_robot_and_stays_where_it_is() -> None:
     world = quiet(crate(0.2, mass_kg=1.5))
     send(world, MotorTargets(500, 500))
     run(world, 8.0)
@@ -99,7 +99,7 @@ def test_a_heavy_thing_stalls_the_robot_and_stays_where_it_is() -> None:
     assert world.robots["thymio"].wheels.speeds_m_s == pytest.approx((0.0, 0.0), abs=1e-3)
 
 
-def test_a_thing_slides_on_by_its_speed_and_friction_when_the_robot_stops() -> None:
+def test_an_object_slides_on_by_its_speed_and_friction_when_the_robot_stops() -> None:
     world = quiet(crate(0.112, friction=0.02, restitution=0.0))
     send(world, MotorTargets(500, 500))
     run(world, 1.0)
@@ -110,7 +110,7 @@ def test_a_thing_slides_on_by_its_speed_and_friction_when_the_robot_stops() -> N
     assert place_of(world, "crate").x_m - before == pytest.approx(speed**2 / (2 * 0.02 * 9.81), rel=0.05)
 
 
-def test_a_thing_comes_to_rest_exactly() -> None:
+def test_an_object_comes_to_rest_exactly() -> None:
     world = quiet(crate(0.15, 0.02))
     send(world, MotorTargets(400, 400))
     run(world, 2.0)
@@ -128,7 +128,7 @@ def test_a_push_beside_the_middle_turns_a_box() -> None:
     assert place_of(world, "crate").yaw_rad > 0.1
 
 
-def test_things_push_things_and_a_wall_stops_them_all() -> None:
+def test_objects_push_objects_and_a_wall_stops_them_all() -> None:
     world = quiet(crate(0.15), {**crate(0.25), "name": "other"}, box(0.6, 0.0, 0.02, 1.0))
     send(world, MotorTargets(300, 300))
     run(world, 8.0)
@@ -137,7 +137,7 @@ def test_things_push_things_and_a_wall_stops_them_all() -> None:
     assert world.robots["thymio"].pose.x_m == pytest.approx(0.59 - 0.12 - FRONT_M, abs=0.003)
 
 
-def test_a_robot_never_jumps_through_a_thing_as_in_the_reference() -> None:
+def test_a_robot_never_jumps_through_an_object_as_in_the_reference() -> None:
     for thing in (can(0.14), crate(0.14), can(0.14, mass_kg=2.0), can(0.14, 0.02, mass_kg=2.0)):
         world = quiet(thing)
         send(world, MotorTargets(500, 500))
@@ -149,7 +149,7 @@ def test_a_robot_never_jumps_through_a_thing_as_in_the_reference() -> None:
             before = pose
 
 
-def test_rays_see_a_thing_where_it_is_now() -> None:
+def test_rays_see_an_object_where_it_is_now() -> None:
     world = quiet(can(0.12, mass_kg=0.05), box(0.9, 0.0, 0.1, 1.0))
     before = measure_one(world, "proximity").words[2]
     send(world, MotorTargets(500, 500))
@@ -160,7 +160,7 @@ def test_rays_see_a_thing_where_it_is_now() -> None:
     assert (before > 4000, pushed > 4000, measure_one(world, "proximity").words[2]) == (True, True, 0)
 
 
-def test_a_thing_that_is_elsewhere_or_gone_is_told_once() -> None:
+def test_an_object_that_moved_or_fell_is_reported_once() -> None:
     world = quiet(crate(0.5), can(-0.5))
     physics = world._physics
     one, other = physics.movable_obstacles()
@@ -174,7 +174,7 @@ def test_a_thing_that_is_elsewhere_or_gone_is_told_once() -> None:
     assert physics.moved_obstacles() == {}
 
 
-def test_the_contact_names_the_thing() -> None:
+def test_the_contact_names_the_object() -> None:
     world = quiet(crate(0.15))
     send(world, MotorTargets(300, 300))
     contacts = [contact for step in run(world, 1.0) for contact in step.contacts]
@@ -192,14 +192,14 @@ def test_mirrored_worlds_push_mirrored() -> None:
         assert (one.x_m, one.y_m, one.yaw_rad) == pytest.approx((other.x_m, -other.y_m, -other.yaw_rad), abs=1e-3)
 
 
-def test_gliding_does_not_pass_by_a_thing_at_rest() -> None:
+def test_gliding_does_not_pass_by_an_object_at_rest() -> None:
     world = quiet(crate(1.0))
     send(world, MotorTargets(500, 500))
     run(world, 8.0)
     assert place_of(world, "crate").x_m == pytest.approx(world.robots["thymio"].pose.x_m + FRONT_M + 0.03, abs=0.004)
 
 
-def test_reset_puts_things_back() -> None:
+def test_reset_puts_objects_back() -> None:
     world = quiet(crate(0.15))
     send(world, MotorTargets(300, 300))
     run(world, 2.0)
@@ -207,7 +207,7 @@ def test_reset_puts_things_back() -> None:
     assert place_of(world, "crate") == Pose(0.15, 0.0, 0.0)
 
 
-def test_a_thing_that_slides_loses_a_hundredth_of_its_speed_each_second_beside_its_friction() -> None:
+def test_an_object_that_slides_loses_a_hundredth_of_its_speed_each_second_beside_its_friction() -> None:
     friction, drag = 0.0025, 0.01
     world = quiet(crate(0.16, friction=friction, restitution=0.81))
     send(world, MotorTargets(500, 500))

@@ -79,7 +79,7 @@ def test_a_robot_put_before_another_is_met(is_fleet: bool) -> None:
 
 
 @together
-def test_a_thing_put_before_a_gliding_robot_is_pushed(is_fleet: bool) -> None:
+def test_an_object_put_before_a_gliding_robot_is_pushed(is_fleet: bool) -> None:
     crate = Solid("crate", Pose(3.0, 0.0, 0.0), Box(0.06, 0.06), 0.1, GRAY, Load(0.05, 0.3, 0.02))
     driver = Driver(is_fleet, [crate], [], Pose(0.0, 0.0, 0.0))
     driver.speeds = [(FAST_M_S, FAST_M_S)]
@@ -92,7 +92,7 @@ def test_a_thing_put_before_a_gliding_robot_is_pushed(is_fleet: bool) -> None:
 
 
 @together
-def test_while_a_door_moves_everybody_is_engaged(is_fleet: bool) -> None:
+def test_while_a_door_moves_all_robots_are_active(is_fleet: bool) -> None:
     closed, opened = Pose(2.0, 0.0, 0.0), Pose(2.0, 0.5, 0.0)
     door = Solid("door", closed, Box(0.02, 0.4), 0.1, GRAY, slide=Slide(opened, 0.5))
     area = Trigger("area", ((-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)), "door")
@@ -106,7 +106,7 @@ def test_while_a_door_moves_everybody_is_engaged(is_fleet: bool) -> None:
 
 
 @together
-def test_a_fast_thing_does_not_pass_through_a_robot_that_was_gliding(is_fleet: bool) -> None:
+def test_a_fast_object_does_not_pass_through_a_robot_that_was_gliding(is_fleet: bool) -> None:
     ball = Solid("ball", Pose(-1.0, 0.0, 0.0), Box(0.04, 0.04), 0.1, GRAY, Load(0.05, 0.01, 0.02))
     driver = Driver(is_fleet, [ball], [], Pose(0.0, 0.0, 0.0))
     driver.step()

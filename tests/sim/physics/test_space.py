@@ -45,7 +45,7 @@ def test_unequal_targets_drive_a_circle() -> None:
     assert (pose.x_m, pose.y_m, pose.yaw_rad) == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_wall_stops_the_robot_and_the_contact_is_told_once_as_new() -> None:
+def test_a_wall_stops_the_robot_and_the_contact_is_new_once() -> None:
     world = quiet({**box(0.31, 0.0, 0.02, 1.0), "name": "wall"})
     send(world, MotorTargets(400, 400))
     contacts = [contact for step in run(world, 4.0) for contact in step.contacts]

@@ -54,7 +54,7 @@ def test_two_robots_share_the_distance() -> None:
     assert ticks(movers=[other]) == 10
 
 
-def test_a_thing_that_nobody_else_can_push_waits_and_another_may_come_twice_as_fast() -> None:
+def test_an_object_that_no_other_robot_can_push_rests_and_another_may_come_twice_as_fast() -> None:
     assert ticks(movers=[thing(30.5 * MAX_TICK_DISTANCE_M)], is_alone=True) == 30
     assert ticks(movers=[thing(30.5 * MAX_TICK_DISTANCE_M)]) == 10
 

@@ -52,7 +52,7 @@ def test_an_added_robot_is_driven_pushed_and_seen_like_any_other() -> None:
 )
 def test_a_robot_is_refused_where_something_stands(x_m: float, y_m: float, blocker: str) -> None:
     world = build()
-    text = rf"'late' cannot stand at {x_m:.3f}, {y_m:.3f} m: '{blocker}' is in its way"
+    text = rf"'late' cannot be placed at {x_m:.3f}, {y_m:.3f} m: occupied by '{blocker}'"
     with pytest.raises(PlacementError, match=text):
         world.spawn(RobotStart("late", x_m, y_m))
     assert list(world.robots) == ["thymio"]
@@ -64,7 +64,7 @@ def test_a_name_that_is_taken_is_refused(name: str) -> None:
         build().spawn(RobotStart(name, 1.5, 1.5))
 
 
-def test_a_robot_that_is_taken_away_is_gone_for_everybody() -> None:
+def test_a_removed_robot_is_gone_for_all_others() -> None:
     world = World(make([FLOOR], (ROBOT, {**ROBOT, "name": "other", "x_m": 0.12})), noise=False)
     send(world, MotorTargets(500, 500))
     assert run(world, 1.0)[-1].contacts
@@ -89,7 +89,7 @@ def test_a_fallen_robot_can_be_taken_away_and_its_name_used_again() -> None:
 
 def test_an_unknown_robot_cannot_be_taken_away() -> None:
     with pytest.raises(KeyError):
-        build().remove("nobody")
+        build().remove("unknown")
 
 
 def test_reset_brings_back_the_robots_of_the_playground() -> None:
@@ -125,7 +125,7 @@ def test_others_keep_their_noise_when_a_robot_comes() -> None:
     assert pose_close(path(late=True), path(late=False))
 
 
-def test_a_thing_is_moved_at_the_next_tick() -> None:
+def test_an_object_is_moved_at_the_next_tick() -> None:
     world = build()
     world.post("crate", MoveObject(1.0, 1.0, 0.3))
     assert crate(world) == Pose(-0.5, 0.0, 0.0)
@@ -133,7 +133,7 @@ def test_a_thing_is_moved_at_the_next_tick() -> None:
     assert pose_close(crate(world), Pose(1.0, 1.0, 0.3))
 
 
-def test_a_moved_thing_stops_robots_where_it_is_now() -> None:
+def test_a_moved_object_stops_robots_where_it_is_now() -> None:
     world = build(noise=False)
     run(world, 1.0)
     world.post("crate", MoveObject(0.2, 0.0, 0.0))
@@ -142,7 +142,7 @@ def test_a_moved_thing_stops_robots_where_it_is_now() -> None:
     assert "crate" in {contact.other for step in steps for contact in step.contacts}
 
 
-def test_a_moved_thing_may_fall_over_the_edge_and_come_back() -> None:
+def test_a_moved_object_may_fall_over_the_edge_and_come_back() -> None:
     world = World(make([FLOOR, CRATE]))
     world.post("crate", MoveObject(5.0, 0.0, 0.0))
     run(world, 0.1)
@@ -152,22 +152,22 @@ def test_a_moved_thing_may_fall_over_the_edge_and_come_back() -> None:
     assert not world.snapshot().objects[0].is_fallen
 
 
-def test_a_thing_is_refused_where_something_stands() -> None:
-    with pytest.raises(PlacementError, match=r"'crate' cannot stand at 0\.050, 0\.000 m: 'thymio' is in its way"):
+def test_an_object_is_refused_where_something_stands() -> None:
+    with pytest.raises(PlacementError, match=r"'crate' cannot be placed at 0\.050, 0\.000 m: occupied by 'thymio'"):
         build().post("crate", MoveObject(0.05, 0.0, 0.0))
 
 
-def test_a_round_thing_is_refused_where_a_round_one_stands() -> None:
+def test_a_round_object_is_refused_where_a_round_one_stands() -> None:
     can = {**POST, "name": "can", "x_m": 1.0, "mass_kg": 0.1}
     world = World(make([FLOOR, POST, can]))
-    with pytest.raises(PlacementError, match="'post' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'post'"):
         world.post("can", MoveObject(0.05, 0.5, 0.0))
     world.post("can", MoveObject(0.11, 0.5, 0.0))
 
 
 def test_a_robot_is_not_moved_into_something() -> None:
     world = build()
-    with pytest.raises(PlacementError, match="'wall' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'wall'"):
         send(world, MoveRobot(0.5, 0.0, 0.0))
 
 
@@ -190,12 +190,12 @@ def test_a_robot_may_be_turned_on_its_own_place() -> None:
     assert world.robots["thymio"].pose.yaw_rad == pytest.approx(1.0, abs=1e-6)
 
 
-def test_a_place_where_something_will_stand_in_the_next_step_is_not_free() -> None:
+def test_a_position_that_is_taken_in_the_next_step_is_not_free() -> None:
     world = build()
     world.post("crate", MoveObject(-1.0, 1.0, 0.0))
-    with pytest.raises(PlacementError, match="'crate' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'crate'"):
         world.post("thymio", MoveRobot(-1.0, 1.0, 0.0))
-    with pytest.raises(PlacementError, match="'crate' is in its way"):
+    with pytest.raises(PlacementError, match="occupied by 'crate'"):
         world.spawn(RobotStart("late", -1.0, 1.0))
     world.spawn(RobotStart("late", -0.5, 0.0))
     world.step()
@@ -204,14 +204,14 @@ def test_a_place_where_something_will_stand_in_the_next_step_is_not_free() -> No
 
 
 @pytest.mark.parametrize("name", ["crate", "other"])
-def test_nor_is_one_where_what_has_fallen_is_going_to_stand(name: str) -> None:
+def test_nor_is_one_where_a_fallen_object_will_be_placed(name: str) -> None:
     world = World(make([FLOOR, CRATE], (ROBOT, {**ROBOT, "name": "other", "x_m": 1.0})))
     move = MoveObject if name == "crate" else MoveRobot
     world.post(name, move(5.0, 0.0, 0.0))
     run(world, 0.1)
     world.post("thymio", MoveRobot(5.0, 0.0, 0.0))
     world.post(name, move(1.0, 1.0, 0.0))
-    with pytest.raises(PlacementError, match=f"'{name}' is in its way"):
+    with pytest.raises(PlacementError, match=f"occupied by '{name}'"):
         world.post("thymio", MoveRobot(1.0, 1.0, 0.0))
 
 

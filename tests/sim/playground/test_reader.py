@@ -137,7 +137,7 @@ def test_a_track_that_cannot_be_painted_is_refused(points: Any, radius: float, f
 def test_a_playground_of_too_many_parts_is_refused() -> None:
     points = [[index % 2, index / 10] for index in range(500)]
     track = {"kind": "track", "points_m": points, "width_m": 0.04, "color": "#000000", "corner_radius_m": 0.02}
-    assert refused_with(shapes=[track]).found == "more than 10000 parts so far"
+    assert refused_with(shapes=[track]).found == "more than 10000 parts"
 
 
 def test_corners_that_do_not_fit_their_pieces_are_refused() -> None:
@@ -200,7 +200,7 @@ def with_picture(image: str) -> str:
     return json.dumps({**GOOD, "shapes": [FLOOR, {"kind": "picture", "image": image, "size_x_m": 0.2}]})
 
 
-def test_a_picture_beside_the_file_becomes_part_of_the_playground(tmp_path: Path) -> None:
+def test_an_image_beside_the_file_becomes_part_of_the_playground(tmp_path: Path) -> None:
     (tmp_path / "pictures").mkdir()
     (tmp_path / "pictures" / "track.png").write_bytes(png([[WHITE, BLACK]]))
     path = tmp_path / "mine.json"
@@ -222,7 +222,7 @@ def test_a_picture_beside_the_file_becomes_part_of_the_playground(tmp_path: Path
         ("", "a file that ends in"),
     ],
 )
-def test_a_picture_elsewhere_is_refused(tmp_path: Path, image: str, expected: str) -> None:
+def test_an_image_elsewhere_is_refused(tmp_path: Path, image: str, expected: str) -> None:
     (tmp_path / "secret.png").write_bytes(png([[WHITE]]))
     folder = tmp_path / "playgrounds"
     folder.mkdir()
@@ -239,7 +239,7 @@ def test_a_text_has_no_file_beside_it() -> None:
     assert (error.key, error.found) == ("shapes[1].image", "the file 'track.png'")
 
 
-def test_a_picture_that_cannot_be_read_is_refused_at_its_key() -> None:
+def test_an_image_that_cannot_be_read_is_refused_at_its_key() -> None:
     assert refused(with_picture("data:image/png;base64,AAAA")).key == "shapes[1].image"
 
 
@@ -267,16 +267,16 @@ def test_a_ground_that_is_painted_over_and_over_is_refused() -> None:
     sheet = {"kind": "picture", "size_x_m": 5.0, "image": png_uri([[WHITE]])}
     reader.loads(json.dumps({**GOOD, "shapes": [ground, sheet, sheet]}), "good")
     error = refused_with(shapes=[ground, *[sheet] * 10])
-    assert (error.key, error.found) == ("shapes", "a ground that takes 4.28 times as long to paint as is allowed")
+    assert (error.key, error.found) == ("shapes", "a ground that takes 4.28 times the allowed time to paint")
     floors = [ground | {"name": f"floor_{number}"} for number in range(50)]
     assert refused_with(shapes=floors).key == "shapes"
 
 
-def test_the_pixels_of_all_pictures_together_are_limited() -> None:
+def test_the_pixels_of_all_images_together_are_limited() -> None:
     sheet = {"kind": "picture", "size_x_m": 1.0, "image": png_uri([[WHITE] * 4000] * 900)}
     error = refused_with(shapes=[FLOOR, *[sheet] * 9])
     left = image_io.MAX_PIXELS_IN_ALL - 8 * 4000 * 900
     assert (error.key, error.found) == (
         "shapes[9].image",
-        f"4000 x 900 pixels, where {left} of the playground's 32000000 are left for pictures",
+        f"4000 x 900 pixels, with {left} of 32000000 left for images of this playground",
     )

@@ -22,7 +22,7 @@ def test_a_playground_comes_back_the_same(path: Path) -> None:
     assert reader.loads(dumps(loaded), path.stem) == loaded
 
 
-def test_pictures_stay_inside() -> None:
+def test_images_stay_inside() -> None:
     loaded = make([{"kind": "picture", "image": png_uri([[WHITE, BLACK]]), "size_x_m": 1}], [])
     assert replace(reader.loads(dumps(loaded), "test"), title="test") == loaded
 

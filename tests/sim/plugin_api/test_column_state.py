@@ -10,7 +10,7 @@ from thymio_sim_ros.sim.plugin_api.column_state import ColumnState
 def test_a_column_begins_with_what_each_robot_remembers() -> None:
     column_state = ColumnState([{"taps": 3}, {}])
     assert column_state.column("taps", 0).tolist() == [3, 0]
-    assert column_state.column("told", (0, 0)).tolist() == [[0, 0], [0, 0]]
+    assert column_state.column("unknown", (0, 0)).tolist() == [[0, 0], [0, 0]]
 
 
 def test_what_was_written_to_columns_is_given_back() -> None:

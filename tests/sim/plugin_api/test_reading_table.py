@@ -1,4 +1,4 @@
-"""Readings by sensor, taken apart by robot when somebody looks."""
+"""Readings by sensor, sorted by robot when they are read."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ def test_while_robots_wander_what_is_near_stays_up_to_date() -> None:
         assert close(all_at_once(caster, poses, FAN), one_by_one(poses, obstacles, FAN))
 
 
-def test_things_that_move_are_seen_where_they_are() -> None:
+def test_objects_that_move_are_seen_where_they_are() -> None:
     dice = random.Random(4)
     fixed, loose, poses = things(dice, 5, 1.0), things(dice, 5, 1.0), scatter(dice, 6, 1.0)
     caster = BatchRaycaster(fixed, loose)
@@ -148,6 +148,6 @@ def test_two_fans_of_different_reach_may_take_turns() -> None:
         assert close(all_at_once(caster, poses, fan), one_by_one(poses, obstacles, fan))
 
 
-def test_without_robots_or_things_nothing_is_seen() -> None:
+def test_without_robots_or_objects_nothing_is_seen() -> None:
     assert all_at_once(BatchRaycaster([]), [], FAN) == []
     assert all_at_once(BatchRaycaster([]), [Pose(0.0, 0.0, 0.0)], FAN) == [[math.inf] * 4] * 2

@@ -37,7 +37,7 @@ def test_a_ray_that_is_too_short_meets_nothing(obstacle: ConvexObstacle | DiscOb
     assert obstacle.distance(0.0, 0.0, 1.0, 0.0, 0.9) == 0.9
 
 
-def test_a_fan_tells_the_nearest_thing_of_each_ray() -> None:
+def test_a_fan_gives_the_nearest_obstacle_of_each_ray() -> None:
     around = Surroundings([SQUARE, DiscObstacle(0.7, 0.0, 0.1, 0.1)])
     slanted = (math.cos(0.5), math.sin(0.5))
     found = around.fan(0.0, 0.0, [(1.0, 0.0), slanted, (0.0, 1.0)], 2.0)

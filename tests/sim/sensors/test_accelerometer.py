@@ -149,7 +149,7 @@ def test_between_two_counts_the_noise_shows() -> None:
     assert set(far) == {11}
 
 
-def test_the_hand_tilts_the_robot_until_told_otherwise() -> None:
+def test_the_operator_tilts_the_robot_until_the_next_command() -> None:
     world = World(make([FLOOR], [ROBOT]), noise=False)
     send(world, Tilt(0.0, -0.5))
     tilted = readings(run(world, 1.0), "accelerometer")

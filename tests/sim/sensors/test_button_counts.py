@@ -16,7 +16,7 @@ def parts(words: tuple[int, ...]) -> tuple[tuple[int, ...], tuple[int, ...], tup
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_the_firmware_s_rule_tells_which_button_is_touched(button: str) -> None:
+def test_the_rule_of_the_firmware_decides_which_button_is_touched(button: str) -> None:
     world = World(make([FLOOR]), seed=2)
     send(world, PressButton(button, pressed=True))
     held = readings(run(world, 0.01), "button_counts")[-1].words

@@ -1,4 +1,4 @@
-"""Whether something is touched, as it is told."""
+"""Reports of the collision sensor."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.world import World
 
 
-def test_touching_is_told_at_the_start_and_when_it_changes() -> None:
+def test_contact_is_published_at_the_start_and_on_change() -> None:
     world = World(make([FLOOR, post_wall(0.05)]), noise=False)
     send(world, MotorTargets(300, 300))
     there = [reading.is_touching for reading in readings(run(world, 2.0), "collision")]

@@ -139,7 +139,7 @@ def test_a_negative_value_is_no_data(payload: int) -> None:
     assert frames(facing(0.1), {"b": payload})["a"] == []
 
 
-def test_who_is_switched_off_neither_sends_nor_hears() -> None:
+def test_a_robot_that_is_switched_off_neither_sends_nor_receives() -> None:
     world = World(make([FLOOR], facing(0.1)), noise=False)
     world.post("a", EnableComm(True))
     world.post("a", SetCommPayload(3))
@@ -161,7 +161,7 @@ def test_turning_both_by_the_same_angle_changes_nothing() -> None:
     assert frames(turned, {"b": 9})["a"][0].words == pytest.approx(straight, abs=1)
 
 
-def test_who_has_fallen_off_the_table_neither_sends_nor_hears() -> None:
+def test_a_robot_that_has_fallen_off_the_table_neither_sends_nor_receives() -> None:
     table = {**FLOOR, "size_x_m": 0.6, "size_y_m": 0.6}
     world = World(make([table], [robot("a", 0.0), robot("b", 0.25, 0.0, math.pi)]), noise=False)
     for name in "ab":

@@ -59,7 +59,7 @@ def test_the_current_is_filtered_over_64_ticks() -> None:
     assert 800 - after == pytest.approx((800 - before) / 2.74, rel=0.05)  # (1 + 1/63) ** 64
 
 
-def test_it_is_told_once_a_second_while_nothing_changes() -> None:
+def test_it_is_published_once_a_second_while_nothing_changes() -> None:
     world = World(make([FLOOR]), noise=False)
     send(world, MotorTargets(100, 100))
     assert len(readings(run(world, 5.0), "current")) == 5

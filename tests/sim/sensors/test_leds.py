@@ -21,7 +21,7 @@ def world() -> World:
     return World(make([FLOOR]), noise=False)
 
 
-def test_lights_are_told_once_at_the_start_and_then_on_change() -> None:
+def test_lights_are_published_once_at_the_start_and_then_on_change() -> None:
     state = LedState()
     view = FakeView(states=(state,))
     first, second = leds.SENSOR.measure(view), leds.SENSOR.measure(view)
@@ -43,7 +43,7 @@ def test_what_was_set_and_has_come_back_is_no_news() -> None:
     assert leds.SENSOR.measure(view) is None
 
 
-def test_lights_are_first_told_in_the_first_step(world: World) -> None:
+def test_lights_are_first_published_in_the_first_step(world: World) -> None:
     first, second = (len(readings([world.step()], "leds")) for _ in range(2))
     assert (first, second) == (1, 0)
 

@@ -24,7 +24,7 @@ def world() -> World:
     return World(make([FLOOR]), noise=False)
 
 
-def test_the_pose_tells_odometry_and_truth() -> None:
+def test_the_pose_has_odometry_and_truth() -> None:
     wheels = Wheels()
     view = FakeView(pose=Pose(1.0, 2.0, 3.0), twist=Twist(0.1, 0.2), wheels=wheels)
     reading = pose.SENSOR.measure(view)
@@ -59,7 +59,7 @@ def test_odometry_does_not_notice_a_hand(world: World) -> None:
     assert (last.odometry, last.truth) == (Pose(0.0, 0.0, 0.0), Pose(1.0, 1.0, 2.0))
 
 
-def test_odometry_starts_again_when_told(world: World) -> None:
+def test_odometry_is_reset_by_a_command(world: World) -> None:
     send(world, BodyTwist(0.1, 0.0))
     run(world, 1.0)
     send(world, BodyTwist(0.0, 0.0))

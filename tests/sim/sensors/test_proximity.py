@@ -63,7 +63,7 @@ def test_an_empty_world_reads_zero_everywhere() -> None:
 
 
 @pytest.mark.parametrize(("height_m", "seen"), [(0.033, False), (0.034, True)])
-def test_things_lower_than_the_sensor_are_not_seen(height_m: float, seen: bool) -> None:
+def test_objects_lower_than_the_sensor_are_not_seen(height_m: float, seen: bool) -> None:
     assert (measure(FakeView(obstacles=(wall_ahead(0.05, height_m=height_m),))).words[FRONT] > 0) is seen
 
 
@@ -143,7 +143,7 @@ def test_a_robot_stands_before_a_wall_in_the_world() -> None:
     assert measure_one(world, "proximity").ranges_m[FRONT] == pytest.approx(0.06, abs=1e-4)
 
 
-def test_a_near_thing_hides_a_far_one() -> None:
+def test_a_near_object_hides_a_far_one() -> None:
     far, near = post_wall(0.1), box(0.0795 + 0.05 + 0.01, 0.0, 0.02, 0.5)
     world = World(make([FLOOR, {**far, "name": "far"}, {**near, "name": "near"}]), noise=False)
     assert measure_one(world, "proximity").ranges_m[FRONT] == pytest.approx(0.05, abs=1e-4)

@@ -16,7 +16,7 @@ ALONE, AT_ONCE = 10**9, 1
 
 @pytest.fixture(params=[ALONE, AT_ONCE], ids=["alone", "at once"])
 def world(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> World:
-    """Before a wall, robot by robot and as a crowd."""
+    """Before a wall, one by one and as a batch."""
     monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", request.param)
     return World(make([FLOOR, post_wall(0.05)], [ROBOT]), noise=False)
 
@@ -32,7 +32,7 @@ def test_a_covered_sensor_counts_what_the_hand_says_and_the_others_see(world: Wo
     assert measure_one(world, "proximity").words == seen
 
 
-def test_nothing_needs_to_be_there_for_a_hand_to_be_counted() -> None:
+def test_an_override_counts_without_any_obstacle() -> None:
     world = World(make([FLOOR], [ROBOT]))
     send(world, SetProximity((-1, -1, 3000, -1, -1, -1, -1)))
     assert measure_one(world, "proximity").words == (0, 0, 3000, 0, 0, 0, 0)

@@ -30,11 +30,11 @@ def test_the_user_s_own_domain_is_left_alone(monkeypatch):
         pass
 
 
-def test_a_domain_in_which_somebody_speaks_is_left_alone(monkeypatch):
+def test_a_domain_in_use_is_skipped(monkeypatch):
     context = Context()
     with reserved() as busy:
         rclpy.init(args=[], context=context, domain_id=busy)
-    node = rclpy.create_node("somebody", context=context)
+    node = rclpy.create_node("other", context=context)
     monkeypatch.setattr(domain, "DOMAINS", [busy])
     try:
         with pytest.raises(NoDomainError), reserved():

@@ -61,7 +61,7 @@ class Looping(Node):
             while rclpy.ok(context=self.context):
                 self.mouth.publish(String(data="la"))
                 pause.wait(0.05)
-        except Exception as error:  # whatever it is, it would be told in another test
+        except Exception as error:  # whatever it is, it would be reported in another test
             self.failures.append(error)
 
 
@@ -120,7 +120,7 @@ class Spinning(Node):
 
 
 @pytest.mark.parametrize("at_once", [True, False])
-def test_who_spins_where_nothing_can_come_is_told_so(ros, at_once):
+def test_spinning_where_nothing_can_arrive_is_an_error(ros, at_once):
     """It waited for ever, and no signal reached it."""
     ros.node.create_service(Trigger, "door", lambda _request, answer: answer)
 
@@ -133,7 +133,7 @@ def test_who_spins_where_nothing_can_come_is_told_so(ros, at_once):
         ask()
 
 
-def test_a_spin_that_was_imported_by_its_name_is_told_too(ros, tmp_path):
+def test_a_spin_imported_by_name_is_an_error_too(ros, tmp_path):
     path = tmp_path / "spinning.py"
     path.write_text(
         "from rclpy import spin\nfrom rclpy.node import Node\n"

@@ -92,14 +92,14 @@ def test_what_a_callback_raises_is_raised_in_the_test(ros):
         ros.until(lambda: False, 5.0)
 
 
-def test_a_node_that_shuts_ros_down_is_told_to_leave_that(ros):
+def test_a_node_that_shuts_ros_down_is_an_error(ros):
     ros.start(Echo)
     ros.publisher(String, "heard").publish(String(data="bye"))
     with pytest.raises(pytest.fail.Exception, match=r"rclpy.shutdown\(\) belongs to main"):
         ros.until(lambda: False, 5.0)
 
 
-def test_a_node_that_shuts_ros_down_as_it_begins_is_told_so_too(ros):
+def test_a_node_that_shuts_ros_down_at_its_start_is_an_error_too(ros):
     with pytest.raises(pytest.fail.Exception, match=r"rclpy.shutdown\(\) belongs to main"):
         ros.start(Echo, arguments={"prefix": "bye"})
 
@@ -151,14 +151,14 @@ def test_a_recorder_listens_as_it_is_published(ros):
     assert lights.latest.data
 
 
-def test_a_recorder_may_wait_for_nobody(ros):
+def test_a_recorder_does_not_wait_for_publishers(ros):
     lights = ros.collect(Bool, "light", qos=BEST_EFFORT)
     ros.node.create_publisher(Bool, "light", BEST_EFFORT)
     ros.settle()
     assert len(lights) == 0
 
 
-def test_time_that_passes_in_vain_is_told_with_all_that_is_known(ros, simulation):
+def test_a_time_out_is_reported_with_all_that_is_known(ros, simulation):
     sim = simulation()
     ros.start(Wanderer, remappings={"cmd_vel": "cmd_vle"})
     ros.collect(Odometry, "odom")
@@ -173,13 +173,13 @@ def test_time_that_passes_in_vain_is_told_with_all_that_is_known(ros, simulation
     assert lines[-1].endswith(" other topics")
 
 
-def test_time_that_stood_still_is_told(ros, simulation):
+def test_time_that_stood_still_is_reported(ros, simulation):
     simulation()
     with pytest.raises(pytest.fail.Exception, match="simulated time stood still meanwhile: sim_time= lets it pass"):
         ros.until(lambda: False, timeout=0.0)
 
 
-def test_qualities_that_do_not_fit_are_told(ros):
+def test_incompatible_qos_is_reported(ros):
     ros.node.create_publisher(Bool, "light", BEST_EFFORT)
     ros.make_node("viewer").create_subscription(Bool, "light", lambda _: None, 10)
     with pytest.raises(pytest.fail.Exception, match=r"/light .*\(test and viewer have incompatible QoS\)"):
@@ -234,7 +234,7 @@ def test_the_end_is_complete_even_when_a_node_spoils_it(ros_domain):
     assert not ros.context.ok()
 
 
-def test_a_default_context_of_somebody_else_is_left_alone(ros_domain):
+def test_a_foreign_default_context_is_left_alone(ros_domain):
     rclpy.init(args=[], domain_id=ros_domain)
     try:
         ros = Ros(ros_domain)

@@ -70,7 +70,7 @@ def test_a_robot_of_another_name_and_one_that_comes_later_have_their_programs(si
     assert sim["anna"]["heard"] == 7
 
 
-def test_robots_are_told_apart(ros, simulation, runtime):
+def test_robots_are_distinguished(ros, simulation, runtime):
     sim = simulation(playground="two_robots")
     with pytest.raises(LookupError, match="2 robots: take one by its name: "):
         sim.thymio  # noqa: B018  (a property)
@@ -84,7 +84,7 @@ def test_robots_are_told_apart(ros, simulation, runtime):
     assert sim[first.name] is first
 
 
-def test_a_robot_without_a_machine_says_so(simulation):
+def test_a_robot_without_a_machine_is_an_error(simulation):
     sim = simulation()
     with pytest.raises(LookupError, match="start one with the fixture `runtime`"):
         sim.thymio["x"]
@@ -95,7 +95,7 @@ def test_a_robot_without_a_machine_says_so(simulation):
     assert sim.thymio.program is None
 
 
-def test_a_failure_tells_the_fault_of_the_program(simulation, runtime):
+def test_a_failure_reports_the_fault_of_the_program(simulation, runtime):
     sim = simulation()
     runtime("var a = 0\n\nonevent buttons\na = 1 / a")
     with pytest.raises(pytest.fail.Exception) as caught:

@@ -96,7 +96,7 @@ def test_the_neighbours_of_one_student_are_not_those_of_the_next(tmp_path, monke
             del sys.modules[name]
 
 
-def test_a_file_that_exits_before_its_node_says_so(handed_in):
+def test_a_file_that_exits_before_its_node_is_reported(handed_in):
     with pytest.raises(SystemExit, match="no robot"):
         load_class(handed_in("import sys\nsys.exit('no robot')\n" + GREETER))
 
@@ -108,19 +108,19 @@ def test_of_several_classes_the_last_heir_or_the_named_one_is_taken(handed_in):
 
 
 @pytest.mark.parametrize(
-    ("text", "class_name", "told"),
+    ("text", "class_name", "reported"),
     [
         ("x = 1\n", "", "expected one class derived from rclpy.node.Node, found none"),
         (GREETER + GREETER.replace(HEAD, "").replace("Greeter", "Other"), "", "found Greeter, Other"),
         (GREETER, "Greter", "expected a class Greter derived from rclpy.node.Node, found Greeter"),
     ],
 )
-def test_what_is_no_node_is_refused(handed_in, text, class_name, told):
-    with pytest.raises(StudentError, match=told):
+def test_what_is_no_node_is_refused(handed_in, text, class_name, reported):
+    with pytest.raises(StudentError, match=reported):
         load_class(handed_in(text), class_name)
 
 
-def test_a_file_that_is_not_there_or_wrong_is_told(handed_in):
+def test_a_missing_or_invalid_file_is_reported(handed_in):
     with pytest.raises(StudentError, match="no such file"):
         load_class("nowhere.py")
     with pytest.raises(SyntaxError):
@@ -129,7 +129,7 @@ def test_a_file_that_is_not_there_or_wrong_is_told(handed_in):
         load_class("no_such_module")
 
 
-def test_a_class_that_goes_round_super_is_told_so(ros):
+def test_a_class_that_does_not_call_super_is_reported(ros):
     class Direct(Node):
         def __init__(self):
             Node.__init__(self, "direct")

@@ -15,7 +15,8 @@ from aseba_vm.aesl.reader import MAX_EVENT_WORDS
 from aseba_vm.errors import Hint
 from aseba_vm.frontend.identifiers import LETTER_OR_DIGIT
 from aseba_vm.frontend.lexer import KEYWORDS
-from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
+from aseba_vm.languages import ENGLISH, texts
+from aseba_vm.messages import format_message
 from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros.device.editor.help import help_of
 from thymio_sim_ros.device.editor.help_order import rank
@@ -31,7 +32,6 @@ from thymio_sim_ros.device.programs.program import (
 )
 
 __all__ = [
-    "ENGLISH",
     "MOST_CHARACTERS",
     "Question",
     "check",
@@ -41,10 +41,8 @@ __all__ = [
     "refusal",
 ]
 
-ENGLISH = "en"
-
 MOST_CHARACTERS = 64_000
-"""Longest text that is checked: several programs that fill a Thymio, so that nobody waits for a second."""
+"""Longest text that is checked: several programs that fill a Thymio. Longer ones would take more than a second."""
 
 _WORD = re.compile(rf"[{LETTER_OR_DIGIT}_.]+")
 
@@ -79,7 +77,7 @@ def check(question: Question) -> dict[str, Any]:
         constants=[{"name": name, "value": value} for name, value in network.constants],
     )
     for node in selection.nodes:
-        errors, warnings, told = _check_node(node, network, question)
+        errors, warnings, report = _check_node(node, network, question)
         if errors and is_skipped(node, selection):
             answer["notes"].append(_note("note-left-out-node", node, question, errors[0]["message"]))
             continue
@@ -88,7 +86,7 @@ def check(question: Question) -> dict[str, Any]:
             answer["notes"].append(_note(kind, node, question))
         answer["errors"] += errors
         answer["warnings"] += warnings
-        answer["nodes"].append(told)
+        answer["nodes"].append(report)
     return answer
 
 
@@ -191,12 +189,12 @@ def _check_node(
         program = compile(node.code, target(question.layout), events=network.events, constants=network.constants)
     except CompileError as error:
         sentence = _sentence(error.kind, error.arguments, question.language)
-        sentence += other_device_note(node, LANGUAGES.get(question.language, MESSAGES))
+        sentence += other_device_note(node, texts("compiler", question.language))
         finding = _placed(node, error.kind, sentence, error.pos)
         errors.append(finding | {"hint": _hint(node, error.hint, question.language)})
     else:
         warnings = _doubts(node, program, question.language)
-    told = {
+    report = {
         "name": node.name,
         "id": node.node_id,
         "first_line": node.place(0)[0] + 1,
@@ -204,7 +202,7 @@ def _check_node(
         **_names(node, program),
         "use": None if program is None else memory_use(program, question.layout),
     }
-    return errors, warnings, told
+    return errors, warnings, report
 
 
 def _note(kind: str, node: aesl.Node, question: Question, *arguments: str) -> dict[str, Any]:
@@ -259,7 +257,7 @@ def _hint(node: aesl.Node, hint: Hint | None, language: str) -> dict[str, Any] |
             "end_column": end_column + 1,
             "text": hint.edit.text,
         }
-    sentence = hint.message(LANGUAGES.get(language, MESSAGES), node.rows_in_file())
+    sentence = hint.message(texts("compiler", language), node.rows_in_file())
     return {"kind": hint.kind, "message": sentence, "edit": edit}
 
 
@@ -268,4 +266,4 @@ def _finding(kind: str, sentence: str, line: int | None, column: int | None, len
 
 
 def _sentence(kind: str, arguments: Collection[Any], language: str) -> str:
-    return format_message(kind, tuple(arguments), LANGUAGES.get(language, MESSAGES))
+    return format_message(kind, tuple(arguments), texts("compiler", language))

@@ -1,12 +1,12 @@
 """The memory card, represented by a folder (docs/spec/thymio-robot.md sections 6.3, 9 and 10).
 
-Programs name files by number only: data `uN.dat`; sounds `pN.wav` to play, `rN.wav` recorded, `sN.wav` in place of
-missing system sounds. Names are found in any case, as on the card's file system. Nothing outside the folder is
-read or written, not even where a link in it points. What a program may store is limited, so that an
-endless program cannot fill a disk: beyond `MAX_FILES` and `MAX_BYTES` of the whole folder calls fail as on the robot.
+Programs refer to files by number only: data `uN.dat`; sounds `pN.wav` to play, `rN.wav` recorded, `sN.wav` instead of
+missing system sounds. Upper and lower case are the same, as in the card's file system. Nothing outside the folder is
+read or written, even if a link in it points there. `MAX_FILES` and `MAX_BYTES` limit the whole folder, so that an
+endless program cannot fill a disk; beyond them calls fail as on the robot.
 
-The folder is listed when something but this card has added or removed files (its modification time tells), not for
-every name. No file is open between calls.
+The folder is listed again only after its modification time shows that another program has added or removed files. No
+file is open between calls.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ MAX_BYTES = 64_000_000
 MAX_FILES = 256
 """Limit of files on the card."""
 MAX_SAMPLES = 10 * 60 * 7813
-"""Longest sound that is read: ten minutes."""
+"""Length limit for reading a sound: ten minutes."""
 
 SoundFile = tuple[bytes, str]
-"""Unsigned 8 bit samples, and what is wrong with the file's format, if anything."""
+"""Unsigned 8-bit samples, and a message about the format of the file, or an empty one."""
 
 
 class SdCardError(ThymioSimError):
@@ -39,27 +39,27 @@ class SdCardError(ThymioSimError):
 
 
 class SdCard:
-    """A card in its slot: at most one data file is selected; no file is open between calls."""
+    """A card with at most one selected data file. Invariant: no file is open between calls."""
 
     def __init__(self, folder: Path) -> None:
-        """SdCardError when the folder cannot be made or is none."""
+        """Create the folder if necessary. Raises SdCardError if that fails or the path is not a folder."""
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self.folder = folder.resolve(strict=True)
         except OSError as error:
             raise SdCardError(f"card {folder}: {error.strerror}; expected a folder, or a place for one") from error
         self.refusal = ""
-        """Why the last `open`, `write` or `write_sound` was refused, if the card was full."""
+        """Message if the last `open`, `write` or `write_sound` failed because the card was full, else empty."""
         self._file: Path | None = None
         self._at = 0
         self._names: dict[str, str] = {}
-        """Names in the folder by the same in lower case."""
+        """Name of each file by its name in lower case."""
         self._bytes = 0
         self._listed_ns: int | None = None
-        """Modification time of the folder as it was listed."""
+        """Modification time of the folder when it was last listed."""
 
     def open(self, number: int) -> bool:
-        """Open data file `number`, made when there is none, at its beginning; one that is open is closed first."""
+        """Close the open data file; open or create data file `number` at its beginning; return whether that worked."""
         self.close()
         self.refusal = ""
         path = self._path(f"u{number}.dat") if number >= 0 else None
@@ -78,7 +78,7 @@ class SdCard:
         self._file, self._at = None, 0
 
     def write(self, words: Sequence[int]) -> int:
-        """Write words (int16, little-endian) from the position on; how many fitted."""
+        """Write words (int16, little-endian) at the current position; return how many were written."""
         self.refusal = ""
         if self._file is None:
             return 0
@@ -97,7 +97,7 @@ class SdCard:
         return written // 2
 
     def read(self, count: int) -> list[int]:
-        """Up to so many words from the position on; none at the end or without a file."""
+        """Read up to `count` words at the current position; return none at the end or without a file."""
         if self._file is None:
             return []
         try:
@@ -111,14 +111,14 @@ class SdCard:
         return _as_words(whole)
 
     def seek(self, position: int) -> bool:
-        """Go to a word (0 is the first); a later write fills what lies between with zeros."""
+        """Move to a word, 0 is the first; return False without a file. Writing beyond the end fills the gap with 0."""
         if self._file is None or position < 0:
             return False
         self._at = 2 * position
         return True
 
     def read_sound(self, name: str) -> SoundFile | None:
-        """The sound of a name such as p1, or None when it is not there."""
+        """Read the sound of a name such as p1; None if there is none."""
         path = self._path(f"{name}.wav")
         try:
             if path is None or not path.is_file():
@@ -130,13 +130,13 @@ class SdCard:
         return data[wav.HEADER_BYTES :], wav.format_problem(path)
 
     def sound_bytes(self, name: str) -> int:
-        """Samples in the sound of a name such as r1; 0 when it is not there."""
+        """Number of samples of the sound of a name such as r1; 0 if there is none."""
         path = self._path(f"{name}.wav")
         size = 0 if path is None else _size(path)
         return min(MAX_SAMPLES, max(0, size - wav.HEADER_BYTES))
 
     def write_sound(self, name: str, samples: bytes) -> bool:
-        """Store unsigned 8 bit samples under a name such as r1; whether that worked."""
+        """Store unsigned 8-bit samples under a name such as r1; return whether that worked."""
         self.refusal = ""
         path = self._path(f"{name}.wav")
         if path is None or not self._has_room(path):
@@ -155,20 +155,20 @@ class SdCard:
         return True
 
     def _has_room(self, path: Path) -> bool:
-        """Whether a file is there, or may be made."""
+        """Whether a file exists or may be created."""
         if path.name.lower() in self._names or len(self._names) < MAX_FILES:
             return True
         self.refusal = f"the card is full: it holds {MAX_FILES} files"
         return False
 
     def _register(self, path: Path) -> None:
-        """Remember a file that may be new."""
+        """Add a file that may be new to the listing."""
         if path.name.lower() not in self._names:
             self._names[path.name.lower()] = path.name
             self._listed_ns = _modified_ns(self.folder)
 
     def _list(self) -> None:
-        """List the folder if something else has added or removed files; OSError."""
+        """List the folder if another program has added or removed files. Raises OSError."""
         changed_ns = self.folder.stat().st_mtime_ns
         if changed_ns == self._listed_ns:
             return
@@ -184,18 +184,18 @@ class SdCard:
         self._listed_ns = changed_ns
 
     def _path(self, name: str) -> Path | None:
-        """Where a file of this name is or would be; None when that is no file in the folder."""
+        """Path of an existing or new file of this name; None if it is not a file in the folder."""
         try:
             self._list()
             path = self.folder / self._names.get(name, name)
             is_free = path.is_file() or not path.exists()
             return path if is_free and path.resolve().parent == self.folder else None
-        except (OSError, RuntimeError):  # the folder is gone, or links lead round in a circle
+        except (OSError, RuntimeError):  # the folder was removed, or links form a circle
             return None
 
 
 def _size(path: Path) -> int:
-    """Bytes of a file; 0 when it is none."""
+    """Size of a regular file in bytes; 0 for anything else."""
     try:
         found = path.lstat()
     except OSError:

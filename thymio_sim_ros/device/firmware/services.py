@@ -22,7 +22,7 @@ from thymio_sim_ros.sim.commands import (
 __all__ = ["RESTART", "SWITCH_OFF", "FirmwareServices"]
 
 RESTART, SWITCH_OFF = "restart", "off"
-"""Requests of a program that concern the whole robot."""
+"""Requests of a program for the whole robot."""
 
 Send = Callable[[Command], None]
 Notify = Callable[[str], None]
@@ -31,7 +31,7 @@ Notify = Callable[[str], None]
 class FirmwareServices:
     """The services of one robot.
 
-    `send` receives commands for actuators, `notify` sentences for the user; `recalibrate` is called when the
+    `send` receives commands for actuators, `notify` messages for the user; `recalibrate` is called when the
     calibration of the motors may have changed.
     """
 
@@ -52,7 +52,7 @@ class FirmwareServices:
         self.card = card
         self.settings = settings
         self.requested = ""
-        """RESTART or SWITCH_OFF, until the device has done it."""
+        """RESTART or SWITCH_OFF until the device has executed the request, else empty."""
         self.notify = notify
         self._send = send
         self._recalibrate = recalibrate
@@ -135,11 +135,11 @@ class FirmwareServices:
             self.notify(self.card.refusal)
 
     def recorded_bytes(self, number: int) -> int:
-        """Samples of a recording; 0 if there is none."""
+        """Number of samples of a recording, one byte each; 0 if there is none."""
         return 0 if self.card is None else self.card.sound_bytes(f"r{number}")
 
     def _play_file(self, name: str) -> int | None:
-        """Play a sound of the card; the bytes read, None if there is none."""
+        """Play a sound of the card; return the number of bytes read, or None if there is none."""
         found = self.card.read_sound(name) if self.card is not None else None
         if found is None:
             return None

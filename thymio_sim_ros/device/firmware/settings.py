@@ -1,6 +1,6 @@
-"""The robot's settings: 92 words that survive a restart once they are flashed (docs/spec/thymio-robot.md section 6.3).
+"""Settings of the robot: 92 words that survive a restart when flashed (docs/spec/thymio-robot.md section 6.3).
 
-With a file they are kept there as JSON, by the names of their parts; without, as long as the device lives.
+Flashed settings are kept in a file, as JSON with the names of their parts, or in memory if there is no file.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ PARTS: tuple[tuple[str, int, int], ...] = (
     ("prox_ground_max", 2, 0),
     ("spare", 80, 0),
 )
-"""Name, words and first value of each part, in the order of their addresses."""
+"""Name, number of words and initial value of each part, in order of address."""
 _MOTORS = 8
 """Address of the first motor's calibration."""
 _FULL = 256
 _MAX_CORRECTION = 50
 _MAX_TARGET = 1000
-"""Limits of calibrations, and of targets before them (section 2)."""
+"""Limits of calibration factors, and of targets before calibration (section 2)."""
 INT16 = range(-0x8000, 0x8000)
 
 
 class SettingsError(ThymioSimError):
-    """A file that cannot hold settings; the text is one line."""
+    """A file that is not a settings file, or cannot be read; the text is one line."""
 
 
 class Settings:
-    """The words in force, and those that were flashed."""
+    """The current words, and the flashed ones."""
 
     def __init__(self, file: Path | None = None) -> None:
-        """SettingsError when the file holds something else, cannot be read, or lies in what is no folder."""
+        """Read the file, if it exists. Raises SettingsError if it is invalid, cannot be read, or is not in a folder."""
         self._file = file
         self._flashed: list[int] = []
         self._words: list[int] = []
@@ -57,18 +57,18 @@ class Settings:
 
     @property
     def volume_shift(self) -> int:
-        """Bits that samples lose, 0…8."""
+        """Number of bits by which samples are shifted right, 0 to 8."""
         return max(0, min(VOLUME_OFF, self._words[0]))
 
     def calibrate(self, targets: MotorTargets) -> MotorTargets:
-        """Targets as the motors get them: limited, and corrected by (target · mot256) >> 8."""
+        """Return the targets of the motors: limited, then corrected to (target · mot256) >> 8."""
         left, right = self._words[_MOTORS : _MOTORS + 2]
         if left == right == _FULL:
             return targets
         return MotorTargets(_calibrate(targets.left, left), _calibrate(targets.right, right))
 
     def flash(self) -> str:
-        """Keep the words in force for the next restart; what went wrong, if anything."""
+        """Keep the current words for the next restart; return a message if they cannot be stored, else an empty one."""
         self._flashed = list(self._words)
         if self._file is None:
             return ""
@@ -83,16 +83,16 @@ class Settings:
         return ""
 
     def reload(self) -> None:
-        """As for a new robot: what the file says, or the first values."""
-        self._flashed = _first_values() if self._file is None else _read(self._file)
+        """Return to the settings of a new robot: those of the file, or the initial values."""
+        self._flashed = _initial_values() if self._file is None else _read(self._file)
         self._words = list(self._flashed)
 
     def restart(self) -> None:
-        """What was not flashed is lost."""
+        """Return to the flashed settings."""
         self._words = list(self._flashed)
 
 
-def _first_values() -> list[int]:
+def _initial_values() -> list[int]:
     return [value for _, size, value in PARTS for _ in range(size)]
 
 
@@ -105,7 +105,7 @@ def _read(file: Path) -> list[int]:
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        return _first_values()
+        return _initial_values()
     except NotADirectoryError as error:
         raise SettingsError(
             f"settings {file.parent}: {error.strerror}; expected a folder, or a place for one"

@@ -10,9 +10,9 @@ from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, BLOCK_SAMPLES, SILENCE
 __all__ = ["SoundRecorder"]
 
 _HALF_PERIOD = 8
-"""Samples above and then below the middle: a tone of 488 Hz."""
+"""Samples above and then below the center: a tone of 488 Hz."""
 MAX_BLOCKS = 10 * 60 * 61
-"""Ticks in a record, ten minutes; what comes later is lost."""
+"""Limit of blocks of a recording, ten minutes; later ones are dropped."""
 
 
 class SoundRecorder:
@@ -25,7 +25,7 @@ class SoundRecorder:
 
     @property
     def samples(self) -> bytes:
-        """The samples so far, unsigned 8 bit."""
+        """The samples so far, unsigned 8-bit."""
         return b"".join(_block(intensity) for intensity in self._blocks)
 
     def record_until(self, now_ns: int, intensity: int) -> None:

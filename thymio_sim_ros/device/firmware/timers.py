@@ -1,8 +1,9 @@
 """timer0 and timer1: `timer.period` in ms of simulated time (docs/spec/thymio-robot.md section 3).
 
-Each counts milliseconds, fires when its count equals its period, and counts from 0 again. A changed period starts the
-count again and is noticed when no handler runs. The timers lag behind the clock until the machine is free to hear
-them, so that a period below the simulator's tick loses nothing; what fires while a handler runs is heard once.
+Each timer counts milliseconds, fires when its count equals its period, and starts again from 0. A changed period
+restarts the count; periods are read while no handler runs. The timers lag behind the clock until the machine can handle
+their events, so that periods below the simulator's tick lose no event. A timer that fires several times while a handler
+runs causes one event.
 """
 
 from __future__ import annotations
@@ -12,35 +13,38 @@ from collections.abc import Sequence
 MILLISECOND_NS = 1_000_000
 
 MAX_LAG_MS = 1000
-"""After a longer jump of the clock each timer fires once for all that lies before."""
+"""Longest lag; after a longer jump of the clock each timer fires once for all of the time before."""
 
 
 class Timers:
-    """Invariant: a running timer fires later than what is counted; the timers are never ahead of the clock."""
+    """The timers of one machine.
+
+    Invariants: the next firing of a running timer is later than the counted time, which is never ahead of the clock.
+    """
 
     __slots__ = ("_at_ms", "_clock_ms", "_fires_ms", "_next_ms", "_periods")
 
     def __init__(self, count: int = 2) -> None:
         self._periods = [0] * count
         self._fires_ms = [0] * count
-        """When each fires next, if it runs."""
+        """Time of the next firing of each timer, if it runs."""
         self._next_ms: int | None = None
-        """The earliest of these; None: no timer runs."""
+        """The earliest of these times; None if no timer runs."""
         self._at_ms: int | None = None
         self._clock_ms = 0
 
     @property
     def lag_ms(self) -> int:
-        """Milliseconds that have passed and are not counted yet."""
+        """Milliseconds that have passed but are not counted yet."""
         return 0 if self._at_ms is None else self._clock_ms - self._at_ms
 
     @property
     def are_due(self) -> bool:
-        """Whether one has fired in the time that is not counted yet."""
+        """Whether a timer fires in the time that is not counted yet."""
         return self._next_ms is not None and self._next_ms <= self._clock_ms and self._at_ms is not None
 
     def set_clock(self, now_ns: int) -> tuple[int, ...]:
-        """Show the clock; returns timers that fired before the last look, unheard. Time that goes back: start anew."""
+        """Advance the clock; return the timers that fired before its previous time. A jump back restarts all timers."""
         now_ms = now_ns // MILLISECOND_NS
         if self._at_ms is None or now_ms < self._clock_ms:
             self._at_ms = self._clock_ms = now_ms
@@ -56,7 +60,7 @@ class Timers:
         return tuple(sorted({*missed, *early})) if missed or early else ()
 
     def set_periods(self, periods: Sequence[int]) -> None:
-        """Take over changed periods in ms; one of 0 or less stops its timer."""
+        """Set the periods in ms; 0 or less stops a timer. A changed period restarts its timer."""
         if periods == self._periods:
             return
         for index, period in enumerate(periods):
@@ -65,20 +69,20 @@ class Timers:
         self._find_next()
 
     def next_firing(self) -> tuple[int, ...]:
-        """Count on to the next moment at which timers fire and return them; () when the clock comes first."""
+        """Count up to the next firing and return its timers; count up to the clock and return () if that is earlier."""
         if self._next_ms is None or self._at_ms is None:
             return self._count(self.lag_ms)
         return self._count(min(self._next_ms, self._clock_ms) - self._at_ms)
 
     def reset(self) -> None:
-        """Stop all timers: what is counted from now on begins with the present."""
+        """Stop all timers; they count from the current time of the clock."""
         self._periods = [0] * len(self._periods)
         self._next_ms = None
         if self._at_ms is not None:
             self._at_ms = self._clock_ms
 
     def _count(self, milliseconds: int) -> tuple[int, ...]:
-        """Count on; the timers that fired meanwhile."""
+        """Count this many milliseconds; return the timers that fired."""
         if self._at_ms is None or milliseconds == 0:
             return ()
         at_ms = self._at_ms = self._at_ms + milliseconds

@@ -1,4 +1,7 @@
-"""Sound files as the robot has them: unsigned 8 bit, one channel, 7800 to 8000 Hz, behind 44 bytes (section 9)."""
+"""Sound files of the robot: unsigned 8-bit samples, one channel, 7800 to 8000 Hz, after a header of 44 bytes.
+
+Source: docs/spec/thymio-robot.md section 9.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +12,15 @@ from pathlib import Path
 __all__ = ["HEADER_BYTES", "format_problem", "write"]
 
 HEADER_BYTES = 44
-"""What the robot skips at the beginning of a sound."""
+"""Length of the header, which the robot skips without reading it."""
 RATES_HZ = (7800, 8000)
-"""Rates that sound right on the robot."""
+"""Lowest and highest sample rate that the robot plays at the right pitch."""
 WRITTEN_RATE_HZ = 7812
 _EXPECTED = "expected 8 bit, 1 channel, 7800 to 8000 Hz"
 
 
 def write(path: Path, parts: Iterable[bytes]) -> None:
-    """Store unsigned 8 bit samples, part after part; OSError."""
+    """Write a file with unsigned 8-bit samples, part after part. Raises OSError."""
     with wave.open(str(path), "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(1)
@@ -27,7 +30,7 @@ def write(path: Path, parts: Iterable[bytes]) -> None:
 
 
 def format_problem(path: Path) -> str:
-    """Why a file will not sound as its maker meant it, or nothing: the robot plays the bytes of any file."""
+    """Message if a file has another format, else empty. The robot plays the bytes of any file as samples."""
     try:
         with wave.open(str(path), "rb") as file:
             bits, channels, rate = 8 * file.getsampwidth(), file.getnchannels(), file.getframerate()

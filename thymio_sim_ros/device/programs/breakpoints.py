@@ -1,4 +1,4 @@
-"""Breakpoints and steps by the lines of a program's file.
+"""Breakpoints and steps by lines of the file of a program.
 
 Source: docs/aseba_ros.md, "Run control and breakpoints".
 """
@@ -18,14 +18,14 @@ __all__ = ["Breakpoints", "LineDebugger"]
 
 @dataclass(frozen=True, slots=True)
 class Breakpoints:
-    """Lines in force, in order; what became of wished ones that are not: the next line with code, or None."""
+    """Lines with a breakpoint, in order; `moved` has each requested line without code and the line used, or None."""
 
     lines: tuple[int, ...] = ()
     moved: Mapping[int, int | None] = field(default_factory=dict)
 
 
 class LineDebugger:
-    """A machine seen through the lines of the file; they count from 1."""
+    """Controls a machine by lines of the file, which count from 1."""
 
     def __init__(self, machine: VirtualMachine, program: ThymioProgram) -> None:
         self._machine = machine
@@ -36,18 +36,18 @@ class LineDebugger:
         return Debugger(self._machine, self._program.program)
 
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
-        """Have these breakpoints and no others; a line without code means the next one with code."""
+        """Replace all breakpoints; a line without code is replaced by the next one with code."""
         self._machine.clear_breakpoints()
         found = {line: self._set(line) for line in sorted(set(lines))}
-        in_force = sorted({line for line in found.values() if line is not None})
-        return Breakpoints(tuple(in_force), {line: new for line, new in found.items() if new != line})
+        active = sorted({line for line in found.values() if line is not None})
+        return Breakpoints(tuple(active), {line: new for line, new in found.items() if new != line})
 
     def step_line(self) -> None:
         """Execute up to the next line or the end of the event."""
         self._debugger.step_row()
 
     def leave_breakpoint(self) -> bool:
-        """Where the machine stands at a breakpoint: execute the instruction there; whether it did."""
+        """If the machine is at a breakpoint, execute the instruction there; return whether it was."""
         machine = self._machine
         if not (machine.is_active and machine.is_step_by_step and machine.pc in machine.breakpoints):
             return False

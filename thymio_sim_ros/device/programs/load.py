@@ -1,4 +1,4 @@
-"""How much a program asks of its robot, and whether that is more than can be served."""
+"""Load that a program causes by native calls and events, and whether it exceeds the capacity."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from thymio_sim_ros.device.costs import COSTS
 __all__ = ["Load", "LoadMeter"]
 
 MIN_CUTS = 3
-"""Runs in a period of observation that calls use up, before the program counts as too fast; or two of three, where
-many robots share the machine."""
+"""Runs per period of observation that native calls and events must end before a warning. Two of three runs are enough,
+because a robot has few runs where many robots share the computer."""
 MIN_REPLACED = 10
-"""Commands of the same period that were replaced, before that is said."""
+"""Replaced commands per period before a warning."""
 MAX_NAMED = 3
-"""Natives or events that a warning names."""
+"""Largest number of native functions or events in a warning."""
 
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """A period of observation: calls by native, events by name, and events that were lost as too many waited.
+    """Counts of a period of observation: calls, emitted events, and events lost because the queue was full, by name.
 
-    `cuts`: those of the `runs` that ended because natives and events had used up the budget. `replaced`: commands that
-    were not sent as later ones took their place.
+    `cuts` is the number of `runs` that ended because native calls and events had used up the budget, `replaced` that of
+    commands that were replaced by later ones before they were sent.
     """
 
     cuts: int = 0
@@ -36,7 +36,7 @@ class Load:
 
     @property
     def warning(self) -> str:
-        """What is too fast, what became of it and what to do; empty if all could be served."""
+        """Message for the user with the cause, the effect and what to do; empty if the capacity was not exceeded."""
         parts = []
         if self.cuts >= MIN_CUTS or (self.cuts and self.cuts * 3 >= self.runs * 2):
             demand = Counter({f"emit {name}": count for name, count in self.emitted.items()})
@@ -56,37 +56,37 @@ class Load:
 
 
 class LoadMeter:
-    """Counts calls and events of one device. `charged` never goes back; the rest is taken by `take`."""
+    """Counts calls and events of one device. `pop` clears all counts but `charged`, which never decreases."""
 
     def __init__(self) -> None:
         self.charged = 0
-        """Instructions charged for natives that reach the robot and for events, since the beginning."""
+        """Instructions charged for native calls and events since the start."""
         self._cuts = self._runs = 0
         self._calls: Counter[str] = Counter()
         self._emitted: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
 
     def count_call(self, native: str, words: int) -> None:
-        """A native was called with so many words of arguments together."""
+        """Count a native call; `words` is the total length of its arguments."""
         self._calls[native] += 1
         self.charged += COSTS.of(native).of(words)
 
     def count_event(self, event: str, words: int) -> None:
-        """An event was emitted."""
+        """Count an emitted event with arguments of `words` words."""
         self._emitted[event] += 1
         self.charged += COSTS.emit.of(words)
 
     def count_lost(self, event: str) -> None:
-        """An event could not wait any more."""
+        """Count an event that was dropped because the queue was full."""
         self._lost[event] += 1
 
     def count_run(self, *, is_cut: bool) -> None:
-        """A run ended; `is_cut`: because natives and events had used up its budget."""
+        """Count a run; `is_cut`: native calls and events have used up its budget."""
         self._runs += 1
         self._cuts += is_cut
 
     def pop(self) -> Load:
-        """Return what was counted since the last time."""
+        """Return and clear the counts."""
         load = Load(self._cuts, self._runs, dict(self._calls), dict(self._emitted), dict(self._lost))
         self._cuts = self._runs = 0
         for counter in (self._calls, self._emitted, self._lost):

@@ -1,4 +1,4 @@
-"""From the text that a user hands over to programs for Thymios, or an error with its place in that text."""
+"""Compiles the text of a user to programs for Thymios; errors have a position in that text."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ NO_CONSTANTS: Mapping[str, int] = MappingProxyType({})
 
 
 class ProgramError(ThymioSimError):
-    """A program that is refused: file, line and column from 1 (None where there is no place), message."""
+    """A program that is rejected: file, line and column from 1 (None without a position), message."""
 
     def __init__(self, name: str, line: int | None, column: int | None, message: str) -> None:
         where = f" line {line}, column {column}:" if line is not None else ""
@@ -43,9 +43,10 @@ class ProgramError(ThymioSimError):
 
 @dataclass(frozen=True, slots=True)
 class ThymioProgram:
-    """A compiled program with the definitions it shares with others; `lines` are those of its rows in its file.
+    """A compiled program for one layout, with the events and constants that all programs of its file share.
 
-    `node` is the part of the file that it comes from; that of bare text has no name. `text` is the whole file.
+    `source` is the text of the program, `text` the whole file, and `lines[row]` the line in the file, from 1, of a row
+    of the source. `node` is the part of the file with the program; that of bare text has no name.
     """
 
     name: str
@@ -59,16 +60,16 @@ class ThymioProgram:
     text: str = field(default="", compare=False)
 
     def line_of(self, pc: int) -> int | None:
-        """Line in the file, from 1, of an address of the bytecode."""
+        """Line in the file, from 1, of an address of the bytecode; None if no line belongs to it."""
         row = self.program.row_of(pc)
         return None if row is None else self.lines[row]
 
 
 @dataclass(frozen=True, slots=True)
 class ThymioFile:
-    """The programs of a file, at least one, those of named nodes first; the names of nodes for other devices.
+    """The programs of a file, at least one, those of named nodes first; `others` are names of nodes for other devices.
 
-    `notes` are sentences about nodes that are left out for another reason.
+    `notes` are messages about nodes that are skipped for another reason.
     """
 
     programs: tuple[ThymioProgram, ...]
@@ -77,10 +78,9 @@ class ThymioFile:
 
 
 def load_program(text: str, name: str, layout: str = THYMIO) -> ThymioProgram:
-    """The program of an .aesl file's text or of bare Aseba text; ProgramError for what is wrong with it.
+    """Compile the text of an .aesl file, or bare Aseba text, for one of `layout.LAYOUTS`.
 
-    Of a file with several programs for a Thymio the first is taken, and refused if another one is wrong. It is
-    compiled for one of `layout.LAYOUTS` and runs on no other.
+    Returns the first program of a file with several. Raises ProgramError if a program of the file has an error.
     """
     return load_file(text, name, layout).programs[0]
 
@@ -93,11 +93,11 @@ def load_file(
     constants: Mapping[str, int] = NO_CONSTANTS,
     robots: Collection[str] = (),
 ) -> ThymioFile:
-    """All programs of a text for Thymios or for robots of these names; ProgramError if one of them is wrong.
+    """Compile all programs of a text for Thymios or for robots of these names.
 
-    A node with a name of its own counts as one for a Thymio; if it does not compile while the file has nodes that are
-    named after a robot, it is left out with a note. `constants` take the place of those that the file defines, or are
-    added to them.
+    A node with an unknown name counts as one for a Thymio; if it does not compile while the file has nodes named after
+    a robot, it is skipped with a note. `constants` replace those of the file or are added to them. Raises ProgramError
+    if another program has an error.
     """
     try:
         network = parse(text, constants)
@@ -118,7 +118,7 @@ def load_file(
 
 
 def parse(text: str, constants: Mapping[str, int] = NO_CONSTANTS) -> aesl.Network:
-    """What a file says, or bare text as a node without a name; with the events of VPL. Raises AeslError."""
+    """Parse an .aesl file, or bare text as a node without a name; add the events of VPL. Raises AeslError."""
     text = text.removeprefix("\ufeff").replace("\r\n", "\n")
     network = aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, "")
     network = with_vpl_events(network)
@@ -126,7 +126,7 @@ def parse(text: str, constants: Mapping[str, int] = NO_CONSTANTS) -> aesl.Networ
 
 
 def select(network: aesl.Network, robots: Collection[str] = ()) -> Selection:
-    """The nodes for Thymios or for robots of these names."""
+    """Select the nodes for Thymios or for robots of these names."""
     return select_nodes(network, {"", target().name, *robots})
 
 
@@ -136,12 +136,12 @@ def is_skipped(node: aesl.Node, selection: Selection) -> bool:
 
 
 def other_device_note(node: aesl.Node, messages: Mapping[str, str] = MESSAGES) -> str:
-    """What is added to the error of a node that is named after another kind of device; else nothing."""
+    """Addition to the error of a node that is named after another kind of device; empty for other nodes."""
     return f"; {format_message('note-made-for', (node.name,), messages)}" if is_other_device(node) else ""
 
 
 def memory_use(program: Program, layout: str = THYMIO) -> dict[str, tuple[int, int]]:
-    """Words in use and words there are of variables, bytecode and stack (the deepest event, by estimate)."""
+    """Words in use and in total of variables, bytecode and stack (an estimate for the deepest event)."""
     memory = target(layout)
     return {
         "variables": (program.allocated, memory.variables_size),
@@ -151,7 +151,7 @@ def memory_use(program: Program, layout: str = THYMIO) -> dict[str, tuple[int, i
 
 
 def node_label(node: aesl.Node) -> str:
-    """A node as it is called in sentences."""
+    """Text for a node in messages."""
     return f"node '{node.name}' {node.node_id}" if node.node_id else f"node '{node.name}'"
 
 

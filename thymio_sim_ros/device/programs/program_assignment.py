@@ -1,4 +1,4 @@
-"""Which program of a file is whose: by name, then by number, then in order (docs/aseba_ros.md, "Programs")."""
+"""Assigns the programs of a file to robots: by name, then by number, then in order (docs/aseba_ros.md, "Programs")."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class RobotId:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What a robot gets of a file: a program or None, and what does not fit, for people."""
+    """The program of a robot, or None, and messages for the user about what does not match."""
 
     program: ThymioProgram | None
     notes: tuple[str, ...] = ()
 
 
 def assign_programs(file: ThymioFile, robots: Sequence[RobotId]) -> dict[str, Assignment]:
-    """Robot's name → its share. The only program of a file is for all, unless it names one of them."""
+    """Return the assignment of each robot by name. A single program is for all robots, unless it is named after one."""
     common = [*file.notes, *(f"not for a Thymio, left out: node '{other}'" for other in file.others)]
     names = {robot.name for robot in robots}
     only = file.programs[0]
@@ -39,11 +39,11 @@ def assign_programs(file: ThymioFile, robots: Sequence[RobotId]) -> dict[str, As
         return {robot.name: Assignment(only, tuple(common)) for robot in robots}
     assigned, left = _match(file.programs, robots)
     common += [f"no robot is left for {node_label(program.node)}" for program in left]
-    return {robot.name: _share(robot, assigned.get(robot.name), common) for robot in robots}
+    return {robot.name: _assignment(robot, assigned.get(robot.name), common) for robot in robots}
 
 
 def _is_general(program: ThymioProgram) -> bool:
-    """Whether its node names no device, but at most the kind of robot."""
+    """Whether the node of the program has no name, or that of the kind of robot."""
     return program.node.name in ("", target().name)
 
 
@@ -68,7 +68,7 @@ def _match(
     return assigned, left
 
 
-def _share(robot: RobotId, program: ThymioProgram | None, common: Sequence[str]) -> Assignment:
+def _assignment(robot: RobotId, program: ThymioProgram | None, common: Sequence[str]) -> Assignment:
     if program is None:
         return Assignment(None, (*common, "the file has no program left for this robot: it runs nothing"))
     node = program.node

@@ -1,4 +1,4 @@
-"""What a device tells about its machine."""
+"""Status of the machine of a device."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ from dataclasses import dataclass, field
 RUNNING, PAUSED, STOPPED, FAULT, OFF = "running", "paused", "stopped", "fault", "off"
 
 INIT = "init"
-"""In place of an event: the beginning of the program."""
+"""Name used as event for the initialization of the program."""
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceStatus:
-    """State (`running`, `paused`, `stopped`, `fault`, `off`), the event being handled, its source line from 1, its pc.
+    """State (`running`, `paused`, `stopped`, `fault`, `off`), event being handled, source line from 1, address.
 
-    Between events, event is empty, line and pc None. After a fault they say where it happened, and `fault` why.
+    Between events, `event` is empty, and `line` and `pc` are None. After a fault they are its position, and `fault` is
+    the reason.
     """
 
     state: str
     event: str = ""
     line: int | None = None
     fault: str = ""
-    pc: int | None = field(default=None, compare=False)  # the place is the line
+    pc: int | None = field(default=None, compare=False)  # two statuses with the same line are equal
     faults: Mapping[str, str] = field(default_factory=dict, compare=False)
-    """Language → the sentence of `fault` in it (`aseba_vm.messages.LANGUAGES`)."""
+    """Language → the sentence of `fault` in it (`aseba_vm.languages.LANGUAGES`)."""

@@ -9,13 +9,13 @@ order in which they became ready. Tests in lock-step have no slices, since resul
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from math import inf
 
 from rclpy.node import Node
 
-from thymio_sim_ros.device.firmware.behavior_host import is_internal
+from thymio_sim_ros.device.behavior_host import is_internal
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.network import AsebaNetwork, NetworkEvent
 
@@ -34,15 +34,10 @@ COMPUTER = 0
 class Bus:
     """The Aseba network of one runtime. `reaches_all`: an event emitted on one robot's topics is for all robots."""
 
-    def __init__(
-        self,
-        node: Node,
-        robots: Callable[[], Sequence[DeviceEndpoints]],
-        status_changed: Callable[[DeviceEndpoints], None],
-    ) -> None:
+    def __init__(self, node: Node, robots: Sequence[DeviceEndpoints]) -> None:
+        """`robots`: all robots of the runtime, at any time."""
         self.reaches_all = True
         self._robots = robots
-        self._status_changed = status_changed
         self._ready: dict[DeviceEndpoints, None] = {}
         self._is_running = False
         self._slice_end_s: float | None = inf
@@ -90,7 +85,7 @@ class Bus:
     def forward(self, sender: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
         """Send an event to all other robots: directly in this runtime, by the network topic elsewhere."""
         source = sender.device.node_id
-        for endpoints in self._robots():
+        for endpoints in self._robots:
             if endpoints is not sender and endpoints.device.receives_from(sender.device):
                 self._enqueue(endpoints, event, args, source)
         self._network.send(NetworkEvent(event, source, sender.device.services.network, tuple(args)))
@@ -98,7 +93,7 @@ class Bus:
     def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
         """Send an event from ROS to all robots that declare it, or only to this one; too many values are rejected."""
         robots = (
-            [robot for robot in self._robots() if robot.device.receives_from(endpoints.device)]
+            [robot for robot in self._robots if robot.device.receives_from(endpoints.device)]
             if self.reaches_all
             else [endpoints]
         )
@@ -120,12 +115,8 @@ class Bus:
             if self.reaches_all:
                 self._network.send(NetworkEvent(event, COMPUTER, endpoints.device.services.network, tuple(args)))
 
-    def status_changed(self, endpoints: DeviceEndpoints) -> None:
-        """Report that the status of a robot has changed."""
-        self._status_changed(endpoints)
-
     def _on_network_event(self, event_message: NetworkEvent) -> None:
-        for endpoints in self._robots():
+        for endpoints in self._robots:
             size = _size(endpoints, event_message.event)
             if size is None or endpoints.device.services.network != event_message.radio:
                 continue

@@ -60,10 +60,10 @@ class CheckService:
         except _RequestError as error:
             response.result = SetParametersResult(successful=False, reason=json.dumps(refusal(str(error))))
             return response
-        successful, told = _answer(question)
+        successful, answer = _answer(question)
         if given.get("target"):
-            told = json.dumps(json.loads(told) | {"target": describe_target(self._layout, question.language)})
-        response.result = SetParametersResult(successful=successful, reason=told)
+            answer = json.dumps(json.loads(answer) | {"target": describe_target(self._layout, question.language)})
+        response.result = SetParametersResult(successful=successful, reason=answer)
         return response
 
 
@@ -81,16 +81,16 @@ def _values(parameters: Sequence[ParameterMsg]) -> dict[str, Any]:
             parameter = Parameter.from_parameter_msg(message)
         except ValueError as error:
             kind = message.value.type
-            raise _RequestError(f"{message.name}: a value of unknown type {kind} found") from error
+            raise _RequestError(f"{message.name}: found a value of unknown type {kind}") from error
         if parameter.name not in _TYPES:
-            raise _RequestError(f"parameter '{parameter.name}' found, expected one of {', '.join(_TYPES)}")
+            raise _RequestError(f"found parameter '{parameter.name}', expected one of {', '.join(_TYPES)}")
         is_empty_list = parameter.value is not None and parameter.type_.name.endswith("ARRAY") and not parameter.value
         expected = _TYPES[parameter.name]
         if parameter.type_ not in expected and not (is_empty_list and Parameter.Type.STRING_ARRAY in expected):
-            raise _RequestError(f"{parameter.name}: {parameter.type_.name} found, expected {expected[0].name}")
+            raise _RequestError(f"{parameter.name}: found {parameter.type_.name}, expected {expected[0].name}")
         values[parameter.name] = parameter.value
     if "source" not in values:
-        raise _RequestError("no parameter 'source' found, expected the text of a program")
+        raise _RequestError("found no parameter 'source', expected the text of a program")
     return values
 
 
@@ -102,5 +102,5 @@ def _pairs(name: str, items: Iterable[str]) -> tuple[tuple[str, int], ...]:
         try:
             pairs.append((word.strip(), int(number)))
         except ValueError as error:
-            raise _RequestError(f"{name}: '{item}' found, expected a name and a number, as 'ping 1'") from error
+            raise _RequestError(f"{name}: found '{item}', expected a name and a number, as 'ping 1'") from error
     return tuple(pairs)

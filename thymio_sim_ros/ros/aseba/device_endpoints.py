@@ -9,28 +9,28 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
+from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from std_msgs.msg import Empty, Int16MultiArray
+from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.device.bindings import sensor_names
+from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.device.programs.status import OFF, RUNNING
-from thymio_sim_ros.ros.aseba import driver_input
+from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.event_endpoints import EventEndpoints
 from thymio_sim_ros.ros.aseba.output_endpoints import OutputEndpoints
+from thymio_sim_ros.ros.aseba.sensor_subscriptions import SensorSubscriptions
 from thymio_sim_ros.ros.aseba.status_endpoints import Loaded, StatusEndpoints, describe_position
 from thymio_sim_ros.ros.aseba.variable_endpoints import VariableEndpoints
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name, raw_topic
-from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 
 __all__ = ["DebugOptions", "DeviceEndpoints", "RobotBus"]
@@ -69,9 +69,6 @@ class RobotBus(Protocol):
     def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int], /) -> None:
         """Send an event that was emitted on this robot's topics."""
 
-    def status_changed(self, endpoints: DeviceEndpoints, /) -> None:
-        """Report that the status of this robot has changed."""
-
     def remove(self, robot: DeviceEndpoints, /) -> None:
         """Remove a robot from the schedule."""
 
@@ -86,6 +83,7 @@ class DeviceEndpoints:
         *,
         number: int,
         bus: RobotBus,
+        diagnostics: RuntimeDiagnostics,
         options: DeviceOptions = DEFAULTS,
         debug_options: DebugOptions | None = None,
         has_driver: bool = False,
@@ -98,28 +96,27 @@ class DeviceEndpoints:
         self.share: Assignment | None = None
         self._host = BehaviorHost(self.device)
         self._node = node
-        self._bus = bus
+        self._bus, self._diagnostics = bus, diagnostics
         self._debug_options = debug_options or DebugOptions()
         self._program = self._own = self._host.program
         self._is_closed = False
         self._last_slice_s = 0.0
         self._replaced = 0
         self._overload = ""
-        self._has_driver, self._is_fed = has_driver, is_fed
         self._outputs = OutputEndpoints(node, names, has_driver=has_driver)
         self.warn = ThrottledLog(node)
-        self.status = StatusEndpoints(node, names, number=number)
+        self._status = StatusEndpoints(node, names, number=number)
         self._events = EventEndpoints(node, names, lambda event, args: bus.emit(self, event, args), self.warn)
         self._variables = VariableEndpoints(node, names, self.device, self.run, language=self._debug_options.language)
         self._shutdown = node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
-        self._sensor_subscriptions = self._subscribe_sensors()
+        self._sensors = SensorSubscriptions(node, names, self._on_reading, has_driver=has_driver, is_fed=is_fed)
         controls = {
             "run": self._host.resume,
-            "pause": self.device.pause,
-            "step": self.device.step,
-            "step_line": self.device.step_line,
-            "stop": self.device.stop,
-            "reset": self.device.reset,
+            "pause": self.device.run_control.pause,
+            "step": self.device.run_control.step,
+            "step_line": self.device.run_control.step_line,
+            "stop": self.device.run_control.stop,
+            "reset": self.device.run_control.reset,
         }
         self._services = [
             node.create_service(Trigger, names.topic(f"aseba/{word}"), self._controller(word, act))
@@ -129,15 +126,16 @@ class DeviceEndpoints:
     @property
     def is_fed(self) -> bool:
         """Whether the owner feeds readings with `feed`; otherwise subscriptions of this robot do."""
-        return self._is_fed
+        return self._sensors.is_fed
 
     @is_fed.setter
     def is_fed(self, is_fed: bool) -> None:
-        if is_fed != self._is_fed:
-            for subscription in self._sensor_subscriptions:
-                self._node.destroy_subscription(subscription)
-            self._is_fed = is_fed
-            self._sensor_subscriptions = self._subscribe_sensors()
+        self._sensors.is_fed = is_fed
+
+    @property
+    def status_message(self) -> DiagnosticStatus:
+        """The status that was published last."""
+        return self._status.message
 
     @property
     def is_busy(self) -> bool:
@@ -219,7 +217,7 @@ class DeviceEndpoints:
         events = self._host.pop_events()
         commands = self.device.pop_commands()
         self._replaced += self._outputs.send_all(commands, latest=is_cut or len(commands) > MAX_COMMANDS)
-        for name in self.device.pop_local_events():
+        for name in self.device.local_events.pop():
             self._events.publish(name, ())
         for event in events:
             self._events.publish(event.name, event.args)
@@ -233,7 +231,7 @@ class DeviceEndpoints:
 
     def observe_load(self) -> None:
         """Report whether the program exceeded the capacity since the last call."""
-        load = replace(self.device.pop_load(), replaced=self._replaced)
+        load = replace(self.device.load_meter.pop(), replaced=self._replaced)
         self._replaced = 0
         overload = load.warning if self.device.status.state == RUNNING else ""
         if overload and not self._overload:
@@ -242,8 +240,8 @@ class DeviceEndpoints:
         self._publish_status()
 
     def _publish_status(self) -> None:
-        if self.status.publish_if_changed(self.device.status, self._overload):
-            self._bus.status_changed(self)
+        if self._status.publish_if_changed(self.device.status, self._overload):
+            self._diagnostics.publish_changed(self)
 
     def publish_variables(self) -> None:
         """Publish variables that changed."""
@@ -258,18 +256,17 @@ class DeviceEndpoints:
         if not self._is_closed:
             self._is_closed = True
             self._bus.remove(self)
-            self.device.stop()
+            self.device.run_control.stop()
             self._outputs.send_all(self.device.pop_commands(), latest=True)
 
     def close(self) -> None:
         """Stop the robot and destroy its topics and services."""
         self.stop()
-        for endpoints in (self._events, self._variables, self.status, self._outputs):
+        for endpoints in (self._events, self._variables, self._status, self._outputs, self._sensors):
             endpoints.close()
         for service in self._services:
             self._node.destroy_service(service)
-        for subscription in (self._shutdown, *self._sensor_subscriptions):
-            self._node.destroy_subscription(subscription)
+        self._node.destroy_subscription(self._shutdown)
 
     def _set_program(self, *, with_events: bool = True) -> None:
         """Set up topics and status for a new or restarted program, or for new debug options."""
@@ -279,36 +276,21 @@ class DeviceEndpoints:
         local_events = local if ALL in debug_options.local_events else local & set(debug_options.local_events)
         self._outputs.start_program()
         if with_events:
-            self.device.watch_events(local_events)
+            self.device.local_events.watch(local_events)
             self._events.open(program, sorted(local_events))
         self._program = program
         self._variables.language = debug_options.language
         self._variables.set_program(debug_options.watch)
-        points = self.device.set_breakpoints(debug_options.breakpoints if is_own else ())
+        points = self.device.run_control.set_breakpoints(debug_options.breakpoints if is_own else ())
         notes = self.share.notes if is_own and self.share is not None else ()
-        self.status.set_program(Loaded(program, self._events.words, notes, points), debug_options.language)
-
-    def _subscribe_sensors(self) -> list[Any]:
-        if self._has_driver:
-            return driver_input.subscribe(self._node, self.names, self._on_reading)
-        if self._is_fed:
-            return []
-        return [
-            self._node.create_subscription(
-                Int16MultiArray, self.names.topic(raw_topic(sensor)), self._feeder(sensor), qos.SENSOR, raw=True
-            )
-            for sensor in sensor_names()
-        ]
-
-    def _feeder(self, sensor: str) -> Callable[[bytes], None]:
-        return lambda message: self._on_reading(sensor, raw_publisher.words_of(message))
+        self._status.set_program(Loaded(program, self._events.words, notes, points), debug_options.language)
 
     def _on_reading(self, sensor: str, words: Sequence[int]) -> None:
         self.feed(sensor, words)
         self.run()
 
     def _on_shutdown(self, _message: Empty) -> None:
-        self.device.switch_off()
+        self.device.run_control.switch_off()
         self.run()
 
     def _controller(

@@ -8,7 +8,7 @@ from typing import Any
 from rclpy.node import Node
 from std_msgs.msg import Int16MultiArray
 
-from thymio_sim_ros.device.firmware.behavior_host import is_internal
+from thymio_sim_ros.device.behavior_host import is_internal
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name, topic_word

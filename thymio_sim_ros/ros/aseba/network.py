@@ -30,10 +30,11 @@ class NetworkEvent:
 
 
 class AsebaNetwork:
-    """Exchanges events with other runtimes; `hear` is called with each received event."""
+    """Exchanges events with other runtimes."""
 
-    def __init__(self, node: Node, hear: Callable[[NetworkEvent], None]) -> None:
-        self._set_demand, self._warn = hear, ThrottledLog(node)
+    def __init__(self, node: Node, on_event: Callable[[NetworkEvent], None]) -> None:
+        """`on_event` is called with each received event."""
+        self._on_event, self._warn = on_event, ThrottledLog(node)
         self._own = uuid.uuid4().hex
         self._publisher = node.create_publisher(Int16MultiArray, TOPIC, qos.EVENTS)
         node.create_subscription(Int16MultiArray, TOPIC, self._on_message, qos.EVENTS)
@@ -57,4 +58,4 @@ class AsebaNetwork:
             self._warn(self._publisher.topic_name, f"rejected: {found}, expected 2 and 3 or more")
         elif labels[1] != self._own:
             source, channel, network, *args = message.data
-            self._set_demand(NetworkEvent(labels[0], source, (channel, network), tuple(args)))
+            self._on_event(NetworkEvent(labels[0], source, (channel, network), tuple(args)))

@@ -42,7 +42,7 @@ class _SentCommand:
     """A sent message, the number of current subscribers that may have received it, and whether to send it again."""
 
     message: Any
-    listeners: int
+    receivers: int
     is_due: bool = False
 
 
@@ -85,7 +85,7 @@ class OutputEndpoints:
         publisher.publisher.publish(sent.message)
         key = (topic, _part(command))
         self._sent.pop(key, None)
-        if publisher.is_retained or not sent.listeners:
+        if publisher.is_retained or not sent.receivers:
             self._sent[key] = sent
 
     def send_all(self, commands: Sequence[Command], *, latest: bool = False) -> int:
@@ -114,14 +114,14 @@ class OutputEndpoints:
         is_fresh = time.monotonic() < self._fresh_until_s
         for (topic, _), sent in self._sent.items():
             count = self._counts[topic]
-            is_unheard = not sent.listeners and count > 0
-            sent.is_due |= is_unheard or (is_fresh and count > before[topic])
-            sent.listeners = min(sent.listeners, count)
+            is_unreceived = not sent.receivers and count > 0
+            sent.is_due |= is_unreceived or (is_fresh and count > before[topic])
+            sent.receivers = min(sent.receivers, count)
         if self._counts == before:
             for (topic, part), sent in [(key, sent) for key, sent in self._sent.items() if sent.is_due]:
                 publisher = self._publishers[topic]
                 publisher.publisher.publish(sent.message)
-                sent.listeners, sent.is_due = self._counts[topic], False
+                sent.receivers, sent.is_due = self._counts[topic], False
                 if not publisher.is_retained:
                     del self._sent[topic, part]
 

@@ -161,7 +161,7 @@ def check_value(name: str, value: Any) -> None:
     elif match["plain"] == "watch":
         _check_strings(name, value)
     elif not isinstance(value, str):
-        raise WrongValueError(f"{name}: {value!r} found, expected text")
+        raise WrongValueError(f"{name}: found {value!r}, expected text")
 
 
 def is_free(name: str) -> bool:
@@ -195,32 +195,32 @@ def _check_constant(name: str, constant: str, value: Any) -> None:
     if not is_name(constant):
         raise WrongValueError(f"{name}: a program cannot use the name '{constant}'")
     if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value not in INT16):
-        raise WrongValueError(f"{name}: {value!r} found, expected a whole number from -32768 to 32767")
+        raise WrongValueError(f"{name}: found {value!r}, expected a whole number from -32768 to 32767")
 
 
 def _check_namespace(name: str, robot: str) -> None:
     try:
         validate_namespace(f"/{robot}")
     except InvalidNamespaceException as error:
-        raise WrongValueError(f"{name}: {robot!r} found, expected a namespace such as 'anna', or ''") from error
+        raise WrongValueError(f"{name}: found {robot!r}, expected a namespace such as 'anna', or ''") from error
 
 
 def _check_lines(name: str, value: Any) -> None:
     lines = _list(name, value, "lines")
     if any(isinstance(line, bool) or not isinstance(line, int) or line < 1 for line in lines):
-        raise WrongValueError(f"{name}: {lines} found, expected lines from 1 on")
+        raise WrongValueError(f"{name}: found {lines}, expected lines from 1 on")
     if len(lines) > MAX_BREAKPOINTS:
-        raise WrongValueError(f"{name}: {len(lines)} breakpoints found, expected at most {MAX_BREAKPOINTS}")
+        raise WrongValueError(f"{name}: found {len(lines)} breakpoints, expected at most {MAX_BREAKPOINTS}")
 
 
 def _check_strings(name: str, value: Any) -> None:
     names = _list(name, value, "names")
     if any(not isinstance(item, str) for item in names):
-        raise WrongValueError(f"{name}: {names} found, expected a list of names")
+        raise WrongValueError(f"{name}: found {names}, expected a list of names")
 
 
 def _list(name: str, value: Any, of: str) -> list[Any]:
     """Return the items of a list parameter; one that was never set is empty."""
     if isinstance(value, str | bytes | int | float):  # a bool is an int
-        raise WrongValueError(f"{name}: {value!r} found, expected a list of {of}")
+        raise WrongValueError(f"{name}: found {value!r}, expected a list of {of}")
     return list(value or ())

@@ -50,9 +50,9 @@ class StatusEndpoints:
         self._last = None
         self._constant = _constant(loaded)
         self._program = loaded.program.name
-        told = json.dumps(language_service.describe_program(loaded.program, loaded.topics))
+        described = json.dumps(language_service.describe_program(loaded.program, loaded.topics))
         fixed = _target_json(loaded.program.layout, spoken)
-        self._target.publish(String(data=f'{fixed[:-1]}, "program": {told}}}'))
+        self._target.publish(String(data=f'{fixed[:-1]}, "program": {described}}}'))
 
     def publish_if_changed(self, status: DeviceStatus, overload: str = "") -> bool:
         """Publish the status if it has changed, and return whether it has. `overload`: a warning text."""
@@ -101,7 +101,7 @@ def _constant(loaded: Loaded) -> list[KeyValue]:
     """Return the values that do not change while a program runs."""
     program, points = loaded.program, loaded.breakpoints
     warnings = [
-        {key: doubt[key] for key in ("line", "column", "message")} for doubt in language_service.doubts(program)
+        {key: warning[key] for key in ("line", "column", "message")} for warning in language_service.doubts(program)
     ]
     warnings += [{"line": None, "column": None, "message": note} for note in loaded.notes]
     values = {

@@ -1,9 +1,10 @@
-"""What Fast DDS is told where one of our nodes has a process to itself.
+"""The Fast DDS profile of nodes that run alone in a process.
 
-Every endpoint is compared with all others of its process, and room for a hundred messages is set aside for each: a
-hundred robots took 19 s of CPU and 770 MB. `alone.xml` says that endpoints of this process never meet each other, which
-is true of a node that listens to nothing of its own, and that room grows when it is needed: 3.4 s and 450 MB (measured,
-docs/performance.md). Other DDS implementations do not read it, and a profile of the user's goes first.
+By default Fast DDS compares every endpoint with all others of its process and allocates memory for a hundred messages
+of each: a hundred robots took 19 s of CPU time and 770 MB. With `alone.xml` the endpoints of a process do not match
+each other, which is correct for a node that does not subscribe to its own topics, and memory is allocated on demand:
+3.4 s and 450 MB (measured, docs/performance.md). Other DDS implementations do not read the file, and a profile of the
+user has priority.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ __all__ = ["PROFILE", "VARIABLE", "alone"]
 PROFILE = Path(__file__).with_name("alone.xml")
 
 VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
-"""Where Fast DDS 2 looks for profiles, once, when the process makes its first participant."""
+"""Variable with the path of the profile; Fast DDS 2 reads it when the process creates its first participant."""
 
 _OTHERS = ("FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML")
-"""Users who set these have their own profiles."""
+"""Environment variables of users with their own profiles."""
 
 _USERS_FILE = "DEFAULT_FASTRTPS_PROFILES.xml"
-"""In the working folder it is read without being named."""
+"""Fast DDS reads this file in the working folder without being asked to."""
 
 
 @contextmanager
 def alone(environment: MutableMapping[str, str] = os.environ) -> Iterator[None]:
-    """Participants that are made meanwhile have our profile, unless the user has one."""
+    """Use the profile for participants that are created inside the block, unless the user has one."""
     if any(name in environment for name in (VARIABLE, *_OTHERS)) or Path(_USERS_FILE).exists():
         yield
         return

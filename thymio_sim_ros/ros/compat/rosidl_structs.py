@@ -1,7 +1,7 @@
-"""C structures of rosidl 4.6 and its Fast DDS type support 3.6 (ROS 2 Jazzy), as ctypes declares them.
+"""C structures of rosidl 4.6 and its Fast DDS type support 3.6 (ROS 2 Jazzy), declared with ctypes.
 
-Facts of the installed headers: rosidl_runtime_c, rosidl_typesupport_fastrtps_cpp, rosidl_typesupport_introspection_c.
-`typesupport` fills them; `KNOWN` says for which releases they hold.
+They follow the headers of rosidl_runtime_c, rosidl_typesupport_fastrtps_cpp and rosidl_typesupport_introspection_c in
+the releases `KNOWN`; another order or size of a field would crash the process. `typesupport` fills them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class String(ctypes.Structure):
 
 
 class Sequence(ctypes.Structure):
-    """Any rosidl sequence: elements, count, room."""
+    """Any rosidl sequence: address of the elements, their number, allocated number."""
 
     _fields_ = (("data", ctypes.c_void_p), ("size", ctypes.c_size_t), ("capacity", ctypes.c_size_t))
 
@@ -75,7 +75,7 @@ class TypeHash(ctypes.Structure):
 
 
 class Callbacks(ctypes.Structure):
-    """message_type_support_callbacks_t of rosidl_typesupport_fastrtps_cpp; the C flavor shares it."""
+    """message_type_support_callbacks_t of rosidl_typesupport_fastrtps_cpp; also used by the C type support."""
 
     _fields_ = (
         ("message_namespace", ctypes.c_char_p),

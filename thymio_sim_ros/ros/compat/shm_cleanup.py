@@ -4,7 +4,7 @@ rcl's tracing library, LTTng, creates two files when it is first loaded on a mac
 that created them removes them, unless another process uses them by then; LTTng creates them again when needed.
 
 Fast DDS creates one file for each port on which a participant listens. A process that is killed while doing so leaves
-an incomplete file, and every later participant on this port waits for it for ever (seen with 2.14).
+an incomplete file, for which every later participant on this port waits forever (seen with 2.14).
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ SHARED_MEMORY = Path("/dev/shm")
 PATTERN = "lttng-ust-wait-*"
 PORTS = "fastrtps_port*"
 INCOMPLETE = {b"", bytes(4), b"\x01\x00\x00\x00"}
-"""How a segment of Boost.Interprocess begins until it is initialized: the first word counts 0, 1, then 2."""
-MAKING_S = 10.0
-"""Making a port takes microseconds."""
+"""First word of a Boost.Interprocess segment that is not initialized: 0, then 1; 2 when it is."""
+ABANDONED_S = 10.0
+"""Age above which an incomplete file is abandoned; creating a port takes microseconds."""
 
 
 def present(folder: Path = SHARED_MEMORY) -> frozenset[Path]:
-    """The files that are there now."""
+    """The files of LTTng that exist now."""
     return frozenset(folder.glob(PATTERN))
 
 
 def remove_new(before: frozenset[Path], folder: Path = SHARED_MEMORY) -> None:
-    """Remove those that were not there before and that no other process has mapped."""
+    """Remove the files of LTTng that are not in `before` and that no other process has mapped."""
     new = present(folder) - before
     if not new:
         return
@@ -42,21 +42,22 @@ def remove_new(before: frozenset[Path], folder: Path = SHARED_MEMORY) -> None:
 
 
 def remove_incomplete_ports(folder: Path = SHARED_MEMORY) -> list[Path]:
-    """Remove the ports that nobody will ever finish; which they were."""
+    """Remove abandoned, incomplete files of ports; return their paths."""
     removed = []
     for path in folder.glob(PORTS):
-        with contextlib.suppress(OSError):  # it has gone meanwhile, or belongs to somebody else
-            if path.name.endswith("_el") or time.time() - path.stat().st_mtime < MAKING_S:
+        with contextlib.suppress(OSError):  # removed meanwhile, or owned by another user
+            if path.name.endswith("_el") or time.time() - path.stat().st_mtime < ABANDONED_S:
                 continue
             with path.open("rb") as file:
-                is_half_made = file.read(4) in INCOMPLETE
-            if is_half_made:
+                is_incomplete = file.read(4) in INCOMPLETE
+            if is_incomplete:
                 path.unlink()
                 removed.append(path)
     return removed
 
 
 def _mapped_by_others() -> set[str]:
+    """Paths of all files that other processes have mapped, as far as this user may see them."""
     return {line.split(maxsplit=5)[5].strip() for text in _maps_of_others() for line in text if line.count("/") > 0}
 
 
@@ -64,5 +65,5 @@ def _maps_of_others() -> Iterable[list[str]]:
     mine = str(os.getpid())
     for maps in Path("/proc").glob("[0-9]*/maps"):
         if maps.parent.name != mine:
-            with contextlib.suppress(OSError):  # it has ended, or belongs to somebody else
+            with contextlib.suppress(OSError):  # the process has ended, or belongs to another user
                 yield maps.read_text(errors="replace").splitlines()

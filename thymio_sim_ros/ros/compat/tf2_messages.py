@@ -1,8 +1,8 @@
-"""Transforms as serialized tf2_msgs/msg/TFMessage, also where tf2_msgs is not installed (the ROS wheels lack it).
+"""Transforms as serialized tf2_msgs/msg/TFMessage, also if tf2_msgs is not installed (the ROS wheels lack it).
 
-`TFMessage` is the class to give to `create_publisher` and, with `raw=True`, to `create_subscription`: the real one
-where `import tf2_msgs` works, else one made by `typesupport` under the same name and hash. Both carry `encode`d bytes.
-Where neither works `available()` is False and the reason has been logged once; /tf is then left out.
+`TFMessage` is the class for `create_publisher` and, with `raw=True`, for `create_subscription`: that of tf2_msgs if it
+is installed, otherwise a replacement of the same name and hash, built by `typesupport`. Messages are bytes of `encode`.
+If neither works, `available()` is False and logs the reason once; /tf is then left out.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _HEADER = struct.Struct("<4sI")  # encapsulation, number of transforms
 
 
 class Transform(NamedTuple):
-    """Pose of frame `child` in `frame` at `stamp_ns`: meters and a unit quaternion x, y, z, w."""
+    """Pose of frame `child` in `frame` at `stamp_ns`: translation in m and a unit quaternion x, y, z, w."""
 
     stamp_ns: int
     frame: str
@@ -53,18 +53,21 @@ class Transform(NamedTuple):
 
 
 class TransformDataError(ThymioSimError, ValueError):
-    """Bytes that are no TFMessage; the text says at which offset."""
+    """Bytes are not a TFMessage; the text has the offset."""
 
 
 class _Metaclass(type):
-    """What rclpy looks for in a message class: type support, loaded on first use, and four non-None conversions."""
+    """The attributes that rclpy expects of a message class: type support, loaded on first use, and four conversions.
+
+    rclpy only checks that the conversions are not None; it would call them for messages that are not serialized.
+    """
 
     _TYPE_SUPPORT: Any = None
     _CREATE_ROS_MESSAGE = _CONVERT_FROM_PY = _CONVERT_TO_PY = _DESTROY_ROS_MESSAGE = "serialized messages only"
 
     @classmethod
     def __import_type_support__(cls) -> None:
-        """Build the type support; raises TypeSupportError where it cannot be built."""
+        """Build the type support. Raises TypeSupportError if the installed ROS is not supported."""
         from geometry_msgs.msg import TransformStamped
         from rclpy.type_support import check_for_type_support
         from rclpy.utilities import get_rmw_implementation_identifier
@@ -74,8 +77,8 @@ class _Metaclass(type):
         cls._TYPE_SUPPORT = typesupport.build(_DESCRIPTION, TransformStamped)
 
 
-class _SerialisedTFMessage(metaclass=_Metaclass):
-    """Stands for tf2_msgs.msg.TFMessage in raw publishers and subscriptions; has no instances."""
+class _SerializedTFMessage(metaclass=_Metaclass):
+    """Replaces tf2_msgs.msg.TFMessage in raw publishers and subscriptions; has no instances."""
 
     def __new__(cls) -> NoReturn:
         raise TypeError("publish encode(transforms) instead: tf2_msgs is not installed")
@@ -87,12 +90,12 @@ else:
     try:
         from tf2_msgs.msg import TFMessage
     except ImportError:
-        TFMessage = _SerialisedTFMessage
+        TFMessage = _SerializedTFMessage
 
 
 @functools.cache
 def available() -> bool:
-    """Whether TFMessage can be published here; logs one warning with the reason when it cannot."""
+    """Whether TFMessage can be published and subscribed to; logs the reason once if not."""
     try:
         from rclpy.type_support import check_for_type_support
 
@@ -104,9 +107,13 @@ def available() -> bool:
 
 
 def encode(transforms: Sequence[Transform]) -> bytes:
-    """CDR of a TFMessage, little-endian. Stamps from 0 to 2**31 s."""
+    """Serialize a TFMessage as little-endian CDR. Stamps must be in 0…2³¹ s.
+
+    Layout: 4 bytes of encapsulation, the number of transforms as uint32, then the transforms. CDR aligns each item to
+    its size, counted from the end of the encapsulation, therefore the layout of a transform depends on its offset.
+    """
     parts = [_HEADER.pack(_LITTLE_ENDIAN_CDR, len(transforms))]
-    offset = 4  # CDR aligns from behind the encapsulation
+    offset = 4
     for stamp_ns, frame, child, translation, rotation in transforms:
         layout, *named = _named(offset % 8, frame, child)
         parts.append(layout.pack(*divmod(stamp_ns, _SECOND_NS), *named, *translation, *rotation))
@@ -116,37 +123,43 @@ def encode(transforms: Sequence[Transform]) -> bytes:
 
 @functools.lru_cache(maxsize=8192)
 def _named(alignment: int, frame: str, child: str) -> tuple[struct.Struct, int, bytes, int, bytes]:
-    """The layout of a transform between these frames, and their names as it packs them."""
+    """The layout of a transform between these frames, and the sizes and bytes of their names."""
     frame_bytes, child_bytes = frame.encode(), child.encode()
     frame_size, child_size = len(frame_bytes) + 1, len(child_bytes) + 1
     return _layout(alignment, frame_size, child_size), frame_size, frame_bytes, child_size, child_bytes
 
 
 def decode(data: bytes) -> tuple[Transform, ...]:
-    """Transforms of a serialized TFMessage, little-endian as everybody sends it; raises TransformDataError."""
+    """Deserialize a TFMessage, little-endian as all known implementations send it. Raises TransformDataError."""
     try:
         encapsulation, count = _HEADER.unpack_from(data)
         if encapsulation[:2] != _LITTLE_ENDIAN_CDR[:2]:
-            raise TransformDataError(f"offset 0: encapsulation {encapsulation.hex()} is not little-endian CDR")
+            raise TransformDataError(f"offset 0: found encapsulation {encapsulation.hex()}, expected little-endian CDR")
         transforms = []
         start = _HEADER.size
         for _ in range(count):
             transform, start = _decode_one(data, start)
             transforms.append(transform)
     except (struct.error, UnicodeDecodeError) as error:
-        raise TransformDataError(f"cut short or damaged after {len(data)} bytes: {error}") from error
+        raise TransformDataError(f"too short or damaged, {len(data)} bytes: {error}") from error
     return tuple(transforms)
 
 
 def _decode_one(data: bytes, start: int) -> tuple[Transform, int]:
-    """The transform at `start` and where the next one begins; two looks, as each string's length moves the rest."""
+    """Decode the transform at `start`; return it and the start of the next one.
+
+    The sizes of both strings are read first, because they determine the layout of everything after them. Raises
+    TransformDataError or struct.error.
+    """
     aligned = start + -(start - 4) % 4
     (frame_size,) = struct.unpack_from("<8xI", data, aligned)
     child_at = aligned + 12 + frame_size
     child_at += -(child_at - 4) % 4
     (child_size,) = struct.unpack_from("<I", data, child_at)
     if not frame_size or not child_size or child_at + 4 + child_size > len(data):
-        raise TransformDataError(f"offset {start}: strings of {frame_size} and {child_size} bytes do not fit")
+        raise TransformDataError(
+            f"offset {start}: found strings of {frame_size} and {child_size} bytes, which do not fit"
+        )
     layout = _layout((start - 4) % 8, frame_size, child_size)
     sec, nanosec, _, frame, _, child, *numbers = layout.unpack_from(data, start)
     translation = (numbers[0], numbers[1], numbers[2])
@@ -157,9 +170,10 @@ def _decode_one(data: bytes, start: int) -> tuple[Transform, int]:
 
 @functools.lru_cache(maxsize=1024)
 def _layout(alignment: int, frame_size: int, child_size: int) -> struct.Struct:
-    """One TransformStamped that begins `alignment` bytes behind a multiple of eight; sizes count the final NUL.
+    """The layout of a TransformStamped that begins `alignment` bytes after a multiple of eight; sizes include the NUL.
 
-    sec, nanosec, frame, child, three and four doubles, each aligned to its size; `struct` fills gaps and NULs.
+    Items: sec, nanosec, frame, child, three doubles of the translation and four of the rotation, each aligned to its
+    size. `struct` fills gaps and final NULs with zeros.
     """
     text = "<"
     size = alignment

@@ -1,13 +1,14 @@
-"""A ROS message type that nobody compiled: `T[] name`, built from the compiled type support of `T`.
+"""Type support at run time for a ROS message type `T[] name`, from the compiled type support of `T`.
 
-rmw_fastrtps asks a type for four things: Fast DDS callbacks (for raw traffic only the type's name in them matters), an
-introspection table from which it makes the DDS type object, the type hash, and the type's description with its sources.
-For a message whose only field is an unbounded sequence of an installed type all four follow from that type, so ctypes
-structures can stand in for the generated library (docs/spec/ros-packaging.md section 1.3). Such a type carries
-serialized messages only: `publisher.publish(bytes)` and subscriptions with `raw=True`.
+rmw_fastrtps needs four things of a type: Fast DDS callbacks (for serialized messages it only uses the name in them), an
+introspection table, from which it creates the DDS type object, the type hash, and the description of the type with its
+sources. For a message whose only field is an unbounded sequence of an installed type, all four follow from that type.
+ctypes structures can therefore replace the generated library (docs/spec/ros-packaging.md section 1.3). Such a type only
+supports serialized messages: `publisher.publish(bytes)` and subscriptions with `raw=True`.
 
-Nobody tells us when the middleware stops using a structure, therefore everything built here lives as long as the
-process. Alternative not taken: building tf2_msgs with the user's compiler, a minute and an ABI per Python version.
+The middleware does not report when it stops using a structure; therefore everything that is built here is kept until
+the process ends. The alternative, compiling tf2_msgs on the user's computer, would take a minute and one ABI for each
+Python version.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ _KNOWN_RMW = "rmw_fastrtps_cpp"
 
 
 class TypeSupportError(ThymioSimError, RuntimeError):
-    """The installed ROS is not one whose structures this module knows; the text says what differs."""
+    """The structures of the installed ROS are not known; the text says what differs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +51,7 @@ class SequenceType:
 
     @property
     def full_name(self) -> str:
-        """Name as the graph shows it, `package/msg/Name`."""
+        """Name in the ROS graph, `package/msg/Name`."""
         return f"{self.package}/msg/{self.name}"
 
     @property
@@ -60,7 +61,7 @@ class SequenceType:
         return f"{package}/{element}[] {self.field}\n"
 
 
-# Prototypes of our own: `ctypes.pythonapi` is shared by everybody in the process, its argtypes are not ours to set.
+# Own prototypes: `ctypes.pythonapi` is shared with other modules, so its argtypes must not be changed.
 _capsule_new = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p)(
     ("PyCapsule_New", ctypes.pythonapi)
 )
@@ -72,7 +73,7 @@ _keep_for_ever = ctypes.PYFUNCTYPE(None, ctypes.py_object)(("Py_IncRef", ctypes.
 
 
 def release_of(package: str) -> tuple[int, int] | None:
-    """Major and minor version of an installed ROS package by its package.xml, None when there is none."""
+    """Major and minor version of an installed ROS package from its package.xml; None if it is not installed."""
     prefixes = [*filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)), sys.prefix]
     for prefix in prefixes:
         manifest = Path(prefix, "share", package, "package.xml")
@@ -85,25 +86,28 @@ def release_of(package: str) -> tuple[int, int] | None:
 def check_layouts(rmw: str) -> None:
     """Raise TypeSupportError unless the running middleware `rmw` and the installed rosidl are the known ones."""
     if rmw != _KNOWN_RMW:
-        raise TypeSupportError(f"the middleware is {rmw}, known is {_KNOWN_RMW}")
+        raise TypeSupportError(f"found middleware {rmw}, expected {_KNOWN_RMW}")
     for package, known in rosidl_structs.KNOWN.items():
         found = release_of(package)
         if found != known:
             text = "none" if found is None else "{}.{}".format(*found)
-            raise TypeSupportError(f"{package} is {text}, known is {'{}.{}'.format(*known)}")
+            raise TypeSupportError(f"{package}: found release {text}, expected {'{}.{}'.format(*known)}")
 
 
 def type_hash_of(message_type: type) -> str:
-    """Type hash of a message class that has its type support loaded, in its textual form."""
+    """Type hash of a message class as text. Raises TypeSupportError if its type support is not loaded."""
     support = _support_of(message_type)
     found = rosidl_structs.TypeHash.from_address(support.get_type_hash(ctypes.addressof(support)))
     return f"RIHS{found.version:02d}_{bytes(found.value).hex()}"
 
 
 def build(message: SequenceType, element_type: type) -> Any:
-    """Capsule with the type support of `message`; `element_type` is the compiled class of its elements.
+    """Return a capsule with the type support of `message`; `element_type` is the compiled class of its elements.
 
-    The caller has called `check_layouts`. Raises TypeSupportError when the element's type support lacks a part.
+    `check_layouts` must have been called. Raises TypeSupportError if the type support of the element lacks a part.
+
+    The result has the structure of generated code: a top handle whose `dispatch` function returns the handle of the
+    requested implementation (Fast DDS or introspection) by its identifier.
     """
     element = _support_of(element_type)
     keep: list[Any] = []
@@ -115,7 +119,7 @@ def build(message: SequenceType, element_type: type) -> Any:
     type_hash = _hash(message)
     description, sources = _description(message, element, keep), _sources(message, element, keep)
     getters = [_getter(part, keep) for part in (type_hash, description, sources)]
-    # Only called while a publisher or subscription is being created, in the thread that creates it.
+    # Called only during the creation of a publisher or subscription, in the thread that creates it.
     dispatch = rosidl_structs.Dispatch(lambda _handle, identifier: addresses.get(identifier))
     for handle in handles.values():
         handle.dispatch = dispatch
@@ -136,7 +140,7 @@ def _support_of(message_type: type) -> rosidl_structs.TypeSupport:
 def _part(element: rosidl_structs.TypeSupport, identifier: bytes) -> rosidl_structs.TypeSupport:
     address = element.dispatch(ctypes.addressof(element), identifier)
     if not address:
-        raise TypeSupportError(f"the element type has no {identifier.decode()}")
+        raise TypeSupportError(f"the type of the elements has no {identifier.decode()}")
     return rosidl_structs.TypeSupport.from_address(address)
 
 
@@ -153,7 +157,7 @@ def _getter(part: ctypes.Structure, keep: list[Any]) -> Any:
 
 
 def _callbacks(message: SequenceType, element: rosidl_structs.TypeSupport) -> rosidl_structs.Callbacks:
-    """The element's callbacks under our name: its largest size is «unbounded», as ours is."""
+    """A copy of the element's callbacks under the name of the message; both types are unbounded in size."""
     data = _part(element, _FASTRTPS).data
     callbacks = rosidl_structs.Callbacks.from_buffer_copy(
         ctypes.string_at(data, ctypes.sizeof(rosidl_structs.Callbacks))
@@ -189,7 +193,7 @@ def _hash(message: SequenceType) -> rosidl_structs.TypeHash:
 def _description(
     message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]
 ) -> rosidl_structs.TypeDescription:
-    """Ours first, then every type it leads to in name order, as rosidl writes them."""
+    """The description of the message, then all types that it refers to in the order of their names, as rosidl does."""
     address = element.get_type_description(ctypes.addressof(element))
     nested = rosidl_structs.TypeDescription.from_address(address)
     field = rosidl_structs.Field(

@@ -1,8 +1,12 @@
-"""How much work the bytes of a message make: a long one must not consist of very many small parts.
+"""Limits the cost of deserialization: a long message must not consist of very many small parts.
 
-rclpy holds the interpreter while it makes Python objects of a message: 4 MB of markers take 1.3 s, 4 MB of numbers
-1 ms. So a long message of a type that holds sequences of messages is walked through first, without making anything of
-it.
+rclpy holds the interpreter lock while it creates the Python objects of a message: 4 MB of markers take 1.3 s, 4 MB of
+numbers 1 ms. A long message of a type with sequences of messages or strings is therefore scanned first: a scanner,
+built from the fields of the type, moves over the CDR bytes and counts parts, without creating objects.
+
+Rules of CDR (XCDR1, little endian) that the scanner follows: four bytes of header; a number is aligned to its size,
+counted from the end of the header; a sequence and a string begin with an aligned uint32 with their length; messages
+have no alignment of their own.
 """
 
 from __future__ import annotations
@@ -19,10 +23,10 @@ from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_
 __all__ = ["MAX_PARTS", "UNCHECKED_BYTES", "TooManyPartsError", "check_parts"]
 
 UNCHECKED_BYTES = 256 << 10
-"""A shorter message is read in less than 0.1 s, whatever it is."""
+"""Shorter messages are not checked: any of them is deserialized in less than 0.1 s."""
 
 MAX_PARTS = 10_000
-"""Messages and texts in a longer one."""
+"""Largest number of nested messages and strings in a longer one."""
 
 _LITTLE_ENDIAN_CDR = b"\x00\x01"
 _HEAD = 4
@@ -39,14 +43,14 @@ _STRING = re.compile(r"^string(?:<\d+>)?$")
 
 
 class TooManyPartsError(ThymioSimError, ValueError):
-    """A message that would take too long to read."""
+    """Deserialization of a message would take too long."""
 
     def __init__(self) -> None:
         super().__init__(f"a message of more than {UNCHECKED_BYTES} bytes may have at most {MAX_PARTS} parts")
 
 
-class _Walk:
-    """A place in a serialized message, and how many parts were passed."""
+class _Scan:
+    """A position in a serialized message, and the number of parts before it."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
@@ -54,13 +58,13 @@ class _Walk:
         self._parts = 0
 
     def part(self) -> None:
-        """Count a message or a text."""
+        """Count a message or a string. Raises TooManyPartsError above the limit."""
         self._parts += 1
         if self._parts > MAX_PARTS:
             raise TooManyPartsError
 
     def skip(self, size: int, count: int = 1) -> None:
-        """Pass numbers of `size` bytes each."""
+        """Move behind `count` numbers of `size` bytes each, the first of them aligned."""
         if count:
             self._at += -(self._at - _HEAD) % size + size * count
 
@@ -70,35 +74,35 @@ class _Walk:
         return int(_COUNT.unpack_from(self._data, self._at - 4)[0])
 
 
-_Step = Callable[[_Walk], None]
+_Step = Callable[[_Scan], None]
 
 
 def check_parts(data: bytes, message_type: Any) -> None:
-    """Raise TooManyPartsError where reading a serialized message would take too long.
+    """Raise TooManyPartsError if the deserialization of a message would take too long.
 
-    Bytes that are no such message pass: it takes no time to find that out.
+    Invalid bytes are accepted: deserialization rejects them quickly.
     """
     if len(data) <= UNCHECKED_BYTES:
         return
     try:
         step = _message(message_type)
-    except (MissingTypeError, AttributeError, KeyError):  # of an unusual type nothing is known
+    except (MissingTypeError, AttributeError, KeyError):  # an unusual type that the scanner does not support
         raise TooManyPartsError from None
     if step is None:
         return
     if not data.startswith(_LITTLE_ENDIAN_CDR):
         raise TooManyPartsError
     try:
-        step(_Walk(data))
+        step(_Scan(data))
     except struct.error:
-        return  # cut short
+        return  # too short: deserialization rejects it
 
 
 @functools.cache
 def _message(message_type: Any) -> _Step | None:
-    """How to pass a message of the type; None where it has a fixed number of parts.
+    """Build the scanner of a message type; None if messages of the type have a fixed number of parts.
 
-    Raises MissingTypeError, AttributeError or KeyError for a type with fields that are not known here.
+    Raises MissingTypeError, AttributeError or KeyError for a type with unsupported fields.
     """
     kinds = list(message_type.get_fields_and_field_types().values())
     steps = [_field(kind) for kind in kinds] or [_numbers("uint8", 1)]
@@ -117,12 +121,12 @@ def _has_many_parts(kind: str) -> bool:
 
 
 def _all_of(steps: list[_Step]) -> _Step:
-    def walk(at: _Walk) -> None:
+    def scan(at: _Scan) -> None:
         at.part()
         for step in steps:
             step(at)
 
-    return walk
+    return scan
 
 
 @functools.cache
@@ -145,11 +149,11 @@ def _items(kind: str, count: int | None) -> _Step:
         return _numbers(kind, count)
     item = _field(kind)
 
-    def walk(at: _Walk) -> None:
+    def scan(at: _Scan) -> None:
         for _ in range(at.count() if count is None else count):
             item(at)
 
-    return walk
+    return scan
 
 
 def _numbers(kind: str, count: int | None) -> _Step:
@@ -157,6 +161,6 @@ def _numbers(kind: str, count: int | None) -> _Step:
     return lambda at: at.skip(size, at.count() if count is None else count)
 
 
-def _text(at: _Walk) -> None:
+def _text(at: _Scan) -> None:
     at.part()
     at.skip(1, at.count())

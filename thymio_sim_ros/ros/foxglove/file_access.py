@@ -1,8 +1,8 @@
-"""What clients may not ask for: files of this computer by their path.
+"""Keeps clients from opening files of this computer by their path.
 
-A client of the bridge gives a playground or a program by the name of a shipped one, or as its text. Paths are for those
-who are on this computer: `ros2 param set`, the command line. All clients are treated alike, since a page on this
-computer may be anyone's. Other nodes than ours are left alone.
+A client of the bridge may set a playground or a program by the name of a shipped one, or as text. Paths are accepted
+only from users of this computer: by `ros2 param set` and on the command line. The rule is the same for all clients,
+also on this computer, since a web page may come from anywhere. It concerns only nodes of this project.
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ _PARAMETERS: tuple[tuple[re.Pattern[str], Callable[[str], str]], ...] = (
     (re.compile(r"playground"), _playground_refusal),
     (re.compile(r"(robots\..+\.)?script\.path"), _program_refusal),
 )
-"""Parameters of ours that open files while a node runs; `card`, `settings` and `log` are fixed at its start."""
+"""Parameters of this project that open files while a node runs; `card`, `settings` and `log` are fixed at its start."""
 
 
 def parameter_refusal(name: str, value: object) -> str:
-    """Why a client may not give a parameter this value, or nothing; `name` is without its node."""
+    """The reason why a client may not set a parameter to this value, or an empty string; `name` is without its node."""
     if not isinstance(value, str):
         return ""
     return next((refusal(value) for pattern, refusal in _PARAMETERS if pattern.fullmatch(name)), "")
 
 
 def call_refusal(type_name: str, request: Any) -> str:
-    """Why a client may not call a service of this type so, or nothing."""
+    """The reason why a client may not call a service of this type with this request, or an empty string."""
     check = _CALLS.get(type_name)
     return "" if check is None else check(request)
 
@@ -58,7 +58,7 @@ def _set_parameters(request: Any) -> str:
 
 
 def _load_world(request: Any) -> str:
-    uri = getattr(request, "world_resource", request).uri  # in a field of its own from version 2 on
+    uri = getattr(request, "world_resource", request).uri  # version 2 has it in a separate field
     return _playground_refusal(uri) if uri else ""
 
 
@@ -67,4 +67,4 @@ _CALLS: dict[str, Callable[[Any], str]] = {
     "rcl_interfaces/srv/SetParametersAtomically": _set_parameters,
     "simulation_interfaces/srv/LoadWorld": _load_world,
 }
-"""Services by which the same can be reached; those that every node has are offered with `include_hidden` only."""
+"""Services that can open files, too. The parameter services of nodes are offered with `include_hidden` only."""

@@ -1,7 +1,8 @@
-"""JSON objects ↔ ROS messages: what clients publish and call in JSON (docs/spec/foxglove.md section 5).
+"""Conversion of JSON objects and ROS messages, for clients that use the encoding `json`.
 
-Missing keys keep their defaults, unknown keys are refused; arrays are lists, byte arrays also base64 text. The setters
-of rosidl check nothing in Jazzy (unless asked by an environment variable), hence ranges and lengths are checked here.
+Missing keys have their default values, unknown keys are rejected; arrays are lists, byte arrays also base64 text
+(docs/spec/foxglove.md section 5). In Jazzy the setters of rosidl check values only if an environment variable is set;
+therefore ranges and lengths are checked here.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import re
 import sys
 from typing import Any
 
-from thymio_sim_ros.bridge import bounded_json
+from thymio_sim_ros.bridge.protocol import bounded_json
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.foxglove.types import full_name, load_type
 
@@ -23,37 +24,36 @@ _LIST = re.compile(r"^(?:sequence<(?P<item>[^,]+)(?:, (?P<most>\d+))?>|(?P<cell>
 _INTEGER = re.compile(r"^(u?)int(8|16|32|64)$")
 _TEXT = re.compile(r"^w?string(?:<(\d+)>)?$")
 
-
 MAX_MESSAGES = 2000
-"""Messages in one message."""
+"""Nested messages in one message."""
 
 
 class JsonMessageError(ThymioSimError, ValueError):
-    """JSON that does not fit the message type; the text says where."""
+    """JSON does not fit the message type; the text says where."""
 
 
 def from_json(data: bytes, message_type: Any) -> Any:
-    """A message of the class from UTF-8 JSON; raises JsonMessageError."""
+    """Convert UTF-8 JSON to a message of the class. Raises JsonMessageError."""
     try:
         value = bounded_json.loads(data.decode())
     except (ValueError, RecursionError) as error:
         raise JsonMessageError(f"not JSON: {error}") from error
     if _messages_in(value) > MAX_MESSAGES:
-        raise JsonMessageError(f"message: expected at most {MAX_MESSAGES} objects")
+        raise JsonMessageError(f"message: expected at most {MAX_MESSAGES} objects, found more")
     message = message_type()
     _fill(message, value, "message")
     return message
 
 
 def _messages_in(value: Any) -> int:
-    """Objects in a JSON value: each becomes a message, which takes some 20 µs."""
+    """Number of objects in a JSON value: each becomes a message, which takes about 20 µs."""
     if isinstance(value, dict):
         return 1 + sum(_messages_in(item) for item in value.values() if isinstance(item, (dict, list)))
     return sum(_messages_in(item) for item in value if isinstance(item, (dict, list))) if isinstance(value, list) else 0
 
 
 def to_json(message: Any) -> bytes:
-    """The message as UTF-8 JSON; what JSON cannot say (NaN, infinity) is null."""
+    """Convert a message to UTF-8 JSON; NaN and infinity, which JSON does not have, become null."""
     return json.dumps(_plain(message), allow_nan=False, separators=(",", ":")).encode()
 
 
@@ -113,7 +113,7 @@ def _convert_scalar(value: Any, kind: str, where: str) -> Any:
 
 
 def _number(value: int | float, kind: str) -> float | int | bytes | None:
-    """The number as the field wants it, None where it does not fit."""
+    """The number in the type of the field, None if it does not fit."""
     if kind in ("float", "double"):
         try:
             return float(value)

@@ -1,8 +1,9 @@
-"""The Foxglove bridge as a ROS node: any ROS graph for Foxglove Studio, Lichtblick and our own page.
+"""The Foxglove bridge as a ROS node: offers any ROS graph to Foxglove Studio, Lichtblick and the web page.
 
-Two threads. The executor's owns everything of ROS and this file; the event loop's owns sockets (`bridge`). Commands go
-there by `ServerThread.post`, events come here by `Mailbox`; nothing else is shared. Topics, services and parameters
-each have a module; what they have in common is that the graph is polled and messages are never deserialized.
+There are two threads: the executor's thread owns all ROS objects and runs this module, the thread of the event loop
+owns the sockets (`bridge`). Commands are passed on by `ServerThread.post`, events arrive by `Mailbox`; nothing else is
+shared. Topics, services and parameters each have a module, which follows the polled graph. Messages of topics are
+forwarded in serialized form.
 """
 
 from __future__ import annotations
@@ -23,11 +24,11 @@ from rclpy.executors import Executor
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
-from thymio_sim_ros.banner import access, places, urls
+from thymio_sim_ros.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Tokens
-from thymio_sim_ros.bridge import events as ev
-from thymio_sim_ros.bridge.constants import CDR, JSON
-from thymio_sim_ros.bridge.messages import AssetResponse
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
+from thymio_sim_ros.bridge.protocol.messages import AssetResponse
+from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
 from thymio_sim_ros.ros.foxglove.graph import (
     allow_list,
@@ -52,21 +53,22 @@ from thymio_sim_ros.ros.web import tokens as node_tokens
 
 __all__ = ["FoxgloveBridge", "main"]
 
-_DISCOVER_S = 0.25
-_DISCOVER_SHARE = 0.02
-"""Of the time at most this part goes to asking for the graph: with twenty robots that takes 12 ms each time. As much
-goes to asking for the publishers of subscribed topics, and to who talks to whom."""
-_REFRESH_S = 1.0
-_REPEAT_S = 1.0
-"""After time went back: what a client gets while it drops the past may go with it (measured with Lichtblick)."""
-_FAST_POLL_S = 0.02
-"""Period of polling while something waits for discovery: a call, a message of a new publisher."""
+_DISCOVERY_PERIOD_S = 0.25
+_DISCOVERY_SHARE = 0.02
+"""Largest share of the thread's time for queries of the graph, which take 12 ms with twenty robots. The same share
+applies to queries of the publishers of subscribed topics, and to the connection graph."""
+_REFRESH_PERIOD_S = 1.0
+_RESEND_DELAY_S = 1.0
+"""Delay after a new session until retained messages are sent again: a client that is dropping the data of the last
+session may drop messages that arrive meanwhile (measured with Lichtblick)."""
+_FAST_POLL_PERIOD_S = 0.02
+"""Period of polling while calls, messages, subscriptions or answers are waiting."""
 
 
 class FoxgloveBridge:
-    """The node and its server, which listens when the constructor returns. `port` is the one really taken.
+    """The node and its server, which listens when the constructor returns; `port` is then the actual port.
 
-    Raises StartError when the port cannot be used. Belongs to the thread that turns the node's executor.
+    Belongs to the thread that spins the node's executor.
     """
 
     def __init__(
@@ -79,7 +81,11 @@ class FoxgloveBridge:
         defaults: FoxgloveParams | None = None,
         tokens: Tokens | None = None,
     ) -> None:
-        """`tokens`: those of the command line; None: the node's own, made where the network reaches the address."""
+        """Start the server. Raises StartError for invalid parameters or if the port cannot be used.
+
+        `tokens` are those of the command line; None: tokens from the environment and parameters, or new ones if the
+        address is reachable from the network. The other arguments override parameters.
+        """
         overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
         self.node = parameter_node("foxglove_bridge", context=context, parameter_overrides=overrides)
         try:
@@ -106,25 +112,25 @@ class FoxgloveBridge:
         self.address, self.port = self._server.address, self._server.port
         self._sim_now_ns = 0
         self._wants_graph = False
-        self._is_graph_old = True
+        self._is_graph_outdated = True
         self._build()
 
     @property
     def startup_message(self) -> str:
-        """Where to connect, for a person."""
+        """Where to connect, as text for the log."""
         place = self._scheme, self.address, self.port
         is_open = not self.tokens.is_required
         how = f"or {_app_link(urls(*place)[0])}" if is_open else "with the token on standard output"
-        return f"Foxglove: {places(*place)} {how}; access: {access(self.address, self.tokens)}"
+        return f"Foxglove: {describe_urls(*place)} {how}; access: {describe_access(self.address, self.tokens)}"
 
     @property
     def access_urls(self) -> str:
-        """Where to connect with which token, for standard output; never for the log, which clients may read."""
+        """Addresses with their tokens, for standard output; not for the log, which clients can read."""
         if not self.tokens.is_required:
             return ""
         place = self._scheme, self.address, self.port
         full = urls(*place, "/", self.tokens.full)
-        read_only = places(*place, "/", self.tokens.read_only)
+        read_only = describe_urls(*place, "/", self.tokens.read_only)
         return f"Foxglove  {', from other computers '.join(full)} or {_app_link(full[0])}\nRead only {read_only}"
 
     @property
@@ -138,16 +144,16 @@ class FoxgloveBridge:
         return Tokens.for_address(self.params.address, given.full, given.read_only)
 
     def run_once(self, executor: Executor) -> None:
-        """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
+        """Spin the executor once; returns after `SPIN_SLICE_S` at the latest."""
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
     def stop(self) -> None:
-        """End server and thread; call it when nobody turns the executor any more."""
+        """Stop the server and its thread. The executor must not be spinning any more."""
         self._mailbox.close()
         self._server.close()
 
     def close(self) -> None:
-        """End all that it opened, and the node."""
+        """Stop the server, end all endpoints, and destroy the node."""
         self.stop()
         self._jump_handle.unregister()
         self._topics.close()
@@ -187,10 +193,10 @@ class FoxgloveBridge:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._is_topic = allow_list(values.topic_whitelist)
         self._is_service = allow_list(values.service_whitelist)
-        self._fast_poll_timer = self.node.create_timer(_FAST_POLL_S, self._poll_waiting, clock=steady)
+        self._fast_poll_timer = self.node.create_timer(_FAST_POLL_PERIOD_S, self._poll_waiting, clock=steady)
         self._fast_poll_timer.cancel()
-        self._repeat = self.node.create_timer(_REPEAT_S, self._repeat_kept, clock=steady)
-        self._repeat.cancel()
+        self._resend_timer = self.node.create_timer(_RESEND_DELAY_S, self._resend_retained, clock=steady)
+        self._resend_timer.cancel()
         self._calls = ServiceCalls(self.node, wake=self._poll_soon)
         self._topics = Topics(
             self.node,
@@ -220,7 +226,7 @@ class FoxgloveBridge:
             else None
         )
         self._seen: tuple[Any, Any] = ({}, {})
-        self._discovery, self._graph_share = TimeShare(_DISCOVER_SHARE), TimeShare(_DISCOVER_SHARE)
+        self._discovery, self._graph_share = TimeShare(_DISCOVERY_SHARE), TimeShare(_DISCOVERY_SHARE)
         self._next_check_s = 0.0
         self._shown: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
         self._jump_handle = self.node.get_clock().create_jump_callback(
@@ -229,32 +235,32 @@ class FoxgloveBridge:
             ),
             post_callback=self._on_time,
         )
-        self.node.create_timer(_DISCOVER_S, self._discover, clock=steady)
-        self.node.create_timer(_REFRESH_S, self._refresh, clock=steady)
+        self.node.create_timer(_DISCOVERY_PERIOD_S, self._discover, clock=steady)
+        self.node.create_timer(_REFRESH_PERIOD_S, self._refresh, clock=steady)
 
     def _now_ns(self) -> int:
         return self._sim_now_ns if self._uses_sim_time else time.time_ns()
 
     def _on_time(self, jump: TimeJump) -> None:
-        """Simulated time moved; backwards means a reset."""
+        """Forward simulated time; a jump backwards is a reset of the simulation and starts a new session."""
         if not self._uses_sim_time:
             return
         now_ns = self.node.get_clock().now().nanoseconds
         if now_ns < self._sim_now_ns:
             self._server.post(ev.NewSession(_new_id()))
-            self._repeat.reset()
+            self._resend_timer.reset()
         self._sim_now_ns = now_ns
         self._server.post(ev.SetTime(now_ns))
 
-    def _repeat_kept(self) -> None:
-        self._repeat.cancel()
+    def _resend_retained(self) -> None:
+        self._resend_timer.cancel()
         self._server.post(ev.ResendRetained())
 
     def _discover(self) -> None:
-        """Follow the graph."""
+        """Poll the graph and pass changes on."""
         self._mailbox.drain()
         self._check_publishers()
-        if self._wants_graph and self._is_graph_old:
+        if self._wants_graph and self._is_graph_outdated:
             self._send_graph()
         if not self._discovery.is_due:
             return
@@ -275,26 +281,26 @@ class FoxgloveBridge:
         self._parameters.update(services)
 
     def _check_publishers(self) -> None:
-        """Go on with a round through all subscribed topics, or begin one once in `_REFRESH_S`."""
-        if time.monotonic() >= self._next_check_s and self._topics.refresh(_DISCOVER_S * _DISCOVER_SHARE):
-            self._next_check_s = time.monotonic() + _REFRESH_S
+        """Continue the check of all subscribed topics; start a new one every `_REFRESH_PERIOD_S`."""
+        if time.monotonic() >= self._next_check_s and self._topics.refresh(_DISCOVERY_PERIOD_S * _DISCOVERY_SHARE):
+            self._next_check_s = time.monotonic() + _REFRESH_PERIOD_S
 
     def _refresh(self) -> None:
-        self._parameters.refresh(is_watched=self._server.client_count > 0)
+        self._parameters.refresh(has_clients=self._server.client_count > 0)
         if self._count is not None and self._published_count != self._server.client_count:
             self._published_count = self._server.client_count
             self._count.publish(UInt32(data=self._published_count))
-        self._is_graph_old = True
+        self._is_graph_outdated = True
 
     def _send_graph(self) -> None:
-        """Send who talks to whom, unless that takes more than its share of time."""
+        """Send the connection graph, unless it has used up its share of time."""
         if self._graph_share.is_due:
-            self._is_graph_old = False
+            self._is_graph_outdated = False
             with self._graph_share.work():
                 self._server.post(ev.SetGraph(connection_graph(self.node, *self._shown)))
 
     def _poll_soon(self) -> None:
-        """Poll until nothing waits. A timer that is reset again and again would never be due."""
+        """Start polling. A timer that is reset repeatedly would never fire; therefore a running one is left alone."""
         if self._fast_poll_timer.is_canceled():
             self._fast_poll_timer.reset()
 
@@ -307,20 +313,22 @@ class FoxgloveBridge:
         try:
             _HANDLERS[type(event)](self, event)
         except Exception:
-            # One client's wish must not end the bridge of the others: it is dropped, everything else goes on.
-            self.node.get_logger().error(f"{type(event).__name__} failed:\n{traceback.format_exc()}")
+            # A failed request of one client must not end the bridge for the others; it is dropped.
+            self.node.get_logger().error(
+                f"internal error (please report): {type(event).__name__} failed:\n{traceback.format_exc()}"
+            )
             if isinstance(event, ev.ServiceCalled):
                 self._services.fail(event.client, event.request, "internal error (please report), see the log")
             elif isinstance(event, (ev.ParametersSet, ev.ParametersRequested)):
                 self._server.post(ev.SendParameters(event.client, (), event.request_id, ev.size_of(event)))
 
-    def _on_graph_wanted(self, event: ev.GraphSubscriptionChanged) -> None:
+    def _on_graph_subscription(self, event: ev.GraphSubscriptionChanged) -> None:
         self._wants_graph = event.wanted
-        self._is_graph_old = True
+        self._is_graph_outdated = True
         if event.wanted:
             self._send_graph()
 
-    def _on_asset_wanted(self, event: ev.AssetRequested) -> None:
+    def _on_asset_requested(self, event: ev.AssetRequested) -> None:
         try:
             answer = AssetResponse(event.request_id, load_asset(event.uri, self.params.asset_uri_allowlist))
         except AssetError as error:
@@ -340,13 +348,13 @@ _HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
     ev.ParametersSet: lambda self, event: self._parameters.set(event),
     ev.ParametersRequested: lambda self, event: self._parameters.get(event),
     ev.ParametersWatched: lambda self, event: self._parameters.watch(event),
-    ev.GraphSubscriptionChanged: FoxgloveBridge._on_graph_wanted,
-    ev.AssetRequested: FoxgloveBridge._on_asset_wanted,
+    ev.GraphSubscriptionChanged: FoxgloveBridge._on_graph_subscription,
+    ev.AssetRequested: FoxgloveBridge._on_asset_requested,
 }
 
 
 def _sender(event: ev.Event) -> int:
-    """The client of an event; 0 where several may be behind it."""
+    """The client of an event; 0 for events that have none."""
     return getattr(event, "client", 0)
 
 

@@ -1,4 +1,4 @@
-"""Parameters of the Foxglove bridge, and what is made of them before it starts."""
+"""Parameters of the Foxglove bridge, and the checks of their values before it starts."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ READ_ONLY_SERVICES = (
     r"/(.+/)?simulator/get_\w+",
     r"/(.+/)?is_ready",
 )
-"""Services of ours that change nothing."""
+"""Services of this project that change nothing."""
 
 
 @dataclass(frozen=True)
 class FoxgloveParams:
-    """Parameters of the bridge; names as the vendor's bridge has them where it has them."""
+    """Parameters of the bridge; names as in the vendor's bridge if it has the same parameter."""
 
-    port: int = param(8765, "TCP port; 0 takes a free one", low=0, high=65535, fixed=True)
+    port: int = param(8765, "TCP port; 0 selects a free one", low=0, high=65535, fixed=True)
     address: str = param(
         "localhost",
-        "Address to listen on: localhost is both loopbacks, 0.0.0.0 the whole network, :: with IPv6",
+        "Address to listen on: localhost (this computer), 0.0.0.0 (all IPv4 interfaces), :: (also IPv6)",
         fixed=True,
     )
     tls: bool = param(False, "Serve wss:// with certfile and keyfile", fixed=True)
@@ -37,11 +37,11 @@ class FoxgloveParams:
     keyfile: str = param("", "PEM file with the private key", fixed=True)
     allowed_origins: tuple[str, ...] = param(
         ("",),
-        "Web pages that may connect beside this machine's and the Foxglove app's, as https://host:port; *: all",
+        "Origins of additional web pages that may connect, as https://host:port; * allows all",
         fixed=True,
     )
     require_token: bool = param(
-        True, "Whether clients need a token where the network reaches the address (SECURITY.md)", fixed=True
+        True, "Whether clients need a token if the address is reachable from the network (SECURITY.md)", fixed=True
     )
     read_only_services: tuple[str, ...] = param(
         READ_ONLY_SERVICES, "Regular expressions of services that clients with the read-only token may call", fixed=True
@@ -55,11 +55,11 @@ class FoxgloveParams:
         (".*",), "Regular expressions of topics on which clients may publish", fixed=True
     )
     include_hidden: bool = param(
-        False, "Offer hidden services and topics of actions too; other hidden topics are always offered", fixed=True
+        False, "Offer hidden services and topics of actions; other hidden topics are always offered", fixed=True
     )
     capabilities: tuple[str, ...] = param(
         tuple(item.value for item in Capability if item is not Capability.TIME),
-        "What to offer: clientPublish, parameters, parametersSubscribe, services, connectionGraph, assets; "
+        "Capabilities to offer: clientPublish, parameters, parametersSubscribe, services, connectionGraph, assets; "
         "time is added with use_sim_time",
         fixed=True,
     )
@@ -67,19 +67,19 @@ class FoxgloveParams:
         (ASSETS,), "Regular expressions of package:// files that clients may fetch", fixed=True
     )
     best_effort_qos_topic_whitelist: tuple[str, ...] = param(
-        ("(?!)",), "Regular expressions of topics to subscribe to as best effort, whatever is published", fixed=True
+        ("(?!)",), "Regular expressions of topics that are always subscribed to as best effort", fixed=True
     )
-    min_qos_depth: int = param(10, "Least history of a subscription", low=1, high=1000, fixed=True)
-    max_qos_depth: int = param(25, "Greatest history of a subscription", low=1, high=1000, fixed=True)
+    min_qos_depth: int = param(10, "Smallest history depth of a subscription", low=1, high=1000, fixed=True)
+    max_qos_depth: int = param(25, "Largest history depth of a subscription", low=1, high=1000, fixed=True)
     send_buffer_limit: int = param(
         1 << 20,
-        "Bytes that may wait for a slow client before only newest messages are sent",
+        "Bytes that may be buffered for a client; above, only the newest message of each topic is sent",
         low=1 << 12,
         high=1 << 30,
         fixed=True,
     )
     publish_client_count: bool = param(
-        False, "Publish how many clients are connected on ~/client_count (std_msgs/UInt32)", fixed=True
+        False, "Publish the number of connected clients on ~/client_count (std_msgs/UInt32)", fixed=True
     )
     max_message_size: int = param(
         4 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 30, fixed=True
@@ -87,11 +87,11 @@ class FoxgloveParams:
 
 
 def tls_context(values: FoxgloveParams) -> ssl.SSLContext | None:
-    """What the server needs for wss://, None for ws://; StartError where the files cannot be used."""
+    """The TLS context for wss://, None for ws://. Raises StartError if the files cannot be used."""
     if not values.tls:
         return None
     if not values.certfile:
-        raise StartError("tls needs a certificate: set certfile and keyfile to PEM files")
+        raise StartError("parameter tls: no certificate given; set certfile and keyfile to PEM files")
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     try:
         context.load_cert_chain(values.certfile, values.keyfile or None)
@@ -101,22 +101,24 @@ def tls_context(values: FoxgloveParams) -> ssl.SSLContext | None:
 
 
 def server_capabilities(values: FoxgloveParams, *, uses_sim_time: bool) -> tuple[Capability, ...]:
-    """Capabilities for serverInfo; StartError for a name that is none."""
+    """The capabilities for serverInfo. Raises StartError for an unknown name."""
     known = {item.value: item for item in Capability}
     for name in filter(None, values.capabilities):
         if name not in known:
-            raise StartError(f"parameter capabilities: '{name}' found, expected some of {', '.join(known)}")
+            raise StartError(f"parameter capabilities: found '{name}', expected some of {', '.join(known)}")
     wanted = {known[name] for name in values.capabilities if name}
     wanted.discard(Capability.TIME)
     return tuple(item for item in Capability if item in wanted or (item is Capability.TIME and uses_sim_time))
 
 
 def check(values: FoxgloveParams) -> None:
-    """StartError for what is no regular expression."""
+    """Raise StartError for an invalid regular expression."""
     for item in fields(values):
         if item.name.endswith(("_whitelist", "_allowlist", "_services")):
             for pattern in getattr(values, item.name):
                 try:
                     re.compile(pattern)
                 except re.error as error:
-                    raise StartError(f"parameter {item.name}: '{pattern}' is no regular expression: {error}") from error
+                    raise StartError(
+                        f"parameter {item.name}: '{pattern}' is not a regular expression: {error}"
+                    ) from error

@@ -1,4 +1,4 @@
-"""Parameter values: the bridge's form ↔ ROS's (docs/spec/foxglove.md section 2)."""
+"""Conversion of parameter values between the bridge and ROS (docs/spec/foxglove.md section 2)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
-from thymio_sim_ros.bridge.messages import Parameter
+from thymio_sim_ros.bridge.protocol.messages import Parameter
 from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["UnfitValueError", "from_ros", "to_ros"]
@@ -45,11 +45,11 @@ _TYPES = {code: hint for hint, code in _HINTS.items()}
 
 
 class UnfitValueError(ThymioSimError, ValueError):
-    """A value that no ROS parameter can have; the text says why."""
+    """A value does not fit a ROS parameter; the text says why."""
 
 
 def from_ros(name: str, value: ParameterValue) -> Parameter:
-    """A ROS value; numbers that JSON cannot say (NaN, infinity) are given as text."""
+    """Convert a ROS value; NaN and infinity, which JSON does not have, become text."""
     field = _FIELDS.get(value.type)
     if field is None:
         return Parameter(name)
@@ -67,7 +67,10 @@ def from_ros(name: str, value: ParameterValue) -> Parameter:
 
 
 def to_ros(parameter: Parameter, current: int = ParameterType.PARAMETER_NOT_SET) -> ParameterValue:
-    """The value for ROS; `current` is the type code in force, so that 1 sets a double. Raises UnfitValueError."""
+    """Convert a value to ROS. Raises UnfitValueError.
+
+    `current` is the current type code: an integer then sets a parameter that is a double.
+    """
     value = parameter.value
     if value is None:
         return ParameterValue()
@@ -94,12 +97,12 @@ def _kind(value: Any, current: int) -> Any:
     if kinds == {int, float} or (kinds == {int} and current == ParameterType.PARAMETER_DOUBLE_ARRAY):
         return ParameterType.PARAMETER_DOUBLE_ARRAY
     if len(kinds) > 1:
-        raise UnfitValueError("a list must have elements of one kind")
+        raise UnfitValueError("expected a list with elements of one type, found several types")
     return _ARRAYS[kinds.pop()]
 
 
 def _check(value: Any) -> None:
-    """What rosidl's setters let through and the middleware would choke on."""
+    """Raise UnfitValueError for values that the setters of rosidl accept but the middleware cannot serialize."""
     if isinstance(value, int) and not -(1 << 63) <= value < 1 << 63:
         raise UnfitValueError(f"expected an integer of 64 bits, found {value!r:.40}")
     if isinstance(value, str) and not value.isascii():

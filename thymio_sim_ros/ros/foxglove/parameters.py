@@ -1,9 +1,8 @@
-"""Parameters of all nodes, as `/<node>.<parameter>`: a cache kept fresh by /parameter_events, and setting.
+"""Parameters of all nodes, named `/<node>.<parameter>`: a cache that follows /parameter_events, and setting.
 
-A node is asked for its parameters when a client first asks for them, sets them or watches them, not before: to ask a
-node that is none of ours may print warnings in its terminal. A refused value is reported as an error status
-`parameter:<name>` before the answer, which always carries the value really in force; the next success removes the
-status.
+The parameters of a node are requested when a client first requests, sets or watches them, not before: a request may
+print warnings in the terminal of a node of another project. A rejected value is reported as an error status
+`parameter:<name>` before the answer, which always has the current value; the next success removes the status.
 """
 
 from __future__ import annotations
@@ -20,8 +19,9 @@ from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameter_events
 
-from thymio_sim_ros.bridge.constants import StatusLevel
-from thymio_sim_ros.bridge.events import (
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import Parameter, RemoveStatus, Status, parameter_status
+from thymio_sim_ros.bridge.switchboard.events import (
     Command,
     ParametersChanged,
     ParametersRequested,
@@ -31,8 +31,8 @@ from thymio_sim_ros.bridge.events import (
     SendToClient,
     size_of,
 )
-from thymio_sim_ros.bridge.messages import Parameter, RemoveStatus, Status, parameter_status
-from thymio_sim_ros.bridge.switchboard import MAX_REFUSALS, MAX_WATCHED
+from thymio_sim_ros.bridge.switchboard.outcome import MAX_REFUSALS
+from thymio_sim_ros.bridge.switchboard.parameters import MAX_WATCHED
 from thymio_sim_ros.ros.foxglove.file_access import parameter_refusal
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
@@ -41,15 +41,16 @@ __all__ = ["Parameters"]
 
 _LIST = "/list_parameters"
 _PORTION = 8
-"""Parameters that a node is given to set at once: between two portions it has time for others."""
+"""Parameters in one request to a node, so that it can handle other requests in between."""
 
 _FIRST_ANSWER_S = 1.0
-"""Longest wait of a client for nodes that are asked for the first time; later answers are sent to those who watch."""
+"""Longest delay of an answer until nodes have reported their parameters for the first time. Later reports are sent to
+clients that watch them."""
 
 
 @dataclass(slots=True)
 class _Change:
-    """A client's request on its way: names in the order of the request, reasons of those that were refused."""
+    """A request of a client that is being executed: names in their order, reasons of rejections by name."""
 
     request: ParametersSet
     names: tuple[str, ...]
@@ -59,7 +60,7 @@ class _Change:
 
 @dataclass(slots=True, eq=False)
 class _Wait:
-    """Something to be done when nodes have answered, or at the deadline."""
+    """A function that is called when nodes have answered, or at the deadline."""
 
     nodes: set[str]
     then: Callable[[], None]
@@ -67,7 +68,10 @@ class _Wait:
 
 
 class Parameters:
-    """Belongs to the executor's thread; `poll` must be called while it returns True."""
+    """The parameters that clients can get, set and watch.
+
+    Belongs to the executor's thread; `poll` must be called while it returns True.
+    """
 
     def __init__(
         self,
@@ -85,11 +89,11 @@ class Parameters:
         self._present: set[str] = set()
         """Nodes with parameters."""
         self._wants_all = False
-        """Whether a client has asked for the parameters of all nodes."""
+        """Whether a client has requested the parameters of all nodes."""
         self._watched: set[str] = set()
-        """Nodes whose parameters clients watch, those that are not there yet too."""
+        """Nodes whose parameters clients watch, including nodes that do not exist yet."""
         self._types: dict[str, dict[str, int]] = {}
-        """Node that was asked → parameter → type code in force."""
+        """Node whose parameters were requested → parameter → current type code."""
         self._reading: set[str] = set()
         """Nodes that have not answered yet."""
         self._unread: set[str] = set()
@@ -100,7 +104,7 @@ class Parameters:
         )
 
     def update(self, services: Mapping[str, Sequence[str]]) -> None:
-        """Follow the graph: new nodes are asked if all are wanted, vanished ones are forgotten."""
+        """Follow the graph: request the parameters of new nodes if clients need them, and remove vanished nodes."""
         self._present = {name.removesuffix(_LIST) for name in services if name.endswith(_LIST)}
         for node in [node for node in self._types if node not in self._present]:
             gone = self._types.pop(node)
@@ -109,12 +113,14 @@ class Parameters:
                 self._calls.forget(f"{node}/{service}_parameters")
             self._finish_reading(node)
             self._post(ParametersChanged((), tuple(f"{node}.{name}" for name in gone)))
-        self._ask(self._present if self._wants_all else self._watched & self._present)
+        self._request_parameters(self._present if self._wants_all else self._watched & self._present)
 
-    def refresh(self, *, is_watched: bool) -> None:
-        """Ask nodes again that did not answer: one that starts may not spin yet. Nobody is asked while no client is
-        connected (`is_watched` is false)."""
-        if not is_watched:
+    def refresh(self, *, has_clients: bool) -> None:
+        """Repeat requests to nodes that did not answer, such as one that did not spin yet.
+
+        No requests are made while no client is connected (`has_clients` is false).
+        """
+        if not has_clients:
             self._wants_all = False
             self._watched.clear()
             return
@@ -123,7 +129,7 @@ class Parameters:
             self._read_all(node)
 
     def poll(self) -> bool:
-        """Stop waiting for nodes that take too long; whether something waits still."""
+        """Stop waiting for nodes that take too long; return whether functions are waiting."""
         now_s = time.monotonic()
         late = [wait for wait in self._waits if wait.deadline_s <= now_s]
         self._waits = [wait for wait in self._waits if wait.deadline_s > now_s]
@@ -132,34 +138,34 @@ class Parameters:
         return bool(self._waits)
 
     def get(self, request: ParametersRequested) -> None:
-        """Answer with the values in force, once the nodes have been asked for them."""
+        """Answer with the current values, after the nodes have reported them."""
         names = request.names or None
         self._wants_all = self._wants_all or names is None
         nodes = self._present if names is None else _nodes_of(names) & self._present
         self._after(nodes, lambda: self._post(SendParameters(request.client, names, request.request_id)))
 
     def watch(self, request: ParametersWatched) -> None:
-        """A client wants to be told of changes."""
+        """Follow the nodes whose parameters a client watches."""
         nodes = _nodes_of(request.names)
         if len(self._watched) <= MAX_WATCHED:
             self._watched |= nodes
-        self._ask(nodes & self._present)
+        self._request_parameters(nodes & self._present)
 
     def set(self, request: ParametersSet) -> None:
         """Set values node by node, then answer."""
         names = tuple(item.name for item in request.parameters)
         self._after(_nodes_of(names) & self._present, lambda: self._set(request, names))
 
-    def _ask(self, nodes: Iterable[str]) -> None:
-        """Ask those nodes for their parameters that were never asked."""
+    def _request_parameters(self, nodes: Iterable[str]) -> None:
+        """Request the parameters of those nodes for which this was never done."""
         for node in sorted(set(nodes) - self._types.keys()):
             self._types[node] = {}
             self._read_all(node)
 
     def _after(self, nodes: Iterable[str], then: Callable[[], None]) -> None:
-        """Do it when the nodes have answered, after `_FIRST_ANSWER_S` at the latest; at once where all have already."""
+        """Call a function as soon as the nodes have answered, after `_FIRST_ANSWER_S` at the latest."""
         nodes = set(nodes)
-        self._ask(nodes)
+        self._request_parameters(nodes)
         missing = nodes & self._reading
         if missing:
             self._waits.append(_Wait(missing, then, time.monotonic() + _FIRST_ANSWER_S))
@@ -168,7 +174,7 @@ class Parameters:
             then()
 
     def _finish_reading(self, node: str) -> None:
-        """The node has answered, or will not: nothing waits for it any more."""
+        """Call the functions that waited for this node only: it has answered, or will not."""
         self._reading.discard(node)
         ready = []
         for wait in self._waits:
@@ -218,10 +224,10 @@ class Parameters:
             if response is None:
                 change.refused.update((f"{node}.{name}", reason) for name in names)
             else:
-                missing = SetParametersResult(reason="the node did not say what became of it")
+                missing = SetParametersResult(reason="the node did not report a result")
                 for name, result in zip_longest(names, response.results[: len(names)], fillvalue=missing):
                     if not result.successful:
-                        change.refused[f"{node}.{name}"] = result.reason or "refused by the node"
+                        change.refused[f"{node}.{name}"] = result.reason or "rejected by the node"
             self._read(node, names, lambda: was_read(), sender=change.request.client)
 
         def was_read() -> None:
@@ -243,7 +249,7 @@ class Parameters:
                 SendToClient(request.client, Status(StatusLevel.ERROR, f"{name}: {reason}", parameter_status(name)))
             )
         if more := len(refused[MAX_REFUSALS:]):
-            self._post(SendToClient(request.client, Status(StatusLevel.ERROR, f"{more} more parameters were refused")))
+            self._post(SendToClient(request.client, Status(StatusLevel.ERROR, f"{more} more parameters were rejected")))
         self._post(SendParameters(request.client, change.names, request.request_id, size_of(request)))
 
     def _read_all(self, node: str) -> None:
@@ -263,9 +269,9 @@ class Parameters:
     ) -> None:
         def got(response: Any, reason: str) -> None:
             if response is not None and len(response.values) == len(names):
-                self._learn(node, zip(names, response.values, strict=True))
+                self._update_cache(node, zip(names, response.values, strict=True))
             elif response is not None and len(names) > 1:
-                # rclpy gives no value at all where one of them was declared and never set.
+                # rclpy returns no values at all if one of the parameters was never set: get them one by one.
                 left = list(names)
 
                 def one_more() -> None:
@@ -277,7 +283,7 @@ class Parameters:
                     self._read(node, [name], one_more, sender=sender)
                 return
             elif response is not None:
-                self._learn(node, [(name, ParameterValue()) for name in names])
+                self._update_cache(node, [(name, ParameterValue()) for name in names])
             else:
                 self._unread.add(node)
             then()
@@ -285,9 +291,9 @@ class Parameters:
         request = GetParameters.Request(names=names)
         self._calls.call(GetParameters, f"{node}/get_parameters", request, got, sender=sender)
 
-    def _learn(self, node: str, values: Iterable[tuple[str, ParameterValue]]) -> None:
+    def _update_cache(self, node: str, values: Iterable[tuple[str, ParameterValue]]) -> None:
         types = self._types.get(node)
-        if types is None:  # vanished meanwhile
+        if types is None:  # the node has ended meanwhile
             return
         changed, removed = [], []
         for name, value in values:
@@ -305,7 +311,7 @@ class Parameters:
     def _on_event(self, event: ParameterEvent) -> None:
         items = [(item.name, item.value) for item in (*event.new_parameters, *event.changed_parameters)]
         items += [(item.name, ParameterValue()) for item in event.deleted_parameters]
-        self._learn(event.node, items)
+        self._update_cache(event.node, items)
 
 
 def _nodes_of(names: Iterable[str]) -> set[str]:
@@ -313,5 +319,5 @@ def _nodes_of(names: Iterable[str]) -> set[str]:
 
 
 def _is_text(name: str) -> bool:
-    """Whether ROS can carry it: halves of characters cannot be."""
+    """Whether ROS can transport the name; surrogate code points cannot be encoded."""
     return name.isprintable()

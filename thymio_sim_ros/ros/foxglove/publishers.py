@@ -1,4 +1,4 @@
-"""What clients publish: checked, then handed to ROS."""
+"""Publishers for messages of clients, which are checked before they are published."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
-from thymio_sim_ros.bridge.constants import JSON, StatusLevel
-from thymio_sim_ros.bridge.events import Command, SendToClient
-from thymio_sim_ros.bridge.messages import ClientChannel, Status
+from thymio_sim_ros.bridge.protocol.constants import JSON, StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import ClientChannel, Status
+from thymio_sim_ros.bridge.switchboard.events import Command, SendToClient
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages
@@ -30,24 +30,25 @@ from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
 
 __all__ = ["ClientPublishers"]
 
-_HELD = 10
+_MAX_HELD = 10
 _DISCOVERY_S = 1.0
-"""A new publisher holds its last `_HELD` messages until it has met all subscribers, at most this long.
+"""A new publisher holds its last `_MAX_HELD` messages until it has matched all subscribers, at most for this time.
 
-They leave as far apart as they came: a button that is pressed and let go meanwhile was held all the same.
+They are published at the intervals at which they arrived: a button that was pressed and released during discovery was
+pressed for that time.
 """
 
 _SLICE_S = 0.005
-"""Longest time for which publishers are created in one `poll`; each takes DDS some milliseconds."""
+"""Longest time for which one `poll` creates publishers; each takes some milliseconds in DDS."""
 
 _NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
-"""Each event handler would be one more thing that the executor waits for, in every turn."""
+"""No event handlers: each would be one more entity that the executor waits for, in every iteration."""
 
 _MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
 
 
 class _RefusalError(ThymioSimError):
-    """Why a client's channel or message is not accepted; the text is for its user."""
+    """A client's channel or message is rejected; the text is sent to the client."""
 
 
 @dataclass(slots=True)
@@ -60,12 +61,14 @@ class _SharedPublisher:
     publisher: Publisher
     discovery_end_s: float
     users: int = 0
-    held: deque[tuple[float, Any]] = field(default_factory=lambda: deque(maxlen=_HELD))
-    """When it came, s, and what."""
+    held: deque[tuple[float, Any]] = field(default_factory=lambda: deque(maxlen=_MAX_HELD))
+    """Messages that are not published yet, with the time of arrival, s."""
     is_waiting: bool = False
-    late_s: float = 0.0
-    met_s: float = 0.0
-    """What had come when all were met leaves so much later than it came; the rest at once, in order."""
+    """Whether messages are held because of discovery."""
+    delay_s: float = 0.0
+    matched_s: float = 0.0
+    """Messages that arrived until `matched_s`, the end of discovery, are published `delay_s` after their arrival; later
+    ones as soon as all earlier ones are published."""
 
 
 class ClientPublishers:
@@ -80,7 +83,7 @@ class ClientPublishers:
         wake: Callable[[], None] = lambda: None,
         now_s: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`wake` asks for `poll` soon and again until it has nothing to do."""
+        """`wake` requests calls of `poll` until it returns False."""
         self._node = node
         self._post = post
         self._is_allowed = is_allowed
@@ -93,10 +96,10 @@ class ClientPublishers:
         """The channels of `_opening` by client, in the order in which their publishers are created."""
 
     def open(self, client: int, channel: ClientChannel) -> None:
-        """Prepare for a client's messages.
+        """Open a channel of a client.
 
-        The publisher is created with the first message, or by `poll`, for all clients in turn; a channel that is closed
-        before that costs DDS nothing. A channel that is refused is reported to the client then.
+        The publisher is created with the first message, or by `poll`, which serves the clients in turn; a channel that
+        is closed before causes no work in DDS. A rejected channel is reported to the client at that time.
         """
         self._opening[client, channel.id] = channel
         self._order.put(client, (client, channel.id))
@@ -112,7 +115,7 @@ class ClientPublishers:
         self._channels[client, channel.id] = (shared, channel.encoding)
 
     def close(self, client: int, channel_id: int) -> None:
-        """The channel is over; the last one takes the publisher with it."""
+        """Close a channel of a client; the last channel of a topic and type ends the publisher."""
         if self._opening.pop((client, channel_id), None) is not None:
             self._order.remove(client, (client, channel_id))
             return
@@ -125,13 +128,13 @@ class ClientPublishers:
             self._node.destroy_publisher(shared.publisher)
 
     def publish(self, client: int, channel_id: int, payload: bytes) -> None:
-        """Publish a client's message, or tell the client why not."""
+        """Publish a message of a client, or report to the client why it is rejected."""
         channel = self._opening.pop((client, channel_id), None)
         if channel is not None:
             self._order.remove(client, (client, channel_id))
             self._create(client, channel)
         shared, encoding = self._channels.get((client, channel_id), (None, ""))
-        if shared is None:  # refused when it was opened, and told so
+        if shared is None:  # rejected when it was opened, and reported
             return
         try:
             message = _decode(payload, encoding, shared)
@@ -161,25 +164,25 @@ class ClientPublishers:
         self._order = FairQueue()
 
     def _flush(self, shared: _SharedPublisher) -> bool:
-        """Publish what is due, unless the publisher has still to meet subscribers; whether nothing is left."""
+        """Publish messages that are due, unless discovery is going on; return whether none is left."""
         now_s = self._now_s()
-        if shared.held and now_s < shared.discovery_end_s and not self._has_met_all(shared):
+        if shared.held and now_s < shared.discovery_end_s and not self._has_matched_all(shared):
             shared.is_waiting = True
             return False
         if shared.is_waiting:
-            shared.is_waiting, shared.late_s, shared.met_s = False, now_s - shared.held[0][0], now_s
+            shared.is_waiting, shared.delay_s, shared.matched_s = False, now_s - shared.held[0][0], now_s
         while shared.held:
-            came_s, message = shared.held[0]
-            if came_s <= shared.met_s and came_s + shared.late_s > now_s:
+            arrived_s, message = shared.held[0]
+            if arrived_s <= shared.matched_s and arrived_s + shared.delay_s > now_s:
                 return False
             shared.held.popleft()
             try:
                 shared.publisher.publish(message)
-            except RCLError as error:  # beyond a bound of its type, which reading does not check
-                self._node.get_logger().warning(f"{shared.topic}: a client's message was refused: {error}")
+            except RCLError as error:  # above a bound of its type, which deserialization does not check
+                self._node.get_logger().warning(f"{shared.topic}: message of a client rejected: {error}")
         return True
 
-    def _has_met_all(self, shared: _SharedPublisher) -> bool:
+    def _has_matched_all(self, shared: _SharedPublisher) -> bool:
         known = self._node.count_subscribers(shared.topic)
         return 0 < known <= shared.publisher.get_subscription_count()
 
@@ -199,12 +202,12 @@ class ClientPublishers:
             )
             publisher = self._node.create_publisher(message_type, topic, profile, event_callbacks=_NO_EVENTS)
         except InvalidTopicNameException as error:
-            raise _RefusalError(f"{topic}: not a topic name") from error
+            raise _RefusalError(f"{topic}: not a valid topic name") from error
         except MissingTypeError as error:
             raise _RefusalError(f"{topic}: {error}") from error
         except RCLError as error:
-            raise _RefusalError(f"{topic}: cannot publish {type_name} here, it carries another type") from error
-        except (ValueError, TypeError, RuntimeError) as error:  # no text, no type of messages
+            raise _RefusalError(f"{topic}: cannot publish {type_name}, the topic has another type") from error
+        except (ValueError, TypeError, RuntimeError) as error:  # invalid Unicode, or not a message type
             raise _RefusalError(f"{topic!r}: cannot publish {type_name}: {error}") from error
         shared = self._by_topic[topic, type_name] = _SharedPublisher(
             topic, type_name, message_type, publisher, self._now_s() + _DISCOVERY_S
@@ -216,7 +219,7 @@ class ClientPublishers:
 
 
 def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Any:
-    """The message, or its checked bytes where there is no class for it."""
+    """Decode and check a message; return its bytes if there is no class for it. Raises _RefusalError."""
     try:
         if shared.type_name == tf2_messages.TF_TYPE_NAME and encoding != JSON:
             check_parts(payload, shared.message_type)
@@ -235,10 +238,10 @@ def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Any:
     ) as error:
         first_line = str(error).partition("\n")[0]
         raise _RefusalError(f"expected a {shared.type_name} in {encoding}: {first_line}") from error
-    except TypeError as error:  # a type without a Python class
-        raise _RefusalError(f"{shared.type_name} is accepted as cdr only") from error
+    except TypeError as error:  # the type has no Python class
+        raise _RefusalError(f"{shared.type_name} is accepted in encoding cdr only") from error
     if shared.type_name in _MOTION_TYPES and not _is_finite(getattr(message, "twist", message)):
-        raise _RefusalError("a velocity that is not a number or infinite is refused")
+        raise _RefusalError("expected finite velocities, found NaN or infinity")
     return message
 
 

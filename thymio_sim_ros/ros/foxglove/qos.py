@@ -1,4 +1,4 @@
-"""QoS of the bridge's endpoints, from what the graph tells about the others (docs/spec/foxglove.md section 5)."""
+"""QoS of the bridge's endpoints, derived from the other endpoints of a topic (docs/spec/foxglove.md section 5)."""
 
 from __future__ import annotations
 
@@ -13,28 +13,31 @@ __all__ = ["SubscriptionQos", "publisher_qos", "subscription_qos"]
 
 @dataclass(frozen=True, slots=True)
 class SubscriptionQos:
-    """How to subscribe: comparable, so that a change is noticed.
+    """How to subscribe to a topic; comparable, to detect changes.
 
-    `kept`: messages for newcomers, 0 unless latched; of several publishers as many as may be, since who sent one is not
-    told, and one that sends often must not displace another's last.
+    `retained` is the number of messages retained for new clients, 0 unless the topic is transient local. With several
+    publishers it is the maximum: the publisher of a message is not known, and one that publishes often must not
+    displace the last message of another.
     """
 
     is_reliable: bool
-    kept: int
+    retained: int
     depth: int
 
     @property
     def profile(self) -> QoSProfile:
-        """The same for rclpy."""
-        return _profile(self.depth, is_reliable=self.is_reliable, is_transient_local=self.kept > 0)
+        """The QoS profile for rclpy."""
+        return _profile(self.depth, is_reliable=self.is_reliable, is_transient_local=self.retained > 0)
 
 
 def subscription_qos(
     publishers: Sequence[TopicEndpointInfo], *, min_depth: int, max_depth: int, best_effort: bool = False
 ) -> SubscriptionQos:
-    """As `ros2 topic echo`: reliable if all publishers are (never with `best_effort`), transient local if all are.
+    """Return the QoS of a subscription that matches all publishers, with the strongest guarantees that they share.
 
-    Fast DDS reports depth 0: count each publisher for one at least. Without publishers: what matches any.
+    Like `ros2 topic echo`: reliable if all publishers are (never with `best_effort`), transient local if all are.
+    Without publishers: best effort and volatile, which match any. The depth is the sum of the publishers' depths,
+    within `min_depth` and `max_depth`; each publisher counts at least 1, because Fast DDS reports depth 0.
     """
     profiles = [info.qos_profile for info in publishers]
     asked = sum(max(1, profile.depth) for profile in profiles)
@@ -45,13 +48,16 @@ def subscription_qos(
         is_reliable=not best_effort
         and bool(profiles)
         and all(item.reliability == ReliabilityPolicy.RELIABLE for item in profiles),
-        kept=0 if not is_transient_local else max_depth if len(profiles) > 1 else min(asked, max_depth),
+        retained=0 if not is_transient_local else max_depth if len(profiles) > 1 else min(asked, max_depth),
         depth=min(max(asked, min_depth), max_depth),
     )
 
 
 def publisher_qos(publishers: Sequence[TopicEndpointInfo], subscriptions: Sequence[TopicEndpointInfo]) -> QoSProfile:
-    """For a client's topic: reliable, which suits every subscription; latched where others expect it."""
+    """Return the QoS of a publisher for clients: reliable, which matches every subscription.
+
+    It is transient local if another endpoint of the topic is.
+    """
     durabilities = [info.qos_profile.durability for info in (*publishers, *subscriptions)]
     is_transient_local = DurabilityPolicy.TRANSIENT_LOCAL in durabilities
     return _profile(1 if is_transient_local else 10, is_reliable=True, is_transient_local=is_transient_local)

@@ -1,7 +1,8 @@
 """Definition text of message and service types (ros2msg), from installed files or from the classes themselves.
 
-The text is the type's own definition, then each type it needs, once, after a line of 80 `=` and `MSG: pkg/Type`.
-The wheels do not set AMENT_PREFIX_PATH, therefore the interpreter's prefix is searched too (docs/spec/foxglove.md
+The text is the definition of the type, followed by each type that it uses, directly or indirectly, once, after a line
+of 80 `=` and a line `MSG: pkg/Type`.
+The ROS wheels do not set AMENT_PREFIX_PATH; therefore the interpreter's prefix is searched too (docs/spec/foxglove.md
 section 5).
 """
 
@@ -31,18 +32,18 @@ _BOUNDED_STRING = re.compile(r"^(w?string)<(\d+)>$")
 
 
 def share_folders() -> list[Path]:
-    """Where packages keep their shared files, the first match wins."""
+    """Folders with the shared files of packages, in the order in which they are searched."""
     prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     return [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
 
 
 def message_definition(type_name: str) -> str:
-    """Complete text for `pkg/msg/Type`; raises MissingTypeError."""
+    """The complete definition of `pkg/msg/Type`. Raises MissingTypeError."""
     return _complete(type_name, _message_text(type_name))
 
 
 def service_definitions(type_name: str) -> tuple[str, str]:
-    """Complete texts of request and response for `pkg/srv/Type`; raises MissingTypeError."""
+    """The complete definitions of request and response of `pkg/srv/Type`. Raises MissingTypeError."""
     text = _file_text(type_name)
     if text is not None:
         request, response = _BETWEEN.split(text, maxsplit=1)
@@ -101,7 +102,7 @@ def _file_text(type_name: str) -> str | None:
 
 
 def _class_text(message: Any) -> str:
-    """Fields of a message class; constants and defaults are lost."""
+    """The definition of a message class; constants and defaults are missing, as the class does not have them."""
     return "".join(f"{_ros_type(kind)} {name}\n" for name, kind in message.get_fields_and_field_types().items())
 
 

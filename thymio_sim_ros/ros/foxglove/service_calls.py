@@ -1,7 +1,8 @@
-"""Service calls without a blocking wait: clients created on demand, readiness and time-outs by polling.
+"""Service calls that do not block: clients are created on demand, readiness and time-outs are polled.
 
-Every call belongs to the queue of its service, which serves its senders in turn. A call costs the same however many are
-open. Callbacks run one after the other, never inside one another, whatever they call.
+Each service has a queue of calls, which serves its senders in turn: a sender with many calls does not delay the others.
+The cost of a call does not depend on the number of open ones. Callbacks run one after the other, never nested, also if
+they make calls themselves.
 """
 
 from __future__ import annotations
@@ -23,13 +24,13 @@ __all__ = ["CALL_TIMEOUT_S", "ServiceCalls"]
 
 CALL_TIMEOUT_S = 5.0
 _IN_FLIGHT = 5
-"""Calls of one service at a time: its middleware keeps ten requests and drops the rest without a word."""
+"""Calls of one service at a time: the middleware of a server keeps ten requests and silently drops more."""
 
 _IN_FLIGHT_EACH = 2
-"""Of these at most so many of one sender, so that a slow service is not busy with one sender alone."""
+"""Calls of one service at a time by one sender, so that one sender cannot occupy a slow service."""
 
 Done = Callable[[Any, str], None]
-"""Called once: with the response and "", or with None and the reason."""
+"""Callback of a call, called once: with the response and "", or with None and the reason of the failure."""
 
 
 @dataclass(slots=True, eq=False)
@@ -66,12 +67,12 @@ class ServiceCalls:
         self._timeout_s = timeout_s
         self._queues: dict[tuple[str, Any], _Queue] = {}
         self._open: OrderedDict[_Call, None] = OrderedDict()
-        """In the order of their deadlines."""
+        """Calls without an answer, in the order of their deadlines."""
         self._finished: deque[tuple[_Call, Any, str]] = deque()
         self._is_finishing = False
 
     def call(self, service_type: Any, name: str, request: Any, done: Done, *, sender: int = 0) -> None:
-        """Call a service; the request leaves as soon as the service is found and the senders before it were served."""
+        """Call a service; the request is sent as soon as the service is found and it is the sender's turn."""
         key = (name, service_type)
         queue = self._queues.get(key)
         if queue is None:
@@ -85,7 +86,7 @@ class ServiceCalls:
             self._wake()
 
     def poll(self) -> bool:
-        """Send what can be sent, give up what is too old; whether calls are open still."""
+        """Send waiting calls and end those that timed out; return whether calls are open."""
         now_s = time.monotonic()
         while self._open and (call := next(iter(self._open))).deadline_s <= now_s:
             self._time_out(call)
@@ -95,16 +96,16 @@ class ServiceCalls:
         return bool(self._open)
 
     def forget(self, name: str) -> None:
-        """The service is gone: its open calls fail, its client ends."""
+        """Remove a service that no longer exists: its open calls fail."""
         for key in [key for key in self._queues if key[0] == name]:
             queue = self._queues.pop(key)
             for call in [*queue.in_flight, *queue.waiting]:
-                self._finish(call, None, f"service {name} is gone")
+                self._finish(call, None, f"service {name} no longer exists")
             self._node.destroy_client(queue.client)
         self._finish_all()
 
     def _send(self, queue: _Queue) -> None:
-        """Send waiting calls as far as the service takes them."""
+        """Send waiting calls within the limits."""
         if not queue.waiting or not queue.client.service_is_ready():
             return
         while queue.waiting and len(queue.in_flight) < _IN_FLIGHT:
@@ -114,8 +115,8 @@ class ServiceCalls:
                 return
             try:
                 future = queue.client.call_async(call.request)
-            except Exception as error:  # of a request that ROS cannot carry
-                self._finish(call, None, f"{queue.name} cannot be asked this: {error}")
+            except Exception as error:  # the request has a value that rclpy cannot convert
+                self._finish(call, None, f"{queue.name}: cannot send the request: {error}")
                 continue
             queue.in_flight[call] = future
             call.deadline_s = time.monotonic() + self._timeout_s
@@ -123,7 +124,7 @@ class ServiceCalls:
             future.add_done_callback(lambda future, call=call: self._answered(call, future))
 
     def _answered(self, call: _Call, future: Future) -> None:
-        """Nothing may be raised here: rclpy's events executor dies of it, with all that share its process."""
+        """Finish an answered call. Must not raise: an exception would end rclpy's events executor and the process."""
         if future.cancelled() or call not in self._open:
             return
         error = future.exception()
@@ -138,14 +139,14 @@ class ServiceCalls:
         self._finish(call, None, f"no answer from {call.queue.name} within {self._timeout_s:g} s")
 
     def _finish(self, call: _Call, response: Any, reason: str) -> None:
-        """Take an open call out; its callback is left to `_finish_all`."""
+        """Remove an open call; `_finish_all` calls its callback."""
         del self._open[call]
         if call.queue.in_flight.pop(call, None) is None:
             call.queue.waiting.remove(call.sender, call)
         self._finished.append((call, response, "" if response is not None else reason))
 
     def _finish_all(self) -> None:
-        """Call back for finished calls. A callback may call and finish others: the outermost of us does it for them."""
+        """Call the callbacks of finished calls. The outermost `_finish_all` also handles calls that these finish."""
         if self._is_finishing:
             return
         self._is_finishing = True
@@ -156,7 +157,7 @@ class ServiceCalls:
                     call.done(response, reason)
                 except Exception:
                     self._node.get_logger().error(
-                        f"internal error (please report): the answer of {call.queue.name} is lost:\n"
+                        f"internal error (please report): the callback for an answer of {call.queue.name} failed:\n"
                         f"{traceback.format_exc()}"
                     )
         finally:

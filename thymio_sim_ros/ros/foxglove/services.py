@@ -1,4 +1,4 @@
-"""Services of the graph as services of the bridge: cdr and JSON in, the same out."""
+"""Services of the ROS graph as services of the bridge; responses have the encoding of the request, CDR or JSON."""
 
 from __future__ import annotations
 
@@ -11,9 +11,8 @@ from rclpy._rclpy_pybind11 import RMWError
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message, serialize_message
 
-from thymio_sim_ros.bridge.constants import CDR, JSON, StatusLevel
-from thymio_sim_ros.bridge.events import AddServices, AnswerCall, Command, RemoveServices, SendToClient
-from thymio_sim_ros.bridge.messages import (
+from thymio_sim_ros.bridge.protocol.constants import CDR, JSON, StatusLevel
+from thymio_sim_ros.bridge.protocol.messages import (
     Service,
     ServiceCallFailure,
     ServiceRequest,
@@ -21,6 +20,7 @@ from thymio_sim_ros.bridge.messages import (
     ServiceSide,
     Status,
 )
+from thymio_sim_ros.bridge.switchboard.events import AddServices, AnswerCall, Command, RemoveServices, SendToClient
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
 from thymio_sim_ros.ros.foxglove.file_access import call_refusal
@@ -32,27 +32,27 @@ __all__ = ["Services"]
 
 
 @dataclass(frozen=True, slots=True)
-class _Offer:
+class _OfferedService:
     service: Service
     service_type: Any
 
 
 class Services:
-    """Keeps the offered services equal to the graph. Belongs to the executor's thread."""
+    """One service of the bridge for each service of the graph. Belongs to the executor's thread."""
 
     def __init__(self, node: Node, calls: ServiceCalls, post: Callable[[Command], None]) -> None:
         self._node = node
         self._calls = calls
         self._post = post
         self._ids = itertools.count(1)
-        self._by_name: dict[str, _Offer] = {}
-        self._by_id: dict[int, _Offer] = {}
+        self._by_name: dict[str, _OfferedService] = {}
+        self._by_id: dict[int, _OfferedService] = {}
         self._refused: set[str] = set()
         self._definitions: dict[str, tuple[str, str]] = {}
-        """Texts of the types met so far."""
+        """Definitions of request and response of each type that was used so far."""
 
     def update(self, services: Mapping[str, Sequence[str]]) -> None:
-        """Offer new services, take away vanished ones; service → types."""
+        """Add new services and remove vanished ones. `services` maps names to types, of which the first one is used."""
         gone = [name for name, offer in self._by_name.items() if offer.service.type not in services.get(name, ())]
         if gone:
             ended = [self._by_name.pop(name).service for name in gone]
@@ -69,15 +69,15 @@ class Services:
             self._post(AddServices(tuple(added)))
 
     def call(self, client: int, request: ServiceRequest) -> None:
-        """Carry out a client's call."""
+        """Execute a call of a client; it is answered with a response or a failure."""
         offer = self._by_id.get(request.service_id)
         if offer is None:
-            self.fail(client, request, f"service {request.service_id} is gone")
+            self.fail(client, request, f"service {request.service_id} no longer exists")
             return
         try:
             message = _decode(request, offer.service_type.Request)
         except (RMWError, json_messages.JsonMessageError, TooManyPartsError, ValueError) as error:
-            self.fail(client, request, f"{offer.service.name}: undecodable request: {_first_line(error)}")
+            self.fail(client, request, f"{offer.service.name}: cannot decode the request: {_first_line(error)}")
             return
         if refusal := call_refusal(offer.service.type, message):
             self.fail(client, request, f"{offer.service.name}: {refusal}")
@@ -89,15 +89,15 @@ class Services:
                 return
             try:
                 payload = json_messages.to_json(response) if request.encoding == JSON else serialize_message(response)
-            except Exception as error:  # of a response that neither can carry
-                self.fail(client, request, f"{offer.service.name}: unreadable response: {_first_line(error)}")
+            except Exception as error:  # the response has a value that the encoding does not support
+                self.fail(client, request, f"{offer.service.name}: cannot encode the response: {_first_line(error)}")
                 return
             answer = ServiceResponse(request.service_id, request.call_id, request.encoding, payload)
             self._post(AnswerCall(client, answer, len(request.payload)))
 
         self._calls.call(offer.service_type, offer.service.name, message, done, sender=client)
 
-    def _add(self, name: str, type_name: str) -> _Offer | None:
+    def _add(self, name: str, type_name: str) -> _OfferedService | None:
         try:
             service_type = load_type(type_name)
             definitions = self._definitions.get(type_name) or service_definitions(type_name)
@@ -111,13 +111,13 @@ class Services:
             ServiceSide(CDR, f"{type_name}_{side}", "ros2msg", text)
             for side, text in zip(("Request", "Response"), definitions, strict=True)
         )
-        offer = _Offer(Service(next(self._ids), name, type_name, request, response), service_type)
+        offer = _OfferedService(Service(next(self._ids), name, type_name, request, response), service_type)
         self._by_name[name] = self._by_id[offer.service.id] = offer
         return offer
 
     def fail(self, client: int, request: ServiceRequest, text: str) -> None:
         """Answer a call with the reason why it failed."""
-        # Some clients handle one, some the other (docs/spec/foxglove.md section 2).
+        # Some clients show failures, others only statuses (docs/spec/foxglove.md section 2).
         failure = ServiceCallFailure(request.service_id, request.call_id, text)
         self._post(AnswerCall(client, failure, len(request.payload)))
         self._post(SendToClient(client, Status(StatusLevel.ERROR, text)))

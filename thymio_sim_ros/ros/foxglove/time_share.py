@@ -1,4 +1,4 @@
-"""Recurring work that may take only a share of a thread's time."""
+"""Limits recurring work to a share of a thread's time."""
 
 from __future__ import annotations
 
@@ -10,20 +10,21 @@ __all__ = ["TimeShare"]
 
 
 class TimeShare:
-    """After work of t seconds of processor time the next is due t / `share` seconds later."""
+    """Work that took t seconds of processor time is due again t / `share` seconds later."""
 
     def __init__(self, share: float) -> None:
+        """`share` is in 0…1."""
         self._share = share
         self._next_s = float("-inf")
 
     @property
     def is_due(self) -> bool:
-        """Whether the work may go on."""
+        """Whether the work may be done again."""
         return time.monotonic() >= self._next_s
 
     @contextmanager
     def work(self) -> Iterator[None]:
-        """What is done inside counts."""
+        """Measure the work inside the block."""
         began_s = time.thread_time()
         try:
             yield

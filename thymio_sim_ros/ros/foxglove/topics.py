@@ -1,4 +1,4 @@
-"""Topics of the graph as channels; raw subscriptions only while a client wants them."""
+"""Topics of the ROS graph as channels of the bridge; serialized messages are forwarded without decoding."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from thymio_sim_ros.bridge.constants import CDR
-from thymio_sim_ros.bridge.events import AddChannels, Command, RemoveChannels, RetainLast
-from thymio_sim_ros.bridge.messages import Channel
+from thymio_sim_ros.bridge.protocol.constants import CDR
+from thymio_sim_ros.bridge.protocol.messages import Channel
+from thymio_sim_ros.bridge.switchboard.events import AddChannels, Command, RemoveChannels, RetainLast
 from thymio_sim_ros.ros.foxglove.qos import SubscriptionQos, subscription_qos
 from thymio_sim_ros.ros.foxglove.schemas import message_definition
 from thymio_sim_ros.ros.foxglove.time_share import TimeShare
@@ -22,34 +22,35 @@ from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 __all__ = ["Topics"]
 
 _FULL_CHECK_PERIOD = 10
-"""Publishers are asked for their QoS when their number has changed, and else in one of so many refreshes: asking costs
-0.3 ms a topic, a tenth of a core for the hundred topics of a page that shows twenty robots."""
+"""The QoS of the publishers of a topic is queried when their number has changed, and otherwise in one of this many
+refreshes: a query takes 0.3 ms, in total a tenth of a core for the hundred topics of a page with twenty robots."""
 
 
 _DEMAND_SHARE = 0.25
-"""Of the time at most this part goes to subscribing and unsubscribing: 1500 topics take 1.5 s."""
+"""Largest share of the thread's time for subscribing and unsubscribing: 1500 topics take 1.5 s."""
 
 _SLICE_S = 0.005
-"""Longest time of one turn of it."""
+"""Longest time that one call of `poll` subscribes and unsubscribes."""
 
 
 class _Topic:
-    """One channel and, while it is wanted, its subscription."""
+    """A channel and, while it has subscribers, the subscription to its topic."""
 
     def __init__(self, channel: Channel, message_type: Any) -> None:
         self.channel = channel
         self.message_type = message_type
         self.qos: SubscriptionQos | None = None
         self.publishers = 0
-        """How many there were when the qos was chosen."""
+        """Number of publishers when the QoS was chosen."""
         self.subscription: Subscription | None = None
         self.is_wanted = False
 
 
 class Topics:
-    """Keeps channels equal to the graph. Belongs to the executor's thread; `poll` must be called while it returns True.
+    """One channel for each topic of the graph, and a ROS subscription while a client subscribes to it.
 
-    What takes time (subscribing, asking for publishers) is done in slices, topic by topic.
+    Belongs to the executor's thread; `poll` must be called while it returns True. Subscribing and queries for
+    publishers are done in slices of time, topic by topic, so that other work is not delayed.
     """
 
     def __init__(
@@ -77,15 +78,18 @@ class Topics:
         """Channels that may have to be subscribed or unsubscribed, the oldest first."""
         self._refreshes = 0
         self._round = self._check_all()
-        """What is left of the present refresh."""
+        """The rest of the current refresh."""
         self._by_name: dict[str, _Topic] = {}
         self._by_id: dict[int, _Topic] = {}
         self._refused: set[tuple[str, str]] = set()
         self._types: dict[str, tuple[Any, str]] = {}
-        """Class and definition of the types met so far."""
+        """Class and definition of each type that was used so far."""
 
     def update(self, topics: Mapping[str, Sequence[str]]) -> None:
-        """Make channels for new topics, take away those of vanished ones; topic → types, the first one counts."""
+        """Add channels for new topics and remove those of vanished ones.
+
+        `topics` maps topic names to types, of which the first one is used.
+        """
         gone = [name for name, topic in self._by_name.items() if topic.channel.schema_name not in topics.get(name, ())]
         if gone:
             self._remove(gone)
@@ -98,11 +102,11 @@ class Topics:
             self._post(AddChannels(tuple(added)))
 
     def subscribe(self, channel_id: int) -> None:
-        """Subscribe for the first client, soon."""
+        """Request a subscription for the first client; `poll` makes it."""
         self._set_wanted(channel_id, is_wanted=True)
 
     def unsubscribe(self, channel_id: int) -> None:
-        """Unsubscribe after the last client, soon."""
+        """Request the end of the subscription, after the last client; `poll` ends it."""
         self._set_wanted(channel_id, is_wanted=False)
 
     def _set_wanted(self, channel_id: int, *, is_wanted: bool) -> None:
@@ -115,7 +119,7 @@ class Topics:
             self._wake()
 
     def poll(self) -> bool:
-        """Subscribe and unsubscribe for a slice of time; whether something is left."""
+        """Subscribe and unsubscribe for a slice of time; return whether work is left."""
         if self._demand and self._share.is_due:
             with self._share.work():
                 end_s = time.monotonic() + _SLICE_S
@@ -132,12 +136,12 @@ class Topics:
         if not topic.is_wanted:
             self._unsubscribe(topic)
         elif topic.subscription is None:
-            self._subscribe(topic, self._reception(topic))
+            self._subscribe(topic, self._subscription_qos(topic))
 
     def refresh(self, slice_s: float = float("inf")) -> bool:
-        """Subscribe anew where publishers came or left so that another QoS fits; whether all topics have been checked.
+        """Subscribe again to topics whose publishers now need another QoS; return whether all topics have been checked.
 
-        A call goes on where the one before it stopped after `slice_s`.
+        A call continues where the previous one stopped after `slice_s`.
         """
         end_s = time.monotonic() + slice_s
         for _ in self._round:
@@ -158,10 +162,10 @@ class Topics:
         is_due = number % _FULL_CHECK_PERIOD == self._refreshes % _FULL_CHECK_PERIOD
         if not is_due and self._node.count_publishers(topic.channel.topic) == topic.publishers:
             return
-        fitting = self._reception(topic)
-        if fitting != topic.qos:
+        qos = self._subscription_qos(topic)
+        if qos != topic.qos:
             self._unsubscribe(topic)
-            self._subscribe(topic, fitting)
+            self._subscribe(topic, qos)
 
     def close(self) -> None:
         """End all subscriptions."""
@@ -170,7 +174,7 @@ class Topics:
 
     @property
     def subscribed(self) -> tuple[str, ...]:
-        """Topics with a subscription now."""
+        """Topics that have a subscription."""
         return tuple(name for name, topic in self._by_name.items() if topic.subscription is not None)
 
     def _add(self, name: str, type_name: str) -> _Topic | None:
@@ -191,27 +195,27 @@ class Topics:
             del self._by_id[topic.channel.id]
         self._post(RemoveChannels(tuple(topic.channel.id for topic in topics)))
 
-    def _reception(self, topic: _Topic) -> SubscriptionQos:
+    def _subscription_qos(self, topic: _Topic) -> SubscriptionQos:
         name = topic.channel.topic
         publishers = self._node.get_publishers_info_by_topic(name)
         topic.publishers = len(publishers)
         return subscription_qos(publishers, **self._depths, best_effort=self._is_best_effort(name))
 
-    def _subscribe(self, topic: _Topic, fitting: SubscriptionQos) -> None:
+    def _subscribe(self, topic: _Topic, qos: SubscriptionQos) -> None:
         channel_id, now_ns, publish = topic.channel.id, self._now_ns, self._publish
 
         def forward(payload: bytes) -> None:
             publish(channel_id, now_ns(), payload)
 
-        self._post(RetainLast(channel_id, fitting.kept))
+        self._post(RetainLast(channel_id, qos.retained))
         try:
             topic.subscription = self._node.create_subscription(
-                topic.message_type, topic.channel.topic, forward, fitting.profile, raw=True
+                topic.message_type, topic.channel.topic, forward, qos.profile, raw=True
             )
         except RCLError as error:  # this process uses the topic with another type
             self._refuse(topic.channel.topic, topic.channel.schema_name, str(error))
             return
-        topic.qos = fitting
+        topic.qos = qos
 
     def _unsubscribe(self, topic: _Topic) -> None:
         if topic.subscription is not None:
@@ -219,7 +223,7 @@ class Topics:
             topic.subscription = topic.qos = None
 
     def _refuse(self, name: str, type_name: str, reason: str) -> None:
-        """Say once why a topic is not there."""
+        """Log once why a topic is not bridged."""
         if (name, type_name) not in self._refused:
             self._refused.add((name, type_name))
-            self._node.get_logger().warning(f"{name} is not bridged: {reason}")
+            self._node.get_logger().warning(f"topic {name} is not bridged: {reason}")

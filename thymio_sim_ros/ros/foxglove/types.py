@@ -1,4 +1,4 @@
-"""Type names and their classes."""
+"""Classes of message and service types, by name."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["MissingTypeError", "full_name", "load_type"]
 
 
 class MissingTypeError(ThymioSimError):
-    """A type that is not installed here."""
+    """A type is not installed here or not usable; `reason` says why."""
 
     def __init__(self, name: str, reason: str) -> None:
         super().__init__(f"type {name} is not available: {reason}")
@@ -25,7 +25,7 @@ class MissingTypeError(ThymioSimError):
 
 
 def full_name(name: str, kind: str = "msg") -> str:
-    """`pkg/Type`, as clients may write it, as `pkg/msg/Type`; other forms as they are."""
+    """Expand `pkg/Type`, which clients may send, to `pkg/msg/Type`; other forms are unchanged."""
     words = name.split("/")
     return f"{words[0]}/{kind}/{words[1]}" if len(words) == 2 else name
 
@@ -34,7 +34,8 @@ def full_name(name: str, kind: str = "msg") -> str:
 def load_type(name: str) -> Any:
     """The class of `pkg/msg/Type` or `pkg/srv/Type`, ready for publishers, subscriptions and clients.
 
-    Transforms work without tf2_msgs, as raw bytes. Raises MissingTypeError.
+    Without the package tf2_msgs, TFMessage is replaced by a class that only works with serialized messages.
+    Raises MissingTypeError.
     """
     if name == tf2_messages.TF_TYPE_NAME:
         if not tf2_messages.available():
@@ -55,10 +56,10 @@ def load_type(name: str) -> Any:
 
 
 def _has_interfaces(package: str, kind: str) -> bool:
-    """Whether it is a package of interfaces, found out without importing it: clients choose the name."""
+    """Whether a package has types of this kind; it is not imported, because clients choose its name."""
     try:
         spec = importlib.util.find_spec(package)
-    except ValueError:  # of __main__, where it is no file
+    except ValueError:  # `__main__` has no spec if it is not a file
         return False
     folders = spec.submodule_search_locations if spec is not None else None
     return any((Path(folder) / kind / "__init__.py").is_file() for folder in folders or ())

@@ -1,4 +1,4 @@
-"""The numbers of readings as messages hold them, and how they are patched into templates of much traffic."""
+"""The numeric fields of messages by reading, and the patches that write them into serialized templates."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ PROXIMITY_MIN_M, LASER_OFFSET_M = 0.0215, 0.08
 
 
 def rotation(yaw_rad: float, tilt: Tilt = LEVEL) -> tuple[float, float, float, float]:
-    """A turn about z, of a body that leans, as x, y, z, w with w >= 0."""
+    """Return the quaternion x, y, z, w, with w >= 0, of a body that is tilted, then turned about z."""
     z, w = math.sin(yaw_rad / 2), math.cos(yaw_rad / 2)
     if tilt == LEVEL:
         return (0.0, 0.0, z, w) if w >= 0.0 else (0.0, 0.0, -z, -w)
@@ -62,13 +62,13 @@ def rotation(yaw_rad: float, tilt: Tilt = LEVEL) -> tuple[float, float, float, f
 
 
 def wheel_rotation(angle_rad: float) -> tuple[float, float, float, float]:
-    """A turn about the axle, the y axis, as x, y, z, w with w >= 0."""
+    """Return the quaternion x, y, z, w, with w >= 0, of a turn about the axle, which is the y axis."""
     y, w = math.sin(angle_rad / 2), math.cos(angle_rad / 2)
     return (0.0, y, 0.0, w) if w >= 0.0 else (0.0, -y, 0.0, -w)
 
 
 def proximity_range_m(reading: readings.ProximityReading, options: Any, index: int) -> float:
-    """A proximity sensor's range in m, or what stands for nothing and too close."""
+    """Return the range of a proximity sensor in m, or the value for no obstacle or for one that is too close."""
     value, nearest = reading.ranges_m[index], options.proximity[index].min_m
     if options.driver_ranges:
         return -1.0 if math.isinf(value) else max(value, nearest)
@@ -76,19 +76,19 @@ def proximity_range_m(reading: readings.ProximityReading, options: Any, index: i
 
 
 def ground_range_m(reading: readings.GroundReading, options: Any, index: int) -> float:
-    """What stands for a floor that reflects, or does not."""
+    """Return the range that stands for a floor that reflects, or does not."""
     dark = reading.words[4 + index] < options.ground_threshold
     not_reflecting, reflecting = (1.0, 0.0) if options.driver_ranges else (math.inf, -math.inf)
     return not_reflecting if dark else reflecting
 
 
 def gray(reading: readings.GroundReading, index: int) -> float:
-    """The gray 0…1 over which a ground sensor gives its count, light from elsewhere taken away."""
+    """Return the gray 0…1 that corresponds to the count of a ground sensor without ambient light."""
     return units.ground_reflectance(reading.words[4 + index])
 
 
 def ray_lines(reading: readings.ProximityReading) -> tuple[list[Point], list[Color]]:
-    """Both ends of each of the seven rays, and a color for each end: red where something is met."""
+    """Return both ends of the seven rays in m, and a color for each end: red if there is an obstacle."""
     ends: list[Point] = []
     colors: list[Color] = []
     for (x, y, dx, dy), range_m in zip(_RAYS, reading.ranges_m, strict=True):
@@ -105,11 +105,11 @@ def ray_lines(reading: readings.ProximityReading) -> tuple[list[Point], list[Col
 _RAYS = tuple((x, y, math.cos(yaw), math.sin(yaw)) for x, y, yaw in robot_constants.PROXIMITY_POSES)
 _FREE: Color = (0.45, 0.75, 1.0, 0.6)
 _HIT: Color = (1.0, 0.3, 0.2, 1.0)
-"""Colors of rays that meet nothing and of those that do."""
+"""Colors of rays without and with an obstacle."""
 
 
 def laser_m(reading: readings.ProximityReading) -> list[float]:
-    """What the five front sensors see, right to left as LaserScan counts angles upwards, m from the robot's middle."""
+    """Return the ranges of the front sensors in m from the robot's center, from right to left as in LaserScan."""
     return [
         math.inf if math.isinf(range_m) else max(range_m, PROXIMITY_MIN_M) + LASER_OFFSET_M
         for range_m in reading.ranges_m[4::-1]
@@ -117,7 +117,7 @@ def laser_m(reading: readings.ProximityReading) -> list[float]:
 
 
 def _range_patch(seen: Callable[[Any, Any, int], float], index: int) -> Patch:
-    """Range and variance end the message."""
+    """Return the patch of a Range: the message ends with range and variance."""
     return Patch((Span(struct.Struct("<ff"), lambda reading, options: (seen(reading, options, index), 0.0)),))
 
 
@@ -136,7 +136,7 @@ def _battery_numbers(reading: readings.BatteryReading, _options: Any) -> Sequenc
 
 
 def charging_status(reading: readings.BatteryReading) -> int:
-    """As BatteryState has it."""
+    """Return the power supply status of BatteryState."""
     return CHARGING if reading.is_charging else DISCHARGING
 
 
@@ -151,7 +151,7 @@ def _odometry_patch(
     place: Callable[[readings.PoseReading], tuple[Pose, Sequence[float]]],
     twist: Callable[[readings.PoseReading], Twist],
 ) -> Patch:
-    """Pose, its covariance, twist, its covariance end the message; covariances stay."""
+    """Return the patch of an Odometry: it ends with pose, covariance, twist, covariance; covariances stay."""
 
     def place_numbers(reading: readings.PoseReading, _options: Any) -> Sequence[float]:
         pose, turn = place(reading)
@@ -173,29 +173,29 @@ _COVARIANCE_BYTES = 36 * 8
 
 
 def led_levels(reading: readings.LedReading) -> list[float]:
-    """How bright every light is, 0…1."""
+    """Return the intensities 0…1 of all lights."""
     return [level / LED_FULL for _, levels in reading.groups for level in levels]
 
 
 def words_patch(count: int) -> Patch | None:
-    """Of so many words; None for none."""
+    """Return the patch of an array of `count` integers; None if it is empty."""
     if not count:
         return None
     return Patch((Span(struct.Struct(f"<{count}h"), lambda reading, _options: reading.words),), has_stamp=False)
 
 
 def proximity_patch(index: int) -> Patch:
-    """Of one proximity sensor's Range."""
+    """Return the patch of the Range of one proximity sensor."""
     return _range_patch(proximity_range_m, index)
 
 
 def ground_patch(index: int) -> Patch:
-    """Of one ground sensor's Range."""
+    """Return the patch of the Range of one ground sensor."""
     return _range_patch(ground_range_m, index)
 
 
 def reflectance_patch(index: int) -> Patch:
-    """Of one ground sensor's gray."""
+    """Return the patch of the reflectance of one ground sensor."""
     return Patch((Span(struct.Struct("<f"), lambda reading, _options: (gray(reading, index),)),), has_stamp=False)
 
 
@@ -206,16 +206,16 @@ TRUTH = _odometry_patch(
     lambda reading: (reading.truth, rotation(reading.truth.yaw_rad, reading.tilt)), lambda reading: reading.truth_twist
 )
 JOINTS = Patch((Span(struct.Struct("<2dI4x2d"), _joint_numbers, behind=8),))
-"""Two positions, two velocities, and no effort, which is aligned all the same."""
+"""Two positions and two velocities; the empty effort after them is aligned as if it had values."""
 LASER = Patch((Span(struct.Struct("<5fI5f"), _laser_numbers),))
 LEDS = Patch(
     (Span(struct.Struct(f"<{sum(LED_GROUPS.values())}f"), lambda reading, _options: led_levels(reading)),),
     has_stamp=False,
 )
 RAYS = Patch((Span(struct.Struct("<42dI56f"), _ray_numbers, behind=69),))
-"""Points and colors; behind them a texture, texts and a mesh, all empty."""
+"""Points and colors; the rest is an empty texture, empty texts and an empty mesh."""
 IMU = Patch((Span(struct.Struct("<3d"), lambda reading, _options: reading.acceleration_m_s2, behind=9 * 8),))
 JOY = Patch((Span(struct.Struct("<5i"), lambda reading, _options: reading.words),))
 BATTERY = Patch((Span(struct.Struct("<7fB"), _battery_numbers, behind=24),))
-"""Up to the status; behind it what stays, and empty cells and texts."""
+"""All fields up to the status; the rest is constant, or empty cells and texts."""
 TEMPERATURE = Patch((Span(struct.Struct("<d"), lambda reading, _options: (reading.words[0] / 10,), behind=8),))

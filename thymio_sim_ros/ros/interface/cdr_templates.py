@@ -1,8 +1,8 @@
-"""Serialized messages that are made once and patched with each reading: a third of the cost of building them anew.
+"""Templates: messages that are serialized once and patched with each reading, at a third of the cost of serializing.
 
-CDR keeps what does not change its size in place: the stamp of a header is at the beginning, numbers of fixed size are
-so many bytes before the end. A row of `sensor_topics` says by a `Patch` which; a template is checked against the
-serialiser when it is made.
+In CDR, fields of fixed size keep their place as long as texts and arrays keep their length: the stamp of a header is at
+the beginning, numbers are at a fixed distance from the end. A row of `sensor_topics` describes them by a `Patch`; each
+template is compared with the result of the serializer when it is created.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ __all__ = ["Patch", "Span", "Template"]
 
 _STAMP = struct.Struct("<iI")
 _STAMP_AT = 4
-"""Behind the encapsulation."""
+"""Offset of the stamp in bytes: it follows the encapsulation header."""
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Numbers side by side, as `layout` packs them, with `behind` bytes of the message after them."""
+    """Adjacent numbers, packed by `layout`, that end `behind` bytes before the end of the message."""
 
     layout: struct.Struct
     numbers: Callable[[Any, Any], Sequence[float]]
@@ -34,14 +34,14 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """What a reading changes: some spans of the message, and its stamp if it has one."""
+    """The parts of a message that a reading changes: spans, and the stamp if there is one."""
 
     spans: tuple[Span, ...]
     has_stamp: bool = True
 
 
 class Template:
-    """The bytes of one topic's messages, for one choice of options."""
+    """The serialized message of one topic, valid for one object of options."""
 
     __slots__ = ("_data", "_has_stamp", "_spans", "options")
 
@@ -56,9 +56,9 @@ class Template:
 
     @classmethod
     def checked(cls, patch: Patch, message: Any, reading: Any, options: Any) -> Template | None:
-        """The template of the message that this reading gave; None if patching it in does not give the same."""
+        """Return the template of a message; None if patching it with its own reading gives another message."""
         template = cls(patch, message, options)
-        # Bytes between fields may be anything, hence messages are compared; by their text, where NaN equals NaN.
+        # Padding is arbitrary, so messages are compared instead of bytes; by their text, since NaN differs from NaN.
         try:
             filled = deserialize_message(template.fill(reading), type(message))
         except (RuntimeError, struct.error):  # a length was overwritten, or there is no room
@@ -67,12 +67,12 @@ class Template:
         return template if repr(filled) == repr(fresh) else None
 
     def at(self, stamp_ns: int) -> bytes:
-        """The message with this stamp and nothing else changed."""
+        """Return the message with this stamp; everything else stays."""
         _STAMP.pack_into(self._data, _STAMP_AT, *divmod(stamp_ns, SECOND_NS))
         return bytes(self._data)
 
     def fill(self, reading: Any) -> bytes:
-        """The message of a reading."""
+        """Return the message of a reading."""
         data = self._data
         if self._has_stamp:
             _STAMP.pack_into(data, _STAMP_AT, *divmod(reading.stamp_ns, SECOND_NS))

@@ -23,7 +23,7 @@ def body_twist(message: TwistMsg, timeout_ns: int) -> commands.BodyTwist:
 
 
 def wheel_velocities(data: Any, timeout_ns: int) -> commands.WheelVelocities:
-    """[left, right] in rad/s → command."""
+    """Convert [left, right] in rad/s. Raises CommandError for another number of values, NaN and inf."""
     values = sized(data, 2, "[left, right] in rad/s")
     for value in values:
         finite(value, "wheel speed")
@@ -31,13 +31,16 @@ def wheel_velocities(data: Any, timeout_ns: int) -> commands.WheelVelocities:
 
 
 def motor_targets(data: Any) -> commands.MotorTargets:
-    """[left, right] in Thymio units → command."""
+    """Convert [left, right] in Thymio units. Raises CommandError for another number of values."""
     left, right = sized(data, 2, "[left, right] in Thymio units")
     return commands.MotorTargets(int(left), int(right))
 
 
 def led_levels(group: str, intensities: Any) -> commands.SetLeds:
-    """Intensities 0…1 → command with levels 0…32; clamped; fewer than the group has are refused."""
+    """Convert intensities 0…1, clamped, to levels 0…32.
+
+    Raises CommandError unless there is one finite intensity for each light of the group.
+    """
     size = commands.LED_GROUPS[group]
     values = sized(intensities, size, f"{size} intensities 0…1")
     for value in values:

@@ -1,4 +1,4 @@
-"""Readings → messages; nothing else knows what a Range is.
+"""Conversions of readings to messages.
 
 Names, units, frames and QoS are those of docs/spec/ros-interface.md sections 4, 6.3 and 9.
 """
@@ -41,12 +41,12 @@ GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
 LASER_STEP_RAD, LASER_ANGLE_RAD = 0.32, 0.64
 
 TRAIL_M = 0.0015
-"""Height of what pens drew, for viewers: above all paint."""
+"""Height of pen strokes, for viewers: above all paint."""
 
 
 @dataclass(frozen=True, slots=True)
 class RangeFields:
-    """What the Range of one proximity sensor says about it: m, m, rad."""
+    """Fixed fields in the Range messages of one proximity sensor: m, m, rad."""
 
     min_m: float = PROXIMITY_MIN_M
     max_m: float = PROXIMITY_MAX_M
@@ -55,10 +55,10 @@ class RangeFields:
 
 @dataclass(frozen=True, slots=True)
 class ConvertOptions:
-    """What a user may choose about the content of messages.
+    """Options for the content of messages.
 
     `driver_ranges`: −1 and minimum instead of ±inf (docs/spec/ros-interface.md section 4.3). `ground_threshold`: count.
-    `proximity`: in Thymio's order. Covariance diagonals: x y z roll pitch yaw. `scan_ns`: between two laser scans.
+    `proximity`: in Thymio's order. Covariance diagonals: x y z roll pitch yaw. `scan_ns`: period of laser scans.
     """
 
     driver_ranges: bool = False
@@ -70,13 +70,13 @@ class ConvertOptions:
 
 
 def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
-    """A turn about z, of a body that leans; w >= 0."""
+    """Return the rotation of a body that is tilted, then turned about z; w >= 0."""
     x, y, z, w = cdr_fields.rotation(yaw_rad, tilt)
     return Quaternion(x=x, y=y, z=z, w=w)
 
 
 def yaw_of(rotation: Quaternion) -> float:
-    """Yaw in rad of any unit quaternion; of one without measure, not a number."""
+    """Return the yaw in rad of a unit quaternion; NaN if a component is not finite."""
     x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
     if not math.isfinite(x * x + y * y + z * z + w * w):
         return math.nan
@@ -86,7 +86,7 @@ def yaw_of(rotation: Quaternion) -> float:
 def proximity_range(
     reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions, *, index: int
 ) -> Range:
-    """A horizontal sensor as the driver has it."""
+    """Return the range of one proximity sensor as in the driver."""
     said = options.proximity[index]
     message = Range(
         radiation_type=Range.INFRARED,
@@ -99,7 +99,7 @@ def proximity_range(
 
 
 def laser(reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions) -> LaserScan:
-    """The five front sensors as one scan from right to left; all five measure at once, hence no time increment."""
+    """Return the five front sensors as one scan from right to left; they measure simultaneously: no time increment."""
     message = LaserScan(
         angle_min=-LASER_ANGLE_RAD,
         angle_max=LASER_ANGLE_RAD,
@@ -115,7 +115,7 @@ def laser(reading: readings.ProximityReading, names: RobotNames, options: Conver
 
 
 def ground_range(reading: readings.GroundReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
-    """A ground sensor: whether the floor reflects."""
+    """Return whether the floor reflects below one ground sensor, as a range."""
     message = Range(
         radiation_type=Range.INFRARED,
         field_of_view=GROUND_FOV_RAD,
@@ -129,27 +129,27 @@ def ground_range(reading: readings.GroundReading, names: RobotNames, options: Co
 def ground_reflectance(
     reading: readings.GroundReading, _names: RobotNames, _options: ConvertOptions, *, index: int
 ) -> Float32:
-    """A ground sensor: how much light the floor reflects, 0 (black) to 1 (white)."""
+    """Return the part of the light that the floor reflects below one ground sensor: 0 (black) to 1 (white)."""
     return Float32(data=cdr_fields.gray(reading, index))
 
 
 def button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:
-    """Whether one button is pressed."""
+    """Return whether one button is pressed."""
     return Bool(data=pressed(reading, index=index))
 
 
 def pressed(reading: readings.ButtonsReading, *, index: int) -> bool:
-    """The same without a message."""
+    """Return whether one button is pressed, as a value to compare."""
     return bool(reading.words[index])
 
 
 def joy(reading: readings.ButtonsReading, names: RobotNames, _options: ConvertOptions) -> Joy:
-    """All buttons."""
+    """Return the states of all buttons."""
     return stamped(Joy(buttons=list(reading.words)), reading.stamp_ns, names.frame("base_link"))
 
 
 def joints(reading: readings.MotorReading, names: RobotNames, _options: ConvertOptions) -> JointState:
-    """Angles and speeds of the wheels."""
+    """Return angles and speeds of the wheels."""
     message = JointState(
         name=[names.frame(f"{side}_wheel_joint") for side in SIDES],
         position=list(reading.angles_rad),
@@ -159,7 +159,7 @@ def joints(reading: readings.MotorReading, names: RobotNames, _options: ConvertO
 
 
 def odometry(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
-    """Where the wheels have brought the robot by their count."""
+    """Return the wheel odometry."""
     message = _odometry_message(reading.odometry, reading.odometry_twist)
     message.pose.covariance[::7] = options.pose_covariance
     message.twist.covariance[::7] = options.twist_covariance
@@ -168,7 +168,7 @@ def odometry(reading: readings.PoseReading, names: RobotNames, options: ConvertO
 
 
 def truth(reading: readings.PoseReading, names: RobotNames, _options: ConvertOptions) -> Odometry:
-    """Where the robot really is."""
+    """Return the true pose and velocity."""
     message = _odometry_message(reading.truth, reading.truth_twist)
     message.pose.pose.orientation = quaternion(reading.truth.yaw_rad, reading.tilt)
     message.child_frame_id = names.frame("base_link")
@@ -185,7 +185,7 @@ def _odometry_message(pose: Pose, twist: Twist) -> Odometry:
 
 
 def leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOptions) -> Float32MultiArray:
-    """Every light, a labeled dimension for each group."""
+    """Return the intensities of all lights, with a labeled dimension for each group."""
     return Float32MultiArray(
         layout=layout((group, len(levels)) for group, levels in reading.groups),
         data=cdr_fields.led_levels(reading),
@@ -193,24 +193,24 @@ def leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOpti
 
 
 def sound(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Float32MultiArray:
-    """[Hz, s, volume 0…1]: 0 Hz for samples, inf s for a tone without end, zeros for silence."""
+    """Return [Hz, s, volume 0…1]: 0 Hz for samples, inf s for a tone without end, zeros for silence."""
     seconds = math.inf if reading.duration_ns is None else reading.duration_ns / SECOND_NS
     parts = layout([("frequency_hz", 1), ("duration_s", 1), ("volume", 1)])
     return Float32MultiArray(layout=parts, data=[reading.frequency_hz, seconds, volume(reading.shift)])
 
 
 def played_samples(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Any:
-    """A sound that begins; None for a tone."""
+    """Return the samples of a sound that begins; None for a tone."""
     return UInt8MultiArray(data=reading.samples) if reading.samples else None
 
 
 def played_wave(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Int8MultiArray:
-    """The period that tones are made of."""
+    """Return the samples of one period of tones."""
     return Int8MultiArray(data=list(reading.wave))
 
 
 def trail(reading: readings.PenReading, names: RobotNames, _options: ConvertOptions) -> MarkerArray:
-    """What the robot's pen drew, a line strip for each stroke; DELETEALL comes first."""
+    """Return the strokes of the robot's pen as line strips; DELETEALL comes first."""
     message = MarkerArray(markers=[Marker(action=Marker.DELETEALL)])
     for number, stroke in enumerate(reading.strokes):
         red, green, blue = stroke.color
@@ -223,17 +223,17 @@ def trail(reading: readings.PenReading, names: RobotNames, _options: ConvertOpti
 
 
 def volume(shift: int) -> float:
-    """Loudness 0…1 of samples that lose so many bits."""
+    """Return the loudness 0…1 of samples that lose `shift` bits."""
     return 0.0 if shift >= VOLUME_OFF else 2.0**-shift
 
 
 def words(reading: Any, _names: RobotNames, _options: ConvertOptions) -> Int16MultiArray:
-    """Aseba's integers."""
+    """Return the integers that Aseba programs see."""
     return Int16MultiArray(data=list(reading.words))
 
 
 def layout(dimensions: Iterable[tuple[str, int]]) -> MultiArrayLayout:
-    """Labeled parts of one flat array, one after the other."""
+    """Return the layout of a flat array with consecutive labeled parts, from pairs of label and size."""
     return MultiArrayLayout(
         dim=[MultiArrayDimension(label=label, size=size, stride=size) for label, size in dimensions]
     )

@@ -1,4 +1,4 @@
-"""Messages of the senses besides proximity and ground (docs/spec/ros-interface.md sections 3 and 4.1)."""
+"""Conversions of the readings of smaller sensors to messages (docs/spec/ros-interface.md sections 3 and 4.1)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from thymio_sim_ros.sim.model import readings
 
 ACCELERATION_VARIANCE = 0.07
 TEMPERATURE_VARIANCE = 0.01
-"""As the robot's driver has them (docs/spec/ros-interface.md section 3)."""
+"""Variances of the ROS driver (docs/spec/ros-interface.md section 3)."""
 
 ABSENT = -1.0
 """First element of the covariance of a quantity that an Imu does not measure (REP 145)."""
@@ -26,7 +26,7 @@ RAY_WIDTH_M = 0.003
 
 
 def rays(reading: readings.ProximityReading, names: RobotNames, _options: object) -> Marker:
-    """The seven rays of the proximity sensors as lines, as long as what they measure, for viewers."""
+    """Return the seven rays of the proximity sensors as lines of the measured length, for viewers."""
     marker = Marker(ns="rays", action=Marker.ADD, type=Marker.LINE_LIST, frame_locked=True)
     marker.scale.x = RAY_WIDTH_M
     ends, colors = cdr_fields.ray_lines(reading)
@@ -36,7 +36,7 @@ def rays(reading: readings.ProximityReading, names: RobotNames, _options: object
 
 
 def imu(reading: readings.AccelerometerReading, names: RobotNames, _options: object) -> Imu:
-    """Acceleration alone, forward, left, up."""
+    """Return the acceleration along forward, left and up; all other quantities are marked as absent."""
     message = Imu()
     message.orientation_covariance[0] = message.angular_velocity_covariance[0] = ABSENT
     vector = message.linear_acceleration
@@ -46,13 +46,13 @@ def imu(reading: readings.AccelerometerReading, names: RobotNames, _options: obj
 
 
 def temperature(reading: readings.TemperatureReading, names: RobotNames, _options: object) -> Temperature:
-    """Degrees Celsius as the robot tells them, in tenths."""
+    """Return the temperature in °C, with the robot's resolution of 0.1 °C."""
     message = Temperature(temperature=reading.words[0] / 10, variance=TEMPERATURE_VARIANCE)
     return stamped(message, reading.stamp_ns, names.frame("base_link"))
 
 
 def battery(reading: readings.BatteryReading, names: RobotNames, _options: object) -> BatteryState:
-    """Voltage and charge; what the robot does not measure is NaN."""
+    """Return voltage and charge; quantities that the robot does not measure are NaN."""
     message = BatteryState(
         voltage=reading.volts,
         percentage=reading.charge,
@@ -69,25 +69,25 @@ def battery(reading: readings.BatteryReading, names: RobotNames, _options: objec
 
 
 def tap(_reading: readings.TapReading, _names: RobotNames, _options: object) -> Empty:
-    """A shock."""
+    """Return the message of a tap."""
     return Empty()
 
 
 def sound(reading: readings.SoundReading, _names: RobotNames, _options: object) -> Float32 | None:
-    """Intensity 0…1 of what is above the threshold."""
+    """Return the intensity 0…1 of a sound above the threshold, or None."""
     return Float32(data=reading.words[0] / 255) if reading.is_loud else None
 
 
 def remote(reading: readings.RemoteReading, _names: RobotNames, _options: object) -> Int8:
-    """The command of a frame."""
+    """Return the command of a remote control frame."""
     return Int8(data=reading.words[1])
 
 
 def received(reading: readings.CommReading, _names: RobotNames, _options: object) -> Int16:
-    """The value of an infrared frame."""
+    """Return the value of an infrared frame."""
     return Int16(data=reading.words[0])
 
 
 def collision(reading: readings.CollisionReading, _names: RobotNames, _options: object) -> Bool:
-    """Whether something is touched."""
+    """Return whether the robot touches something."""
     return Bool(data=reading.is_touching)

@@ -1,8 +1,8 @@
-"""Topics that only code written for the Thymio's ROS driver needs: with the parameter `driver_topics`.
+"""Additional topics for code that was written for the Thymio's ROS driver (parameter `driver_topics`).
 
-Some topics of the driver have hidden names here; with the parameter they are there under the driver's names as well.
-Those with types of the driver's own package `thymio_msgs` are there where that package is installed; each has a twin of
-standard types (docs/spec/ros-interface.md section 4).
+Some topics of the driver have hidden names here; with the parameter they also exist under the driver's names. Topics
+with types of the driver's package `thymio_msgs` exist if that package is installed; each has an equivalent with a
+standard type (docs/spec/ros-interface.md section 4).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ GROUPS = ("circle", "proximity", "buttons", "ground", "temperature", "microphone
 """Groups of lights by the number in `Led` and `LedGesture`."""
 
 MIN_TONE_NS = SECOND_NS // 60
-"""Of a tone, as the driver plays it."""
+"""Shortest duration of a tone, as in the driver."""
 
 STANDARD_TOPICS = (
     "alarm",
@@ -55,7 +55,7 @@ STANDARD_TOPICS = (
     "tap",
     "temperature",
 )
-"""The driver's names, of standard types, whose topics have hidden names here: `_alarm` and so on."""
+"""The driver's topics with standard types that have hidden names here: `_alarm` and so on."""
 
 TOPICS: Mapping[str, tuple[str, str, str]] = {
     "comm/rx": ("out", "Comm", "an infrared frame: value, payloads and intensities of the seven sensors"),
@@ -68,31 +68,31 @@ TOPICS: Mapping[str, tuple[str, str, str]] = {
     "sound/play": ("in", "Sound", "Hz, duration of at least 1/60 s"),
     "sound/play/system": ("in", "SystemSound", "the robot's sound 0…7, -1 stops"),
 }
-"""Direction, type and meaning of each."""
+"""Direction, type and meaning of the topics with types of `thymio_msgs`."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriverTopics:
-    """What a robot publishes and listens to besides: rows by sensor, and inputs."""
+    """Additional topics of a robot: published rows by sensor, and inputs."""
 
     rows: Mapping[str, Sequence[Row]] = field(default_factory=dict)
     inputs: Sequence[RobotInput] = ()
 
     @classmethod
     def plain(cls) -> DriverTopics:
-        """The topics with hidden names under those of the driver."""
+        """Return the topics with standard types, under the driver's names."""
         rows = {sensor.name: _plain(sensor_topics.rows_of(sensor)) for sensor in all_sensors()}
         return cls({sensor: plain for sensor, plain in rows.items() if plain}, _plain(robot_inputs()))
 
     def with_all(self, other: DriverTopics) -> DriverTopics:
-        """Both together."""
+        """Return the topics of both."""
         sensors = self.rows.keys() | other.rows.keys()
         rows = {name: (*self.rows.get(name, ()), *other.rows.get(name, ())) for name in sorted(sensors)}
         return DriverTopics(rows, (*self.inputs, *other.inputs))
 
     @classmethod
     def of(cls, messages: Any) -> DriverTopics:
-        """Those with types of the module `thymio_msgs.msg`."""
+        """Return the topics with types of the module `thymio_msgs.msg`."""
 
         def comm(reading: Any, _names: object, _options: object) -> Any:
             words = reading.words
@@ -116,13 +116,13 @@ class DriverTopics:
 
 
 def driver_name(topic: str) -> str:
-    """The driver's name of one of our topics."""
+    """Return the driver's name of a topic."""
     plain = topic.removeprefix(HIDDEN)
     return plain if plain in STANDARD_TOPICS else topic
 
 
 def found(node: Node) -> DriverTopics:
-    """All of them; those of the package if there is one. A package that cannot be loaded is logged."""
+    """Return all topics that are available; a package that is installed but cannot be imported is logged."""
     try:
         import thymio_msgs.msg
     except ImportError as error:
@@ -136,13 +136,13 @@ _R = TypeVar("_R", Row, RobotInput)
 
 
 def _plain(rows: Iterable[_R]) -> tuple[_R, ...]:
-    """Those of the rows that have another name in the driver, under that name."""
+    """Return the rows that have another name in the driver, under that name."""
     return tuple(replace(row, topic=driver_name(row.topic)) for row in rows if driver_name(row.topic) != row.topic)
 
 
 def _group(number: int) -> str:
     if number >= len(GROUPS):
-        raise CommandError(f"group {number} found, expected 0 to {len(GROUPS) - 1}: {', '.join(GROUPS)}")
+        raise CommandError(f"found group {number}, expected 0 to {len(GROUPS) - 1}: {', '.join(GROUPS)}")
     return GROUPS[number]
 
 
@@ -157,7 +157,7 @@ def _too_bright(message: Any) -> str:
 
 
 def _gesture(message: Any, _input_context: InputContext) -> Sequence[Command]:
-    """The driver's own four are told apart by group, shape and length."""
+    """Find the gesture of the driver by group, wave form and length."""
     if message.gesture == message.OFF:
         return (commands.StopGesture(),)
     group = _group(message.leds)
@@ -166,7 +166,7 @@ def _gesture(message: Any, _input_context: InputContext) -> Sequence[Command]:
     elif group == "proximity":
         name = "kit"
     else:
-        raise CommandError(f"a gesture of the {group} lights found, expected circle (0) or proximity (1)")
+        raise CommandError(f"found a gesture of the {group} lights, expected circle (0) or proximity (1)")
     if not math.isfinite(message.period):
         raise CommandError(f"period is {message.period}, expected a finite number")
     try:

@@ -10,12 +10,12 @@ SECOND_NS = 1_000_000_000
 
 
 def stamp(ns: int) -> Time:
-    """Simulated nanoseconds as a message."""
+    """Return simulated time in ns as a message."""
     return Time(sec=ns // SECOND_NS, nanosec=ns % SECOND_NS)
 
 
 def stamped(message: Any, ns: int, frame: str) -> Any:
-    """The message, its header filled in."""
+    """Fill in the header of a message and return the message."""
     message.header.stamp = stamp(ns)
     message.header.frame_id = frame
     return message

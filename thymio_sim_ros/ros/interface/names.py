@@ -2,7 +2,7 @@
 
 A playground with one robot uses the empty name: `odom`, frame `base_link`. With several, the robot's
 name is the namespace and the prefix of its frames and joints: `thymio_1/odom`, `thymio_1/base_link`.
-All names of topics and services are relative to the namespace of the node, but for `GLOBAL`.
+All names of topics and services except `GLOBAL` are relative to the namespace of the node.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ PROXIMITY = ("left", "center_left", "center", "center_right", "right", "rear_lef
 SIDES = ("left", "right")
 
 GLOBAL = ("/clock", "/diagnostics", "/tf", "/tf_static")
-"""Topics that are the same in all namespaces, as the tools of ROS expect it."""
+"""Topics with the same name in all namespaces, as ROS tools expect."""
 
 HIDDEN = "_"
-"""What a hidden topic's name begins with: `ros2 topic list` leaves out names with such a word (docs/ros.md)."""
+"""First character of a hidden word: `ros2 topic list` omits topics with such a word in their name (docs/ros.md)."""
 
 MAP_FRAME = "map"
 
 
 @dataclass(frozen=True, slots=True)
 class FrameNames:
-    """What a user may call frames and joints; a robot's prefix comes before all but the map's."""
+    """Names of frames and joints that the user can choose; all except `map` get the robot's prefix."""
 
     map: str = MAP_FRAME
     odom: str = "odom"
@@ -43,18 +43,21 @@ DEFAULT_FRAMES = FrameNames()
 
 @dataclass(frozen=True, slots=True)
 class RobotNames:
-    """Topic and frame names of one robot; `name` is empty where it is the only one. `prefix` None: the name."""
+    """Topic and frame names of one robot.
+
+    `name` is empty for a single robot. `prefix` is that of its frames; None is the name.
+    """
 
     name: str
     prefix: str | None = None
     frames: FrameNames = DEFAULT_FRAMES
 
     def topic(self, relative: str) -> str:
-        """Topic or service name, relative to the node's namespace."""
+        """Return a topic or service name, relative to the node's namespace."""
         return f"{self.name}/{relative}" if self.name else relative
 
     def frame(self, relative: str) -> str:
-        """Frame or joint name; `relative` is its usual one."""
+        """Return the name of a frame or joint; `relative` is the default one."""
         if relative == MAP_FRAME:
             return self.frames.map
         prefix = self.name if self.prefix is None else self.prefix
@@ -64,10 +67,10 @@ class RobotNames:
 
 @dataclass(frozen=True, slots=True)
 class Naming:
-    """How the robots of a simulation get their names in ROS.
+    """Assigns ROS names to the robots of a simulation.
 
-    `prefix` comes before those of all frames. `namespaced_tf`: frames have bare names, on `tf` of the
-    robot's namespace. `keeps_names`: also a robot alone has its own.
+    `prefix` precedes the prefix of each robot's frames. `namespaced_tf`: frames have no prefix and are published on
+    `tf` in the robot's namespace. `keeps_names`: a single robot keeps its name too.
     """
 
     prefix: str = ""
@@ -76,13 +79,13 @@ class Naming:
     frames: FrameNames = DEFAULT_FRAMES
 
     def one(self, robot: str) -> RobotNames:
-        """A robot that comes to others."""
+        """Return the names of a robot that is added to others."""
         if self.namespaced_tf:
             return RobotNames(robot, "", self.frames)
         return RobotNames(robot, "/".join(part for part in (self.prefix, robot) if part), self.frames)
 
     def all(self, robots: Iterable[str]) -> dict[str, RobotNames]:
-        """World name → names in ROS, for the robots of one playground."""
+        """Return ROS names by name in the world, for the robots of one playground."""
         robots = tuple(robots)
         if len(robots) == 1 and not self.keeps_names:
             return {robots[0]: self.one("")}
@@ -90,26 +93,26 @@ class Naming:
 
 
 def ros_names(robots: tuple[str, ...]) -> dict[str, RobotNames]:
-    """World name → names in ROS, for the robots of one playground, where nobody chose otherwise."""
+    """Return ROS names by name in the world, with the default options."""
     return Naming().all(robots)
 
 
 def is_hidden(topic: str) -> bool:
-    """Whether `ros2 topic list` leaves this topic out: one of the words of its name begins with `_`."""
+    """Whether `ros2 topic list` omits this topic, because a word of its name begins with `_`."""
     return any(word.startswith(HIDDEN) for word in topic.split("/"))
 
 
 def full_name(node: Node, topic: str) -> str:
-    """The whole name of a relative topic of a node, for people; remappings are left out."""
+    """Return the full name of a topic of a node, for messages to the user; remappings are ignored."""
     return topic if topic.startswith("/") else f"{node.get_namespace().rstrip('/')}/{topic}"
 
 
 def raw_topic(sensor: str) -> str:
-    """The topic with the integers of a sensor, relative to the robot's namespace."""
+    """Return the topic with the integer readings of a sensor, relative to the robot's namespace."""
     return f"_raw/{sensor}"
 
 
 def topic_word(event: str) -> str:
-    """The name of an Aseba event as one word of a topic name (docs/spec/ros-interface.md section 6.1)."""
+    """Return the name of an Aseba event as one word of a topic name (docs/spec/ros-interface.md section 6.1)."""
     word = re.sub(r"[^A-Za-z0-9_]", "_", event)
     return f"_{word}" if word[:1].isdigit() else word

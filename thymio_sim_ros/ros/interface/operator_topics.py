@@ -12,7 +12,7 @@ from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16Mul
 
 from thymio_sim_ros.ros.interface import command_checks, qos, saturation
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import CommandRow
+from thymio_sim_ros.ros.interface.command_row import CommandRow
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL
 from thymio_sim_ros.sim.commands import Command

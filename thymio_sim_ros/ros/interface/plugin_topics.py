@@ -1,8 +1,8 @@
-"""Topics of the actuators and stimuli that a plug-in adds: one per type of command, its numbers in one labeled array.
+"""Topics of the actuators and stimuli of plug-ins: one per type of command, its numbers in one labeled array.
 
-A command that is none of `sim/commands/` travels as std_msgs/Float64MultiArray on `actuator/<actuator>`, or on
-`actuator/<actuator>/<command>` where an actuator accepts several; for stimuli the topic begins with `stimulus/`.
-Programs, nodes and people publish on it.
+A command that is not declared in `sim/commands/` is a std_msgs/Float64MultiArray on `actuator/<actuator>`, or on
+`actuator/<actuator>/<command>` if the actuator accepts several; for stimuli the topic begins with `stimulus/`. Aseba
+programs publish on it, and any node can.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from std_msgs.msg import Float64MultiArray
 
 from thymio_sim_ros.ros.interface import command_checks, convert_readings
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import CommandRow
+from thymio_sim_ros.ros.interface.command_row import CommandRow
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin
@@ -33,7 +33,7 @@ _NUMBERS: dict[Any, Callable[[float], object]] = {
 
 
 def rows() -> tuple[CommandRow, ...]:
-    """One row for each command that only a plug-in knows; those with other fields than numbers have none."""
+    """Return one row for each command of a plug-in; commands with fields that are not numbers have no topic."""
     return tuple(
         CommandRow(topic, Float64MultiArray, _decoder(kind), _encode, about=_about(kind))
         for plugin in (*all_actuators(), *all_stimuli())
@@ -42,7 +42,7 @@ def rows() -> tuple[CommandRow, ...]:
 
 
 def topic_of(command: object) -> str | None:
-    """The topic of a plug-in's command; None for any other."""
+    """Return the topic of a command of a plug-in; None for any other command."""
     found = (_topics(plugin).get(type(command)) for plugin in (*all_actuators(), *all_stimuli()))
     return next((topic for topic in found if topic is not None), None)
 
@@ -67,7 +67,7 @@ def _about(kind: type[Any]) -> str:
 
 
 def _word(name: str) -> str:
-    """BigJump → big_jump."""
+    """Return a class name as a topic word: BigJump becomes big_jump."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
 
 

@@ -1,8 +1,8 @@
-"""The integers of all robots' sensors in one message a tick: what a runtime with many robots listens to.
+"""The integer readings of all robots in one message per tick, for a runtime with many robots.
 
-It is a `std_msgs/Int16MultiArray` with a dimension for each reading: the label is `robot/sensor`, or `sensor` where the
-robot has no name, the size is the number of its words, which follow each other in `data`. `_raw/<sensor>` of each robot
-tells the same one by one; a message costs more than what is in it.
+It is a `std_msgs/Int16MultiArray` with a dimension for each reading: the label is `robot/sensor`, or `sensor` if the
+robot has no name; the size is its number of words, which are consecutive in `data`. The topics `_raw/<sensor>` of each
+robot carry the same readings one by one, but the cost of a message hardly depends on its size.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from thymio_sim_ros.sim.sensors import all_sensors
 __all__ = ["RawDecoder", "RawTopic", "SensorWords", "encode"]
 
 SensorWords = tuple[str, str, Sequence[int]]
-"""A robot's name in ROS, a sensor, its integers."""
+"""ROS name of a robot, sensor, integers."""
 
 _LITTLE_ENDIAN_CDR = b"\0\1\0\0"
 _TWO = struct.Struct("<II")
 _COUNT = struct.Struct("<I")
 _MAX_KNOWN = 500
-"""So many kinds of messages are remembered: which sensors measure together hardly changes."""
+"""Largest number of remembered message layouts: the sensors that measure in the same tick hardly change."""
 
 
 def encode(readings: Iterable[SensorWords]) -> bytes:
-    """The message of these readings, serialized."""
+    """Return the serialized message of these readings."""
     heads: list[bytes] = []
     words: list[int] = []
     for robot, sensor, integers in readings:
@@ -46,15 +46,18 @@ def encode(readings: Iterable[SensorWords]) -> bytes:
 
 
 class RawDecoder:
-    """Takes messages apart. Invariant: what is known of a message by its first bytes is true of all that begin so."""
+    """Decodes messages. Invariant: messages that begin with the same remembered bytes have the same layout."""
 
     def __init__(self) -> None:
         self._known: dict[int, list[tuple[bytes, list[tuple[str, str, int, int]]]]] = {}
-        """By size of the message: how it begins, and robot, sensor, first word and end of each reading."""
+        """By size of the message: its first bytes, and robot, sensor, first word and end of each reading."""
         self._count = 0
 
     def decode(self, data: bytes) -> Iterator[SensorWords]:
-        """The readings of a serialized message; RuntimeError when it is none, ValueError when words are missing."""
+        """Yield the readings of a serialized message.
+
+        Raises RuntimeError for other bytes, ValueError if the sizes do not add up to the number of words.
+        """
         for head, parts in self._known.get(len(data), ()):
             if data.startswith(head):
                 words = struct.unpack_from(f"<{parts[-1][3] if parts else 0}h", data, len(head))
@@ -69,7 +72,7 @@ class RawDecoder:
     def _remember(self, data: bytes, words: Sequence[int], parts: list[tuple[str, str, int, int]]) -> None:
         own = encode((robot, sensor, words[begin:end]) for robot, sensor, begin, end in parts)
         if not data.startswith(own):
-            return  # written by somebody else in another way
+            return  # from another serializer, with other padding
         if self._count >= _MAX_KNOWN:
             self._known.clear()
             self._count = 0
@@ -78,12 +81,12 @@ class RawDecoder:
 
 
 class RawTopic:
-    """The simulator's side: what a tick gave is sent at its end, if anybody listens."""
+    """Publishes the readings of each tick at its end, if there are subscribers."""
 
     def __init__(self, publisher: Any, demand: SubscriberDemand) -> None:
         self._send, self._count = raw_publisher.sender(publisher), raw_publisher.counter(publisher)
         self._demand = demand
-        self._heard = {
+        self._demands = {
             sensor.name: TopicDemand(sensor.name, is_periodic=sensor_topics.is_periodic(sensor, row))
             for sensor in all_sensors()
             for row in sensor_topics.rows_of(sensor)
@@ -93,21 +96,21 @@ class RawTopic:
         self._waiting: list[SensorWords] = []
 
     def poll(self) -> None:
-        """Find out whether somebody listens now."""
+        """Find out whether there are subscribers."""
         has_subscribers = self._count() > 0
         if has_subscribers == self._has_subscribers:
             return
         self._has_subscribers = has_subscribers
-        for heard in self._heard.values():
-            (self._demand.add if has_subscribers else self._demand.remove)(heard)
+        for topic in self._demands.values():
+            (self._demand.add if has_subscribers else self._demand.remove)(topic)
 
     def add(self, robot: str, sensor: str, reading: Reading) -> None:
-        """A reading of this tick, of the robot with this name in ROS."""
-        if self._has_subscribers and sensor in self._heard:
+        """Add a reading of this tick; `robot` is a ROS name."""
+        if self._has_subscribers and sensor in self._demands:
             self._waiting.append((robot, sensor, reading.words))
 
     def flush(self) -> None:
-        """The tick is over."""
+        """Publish the readings of this tick."""
         if self._waiting:
             self._send(encode(self._waiting))
             self._waiting.clear()
@@ -115,7 +118,7 @@ class RawTopic:
 
 @lru_cache(maxsize=8192)
 def _dimension(robot: str, sensor: str, size: int) -> bytes:
-    """A serialized MultiArrayDimension, which begins and ends at a multiple of four bytes."""
+    """Return a serialized MultiArrayDimension, which begins and ends at a multiple of four bytes."""
     label = f"{robot}/{sensor}".lstrip("/").encode() + b"\0"
     return _COUNT.pack(len(label)) + label + bytes(-len(label) % 4) + _TWO.pack(size, size)
 
@@ -127,5 +130,5 @@ def _parts(message: Int16MultiArray) -> list[tuple[str, str, int, int]]:
         parts.append((robot, sensor, end, end + dimension.size))
         end += dimension.size
     if end != len(message.data):
-        raise ValueError(f"{len(message.data)} words found, expected {end}")
+        raise ValueError(f"found {len(message.data)} words, expected {end}")
     return parts

@@ -27,7 +27,7 @@ from thymio_sim_ros.ros.interface import (
     saturation,
 )
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import CommandRow
+from thymio_sim_ros.ros.interface.command_row import CommandRow
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.sim import commands
@@ -154,7 +154,7 @@ def _pose(message: PoseWithCovarianceStamped, input_context: InputContext) -> Se
     """Viewers send the pose in the frame that they display or follow."""
     pose, frame, frames = message.pose.pose, message.header.frame_id, input_context.frames()
     if frame and frame not in frames:
-        raise CommandError(f"frame '{frame}' found, expected {' or '.join(frames)}")
+        raise CommandError(f"found frame '{frame}', expected {' or '.join(frames)}")
     origin = frames[frame] if frame else WORLD
     x, y = origin.place((pose.position.x, pose.position.y))
     yaw = origin.yaw_rad + convert_readings.yaw_of(pose.orientation)

@@ -42,33 +42,34 @@ __all__ = [
 ]
 
 LimitCheck = Callable[[Any], str]
+"""Returns a sentence about the part of a message that will be clamped, or an empty text."""
 
 MAX_TONE_S = 3600.0
-"""A tone that would be longer sounds until it is stopped."""
+"""Longest duration of a tone in s; a longer one is played until it is stopped."""
 STOP_SOUND = -1
-"""In place of the number of a sound."""
+"""The number that stops the current sound."""
 
 _ROUNDING = 1e-6
-"""Messages of single precision, and sums of theirs, may be this part beyond a limit that they mean to keep."""
+"""Relative tolerance of limits, for rounding errors of single-precision messages."""
 
 
 def nothing(_message: object) -> str:
-    """Of a topic whose values have no limits, or are refused beyond them."""
+    """Return an empty text: for topics whose values have no limits, or are rejected beyond them."""
     return ""
 
 
 def twist(message: Twist) -> str:
-    """Speeds of the body that a wheel cannot reach."""
+    """Describe speeds of the body that the wheels cannot reach."""
     return _speeds(commands.BodyTwist(message.linear.x, message.angular.z))
 
 
 def stamped_twist(message: TwistStamped) -> str:
-    """The same of a twist with a stamp."""
+    """Describe speeds of the body, in a message with a stamp, that the wheels cannot reach."""
     return twist(message.twist)
 
 
 def wheels(message: Float64MultiArray) -> str:
-    """Wheel speeds that a wheel cannot reach."""
+    """Describe wheel speeds that the wheels cannot reach."""
     return _speeds(commands.WheelVelocities(*message.data))
 
 
@@ -90,27 +91,27 @@ def _outside(values: Iterable[float], low: float, high: float, what: str) -> str
 
 
 def targets(message: Int16MultiArray) -> str:
-    """Targets of motors beyond full speed."""
+    """Describe motor targets beyond full speed."""
     return _outside(message.data, -robot_constants.FULL_TARGET, robot_constants.FULL_TARGET, "target")
 
 
 def color(message: ColorRGBA) -> str:
-    """Parts of a color beyond 0…1: often somebody counts to 255."""
+    """Describe parts of a color beyond 0…1: values up to 255 are a common mistake."""
     return _outside((message.r, message.g, message.b), 0.0, 1.0, "color")
 
 
 def paint(message: ColorRGBA) -> str:
-    """The same of a color whose alpha counts."""
+    """Describe parts of a color beyond 0…1, including alpha."""
     return color(message) or _outside((message.a,), 0.0, 1.0, "alpha")
 
 
 def brightness(values: Iterable[float]) -> str:
-    """Intensities of lights beyond 0…1."""
+    """Describe intensities of lights beyond 0…1."""
     return _outside(values, 0.0, 1.0, "intensity")
 
 
 def intensities(message: Float32MultiArray) -> str:
-    """The same of a message."""
+    """Describe intensities of lights in a message beyond 0…1."""
     return brightness(message.data)
 
 
@@ -123,14 +124,14 @@ light: LimitCheck = partial(_one, what="light")
 
 
 def threshold(message: Float32) -> str:
-    """A threshold that no loudness has: every sound is above a negative one, none above one beyond 1."""
+    """Describe a threshold beyond 0…1: every sound is above a negative one, none above one beyond 1."""
     limit_check = _outside((message.data,), 0.0, 1.0, "threshold")
     every = "every" if message.data < 0.0 else "no"
     return limit_check and f"{limit_check} (0 is off); {every} sound is published with this value"
 
 
 def tone(message: Float32MultiArray) -> str:
-    """Frequencies that the loudspeaker's wave cannot have, and times that nobody waits for."""
+    """Describe a frequency that the loudspeaker cannot play, or a duration beyond `MAX_TONE_S`."""
     hertz, seconds = message.data
     if seconds < 0:
         return ""
@@ -138,27 +139,27 @@ def tone(message: Float32MultiArray) -> str:
 
 
 def frequency(hertz: float) -> str:
-    """A frequency that the loudspeaker's wave cannot have."""
+    """Describe a frequency in Hz that the loudspeaker cannot play; its sign is ignored."""
     return _outside((abs(hertz),), LOWEST_HZ, HIGHEST_HZ, "frequency")
 
 
 def system_sound(message: Int8) -> str:
-    """Numbers of sounds that the robot does not have."""
+    """Describe the number, in a message, of a sound that the robot does not have."""
     return sound_number(message.data)
 
 
 def sound_number(number: int) -> str:
-    """The same of a number."""
+    """Describe the number of a sound that the robot does not have."""
     limit_check = _outside((number,), STOP_SOUND, len(SYSTEM_SOUNDS) - 1, "sound")
     return limit_check and f"{limit_check}; the robot beeps instead"
 
 
 def payload(message: Int16) -> str:
-    """Values that infrared frames cannot carry."""
+    """Describe a value that infrared frames cannot carry."""
     limit_check = _outside((message.data,), 0, FULL_PAYLOAD, "value")
     return f"{limit_check}; a negative one is a pulse without data" if message.data < 0 else limit_check
 
 
 def single(message: Int16MultiArray) -> str:
-    """Brightness of one light beyond 0…32."""
+    """Describe a brightness of one light beyond 0…32."""
     return _outside(message.data[1:], 0, commands.LED_FULL, "brightness")

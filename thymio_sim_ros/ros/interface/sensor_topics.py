@@ -46,9 +46,9 @@ Encode = Callable[[Any, RobotNames, ConvertOptions], Any]
 class Row:
     """One topic of one sensor; `encode` returns the message, or None if there is nothing to publish.
 
-    `about`: its content and units, for the reference; `frame`: the usual name of its header's frame, if it has one.
-    `every_ns`: not more often than that; 0 all. `always`: published also when nobody listens. `on_change`: only when
-    this part of a reading differs from what it was.
+    `about`: content and units, for docs/ros.md. `frame`: default name of the frame in the header, if there is one.
+    `every_ns`: shortest period; 0 publishes all readings. `always`: published also without subscribers. `on_change`:
+    published only if this part of the reading has changed.
     """
 
     topic: str
@@ -61,9 +61,9 @@ class Row:
     always: bool = False
     on_change: Callable[[Any], Any] | None = None
     is_event: bool = False
-    """Whether `encode` gives nothing for most readings."""
+    """Whether `encode` returns None for most readings."""
     patch: Patch | None = None
-    """What a reading changes in the serialized message, for topics with much traffic."""
+    """The parts of the serialized message that a reading changes, for topics with much traffic."""
 
 
 ROWS: dict[str, tuple[Row, ...]] = {
@@ -254,7 +254,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
         ),
     ),
 }
-"""Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `_raw/<sensor>`."""
+"""Topics in SI units by sensor name. In addition, every sensor with Aseba variables or an event has `_raw/<sensor>`."""
 
 
 AT_START: Mapping[str, Reading] = {
@@ -265,7 +265,7 @@ AT_START: Mapping[str, Reading] = {
 
 
 def rows_of(sensor: Sensor) -> tuple[Row, ...]:
-    """Return the topics of a sensor; that of a plug-in has the raw topic only."""
+    """Return the topics of a sensor; sensors of plug-ins have the raw topic only."""
     variables = ", ".join(f"`{name}`" if size == 1 else f"`{name}[{size}]`" for name, size in sensor.aseba.variables)
     about = f"Aseba's integers: {variables}" if variables else "the event, without values"
     about += "".join(f", then {name}" for name in sensor.aseba.unseen)

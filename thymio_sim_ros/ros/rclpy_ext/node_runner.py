@@ -386,5 +386,5 @@ def _report_usage(executable: str, extra: Sequence[str]) -> int:
     if set(extra) & {"-h", "--help"}:
         print(usage)
         return 0
-    print(f"thymio-sim: argument '{extra[0]}' found, expected ROS arguments only\n{usage}", file=sys.stderr)
+    print(f"thymio-sim: found argument '{extra[0]}', expected ROS arguments only\n{usage}", file=sys.stderr)
     return 2

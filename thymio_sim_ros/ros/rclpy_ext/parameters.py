@@ -106,7 +106,7 @@ class Declared:
         """Return the reason why a value is invalid, or an empty text; constraints of the descriptor are not checked."""
         said = self.metadata
         if value is None:
-            return f"{self.name}: nothing found, expected a value"
+            return f"{self.name}: found nothing, expected a value"
         if said["choices"] and value not in said["choices"]:
             return f"{self.name} is '{value}', expected {' or '.join(said['choices'])}"
         if isinstance(value, float) and not math.isfinite(value):
@@ -114,7 +114,7 @@ class Declared:
         if not isinstance(self.default, list):
             return ""
         if said["size"] is not None and len(value) != said["size"]:
-            return f"{self.name}: {len(value)} values found, expected {said['size']}"
+            return f"{self.name}: found {len(value)} values, expected {said['size']}"
         for number, item in enumerate(value):
             if isinstance(item, float) and not _is_within(item, said):
                 return f"{self.name}[{number}] is {item}, expected {_limits(said) or 'a finite number'}"

@@ -18,7 +18,7 @@ from thymio_sim_ros.ros.interface.sensor_topics import JOINTS, TRUTH
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, EndpointOptions
-from thymio_sim_ros.ros.simulator.transforms import TransformOptions
+from thymio_sim_ros.ros.simulator.visualization.transforms import TransformOptions
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.clock import TICK_NS
@@ -28,7 +28,7 @@ from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
 from thymio_sim_ros.sim.sensors.proximity import SENSOR as SCANNER
 
-__all__ = ["SimulatorParams"]
+__all__ = ["CurrentParams", "SimulatorParams"]
 
 _POSE_VARIANCES = [1e-4, 1e-4, 0.0, 0.0, 0.0, 1e-3]
 _TWIST_VARIANCES = [1e-5, 1e-5, 0.0, 0.0, 0.0, 1e-4]
@@ -217,6 +217,31 @@ class SimulatorParams:
     def transform_options(self) -> TransformOptions:
         """Options for transforms."""
         return TransformOptions(self.publish_map_tf, self.publish_wheel_tf, self.publish_static_tf, self.namespaced_tf)
+
+
+class CurrentParams:
+    """The current values of the parameters, for objects that use a value when they need it."""
+
+    def __init__(self, values: SimulatorParams) -> None:
+        self.values = values
+
+    @property
+    def values(self) -> SimulatorParams:
+        """All parameters."""
+        return self._values
+
+    @values.setter
+    def values(self, values: SimulatorParams) -> None:
+        self._values = values
+        self._convert_options = values.convert_options
+
+    @property
+    def convert_options(self) -> ConvertOptions:
+        """The options for the content of messages: the same object until a parameter changes.
+
+        Templates of messages are valid for one object of options.
+        """
+        return self._convert_options
 
 
 def _period_ns(rate_hz: float) -> int:

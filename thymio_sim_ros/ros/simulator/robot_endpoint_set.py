@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 
 from thymio_sim_ros.ros.interface.names import Naming, RobotNames
-from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
+from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints, first_words
 
 __all__ = ["RobotEndpointSet"]
 
@@ -31,14 +31,15 @@ class RobotEndpointSet:
             endpoints.poll()
 
     @property
-    def names(self) -> tuple[RobotNames, ...]:
-        """ROS names of all robots, in the order of the world."""
-        return tuple(endpoints.names for endpoints in self._endpoints.values())
-
-    @property
-    def by_robot(self) -> dict[str, RobotNames]:
-        """ROS names by name in the world."""
+    def names(self) -> dict[str, RobotNames]:
+        """ROS names by name in the world, in the order of the world."""
         return {robot: endpoints.names for robot, endpoints in self._endpoints.items()}
+
+    def check_name(self, robot: str) -> None:
+        """Raise ValueError if the name is the first word of topics of a robot without a ROS name."""
+        has_nameless = any(not endpoints.names.name for endpoints in self._endpoints.values())
+        if has_nameless and robot in first_words():
+            raise ValueError(f"the name '{robot}' is taken by topics of the robot that has no name")
 
     def reset(self, robots: Iterable[str]) -> None:
         """Serve the robots of a new or reset playground: a single robot has an empty ROS name, several keep theirs."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from rclpy.node import Node
 from std_msgs.msg import String
@@ -26,7 +26,7 @@ from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
-from thymio_sim_ros.ros.simulator.urdf import urdf
+from thymio_sim_ros.ros.simulator.visualization.urdf import urdf
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose, Tilt, Twist
@@ -34,9 +34,15 @@ from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 from thymio_sim_ros.sim.playground.placement import PlacementError
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["DESCRIPTION", "DESCRIPTION_TOPIC", "SERVICES", "EndpointOptions", "RobotEndpoints", "first_words"]
-
-Post = Callable[[Command], None]
+__all__ = [
+    "DESCRIPTION",
+    "DESCRIPTION_TOPIC",
+    "SERVICES",
+    "EndpointOptions",
+    "RobotEndpoints",
+    "RobotOwner",
+    "first_words",
+]
 
 DESCRIPTION = "robot_description"
 DESCRIPTION_TOPIC = (String, "the robot as URDF, made of primitives, with turning wheels")
@@ -77,7 +83,7 @@ class _SensorPublisher:
     """The publisher of a row with its demand, the time of the next message, and the last published value."""
 
     row: Row
-    heard: TopicDemand
+    topic_demand: TopicDemand
     next_ns: int
     publisher: Any = None
     send: Callable[[bytes], None] = lambda _data: None
@@ -91,40 +97,44 @@ class _SensorPublisher:
     template: Template | None = None
 
 
+class RobotOwner(Protocol):
+    """The simulator as the endpoints of one robot use it."""
+
+    @property
+    def convert_options(self) -> ConvertOptions:
+        """The current options for the content of messages."""
+
+    def input_context(self) -> InputContext:
+        """Return time, time-out and frames for a message that has arrived."""
+
+    def post(self, command: Command) -> None:
+        """Post a command to the robot. Raises PlacementError for a place that is not free."""
+
+    def count_rejected(self) -> None:
+        """Count a rejected message."""
+
+    def count_clamped(self) -> None:
+        """Count a clamped message."""
+
+
 class RobotEndpoints:
     """Publishers, subscriptions and services of one robot on the simulator's node."""
 
     def __init__(
-        self,
-        node: Node,
-        names: RobotNames,
-        post: Post,
-        *,
-        content: Callable[[], ConvertOptions],
-        input_context: Callable[[], InputContext],
-        options: EndpointOptions,
-        demand: SubscriberDemand,
-        on_refusal: Callable[[], None] = lambda: None,
-        on_limit: Callable[[], None] = lambda: None,
+        self, node: Node, names: RobotNames, owner: RobotOwner, *, options: EndpointOptions, demand: SubscriberDemand
     ) -> None:
         """Create all endpoints.
 
         Args:
             node: The node of the simulator.
             names: ROS names of the robot.
-            post: Posts a command to the world.
-            content: Returns the current options for the content of messages.
-            input_context: Returns time, time-out and frames; called for each message.
+            owner: Takes commands and gives the context in which messages are converted.
             options: Which topics to create.
             demand: Counts the topics that are published.
-            on_refusal: Called for each rejected message.
-            on_limit: Called for each clamped message.
         """
         self.names = names
         self._node = node
-        self._post = post
-        self._content, self._input_context = content, input_context
-        self._on_refusal, self._on_limit = on_refusal, on_limit
+        self._owner = owner
         self._limited: set[str] = set()
         self._warn = ThrottledLog(node)
         self._demand = demand
@@ -156,9 +166,9 @@ class RobotEndpoints:
         sent = self._sent.get(sensor)
         if not sent:
             return
-        stamp_ns, content = reading.stamp_ns, self._content()
+        stamp_ns, content = reading.stamp_ns, self._owner.convert_options
         for target in sent:
-            every_ns = target.heard.every_ns
+            every_ns = target.topic_demand.every_ns
             if every_ns:
                 if stamp_ns < target.next_ns:
                     continue
@@ -202,16 +212,16 @@ class RobotEndpoints:
         reading = PoseReading(now_ns, (), pose, still, pose, still, tilt)
         for target in self._publishers["pose"]:
             if target.row.topic == sensor_topics.TRUTH:
-                target.publisher.publish(target.row.encode(reading, self.names, self._content()))
+                target.publisher.publish(target.row.encode(reading, self.names, self._owner.convert_options))
 
     def reset(self) -> None:
         """Publish the next reading of every sensor even if unchanged, and replace outdated retained messages."""
         for sensor, publishers in self._publishers.items():
             for target in publishers:
-                target.last, target.next_ns = None, target.heard.every_ns
+                target.last, target.next_ns = None, target.topic_demand.every_ns
                 if target.is_stale and sensor in sensor_topics.AT_START:
                     target.is_stale = False
-                    message = target.row.encode(sensor_topics.AT_START[sensor], self.names, self._content())
+                    message = target.row.encode(sensor_topics.AT_START[sensor], self.names, self._owner.convert_options)
                     target.publisher.publish(message)
 
     def close(self) -> None:
@@ -227,39 +237,39 @@ class RobotEndpoints:
         if self._description is not None:
             self._node.destroy_publisher(self._description)
 
-    def _open(self, row: Row, heard: TopicDemand) -> None:
-        topic, target = self.names.topic(row.topic), _SensorPublisher(row, heard, next_ns=heard.every_ns)
+    def _open(self, row: Row, topic_demand: TopicDemand) -> None:
+        topic, target = self.names.topic(row.topic), _SensorPublisher(row, topic_demand, next_ns=topic_demand.every_ns)
         profile = qos.overridable(self._node, topic, row.profile)
         target.publisher = self._node.create_publisher(row.type, topic, **profile)
         target.send, target.count = raw_publisher.sender(target.publisher), raw_publisher.counter(target.publisher)
-        self._publishers[heard.sensor].append(target)
+        self._publishers[topic_demand.sensor].append(target)
         self._send(target, wanted=row.always)
 
     def _send(self, target: _SensorPublisher, *, wanted: bool) -> None:
         if target.is_sent == wanted:
             return
         target.is_sent = wanted
-        (self._demand.add if wanted else self._demand.remove)(target.heard)
-        sensor = target.heard.sensor
+        (self._demand.add if wanted else self._demand.remove)(target.topic_demand)
+        sensor = target.topic_demand.sensor
         self._sent[sensor] = tuple(one for one in self._publishers[sensor] if one.is_sent)
 
     def _handler(self, one: RobotInput) -> Callable[[Any], None]:
         def handle(message: Any) -> None:
             try:
-                for command in one.commands(message, self._input_context()):
-                    self._post(command)
+                for command in one.commands(message, self._owner.input_context()):
+                    self._owner.post(command)
                 limit_check = one.limit_check(message)
                 if limit_check:
                     self._report_limit(one, limit_check)
             except (CommandError, PlacementError) as error:
-                self._on_refusal()
+                self._owner.count_rejected()
                 self._warn(self._full_name(one), f"rejected: {error}")
 
         return handle
 
     def _report_limit(self, one: RobotInput, limit_check: str) -> None:
         """Log a clamped message once per topic: programs use large numbers for full speed on purpose."""
-        self._on_limit()
+        self._owner.count_clamped()
         if one.topic not in self._limited:
             self._limited.add(one.topic)
             self._node.get_logger().warning(f"{self._full_name(one)} clamped: {limit_check} (reported once per topic)")
@@ -268,7 +278,7 @@ class RobotEndpoints:
         return full_name(self._node, self.names.topic(one.topic))
 
     def _reset_odometry(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._post(commands.ResetOdometry())
+        self._owner.post(commands.ResetOdometry())
         response.success = True
         response.message = "odometry restarts at zero: odom -> base_link jumps once"
         return response

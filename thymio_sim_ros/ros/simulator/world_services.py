@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 from rcl_interfaces.msg import ParameterType, ParameterValue, SetParametersResult
@@ -19,16 +19,17 @@ from std_srvs.srv import SetBool, Trigger
 
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
-from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
+from thymio_sim_ros.ros.simulator.diagnostics import MessageCounters
+from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
+from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
 from thymio_sim_ros.sim.playground import writer
 from thymio_sim_ros.sim.playground.reader import RobotStart
-from thymio_sim_ros.sim.world import World
 
-__all__ = ["PLACE_MEANING", "PLACE_TOPIC", "SERVICES", "SimulatorControl", "WorldServices", "at_current_tick"]
+__all__ = ["PLACE_MEANING", "PLACE_TOPIC", "SERVICES", "WorldServices", "at_current_tick"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,66 +61,14 @@ WORLD_STOPPED = "the world stopped with an internal error (please report): see t
 PLACE_MEANING = "move a robot or an object: `child_frame_id` is its name, or the frame of a robot"
 
 
-class SimulatorControl(Protocol):
-    """The methods of the simulator that services use."""
-
-    @property
-    def world(self) -> World:
-        """The current world."""
-
-    @property
-    def names(self) -> Mapping[str, RobotNames]:
-        """ROS names of the robots by their name in the world."""
-
-    @property
-    def paused(self) -> bool:
-        """Whether the simulation is paused."""
-
-    def pause(self, paused: bool) -> None:
-        """Pause or resume the simulation."""
-
-    @property
-    def map_frame(self) -> str:
-        """Name of the world frame."""
-
-    @property
-    def playground(self) -> str:
-        """The playground as given: name, path or text."""
-
-    @property
-    def playground_name(self) -> str:
-        """Name of the playground."""
-
-    def step(self, ticks: int | None = None) -> bool:
-        """Execute `ticks`, by default those of one step; False if the world stopped with an internal error."""
-
-    def spawn(self, start: RobotStart) -> None:
-        """Add a robot. Raises ValueError for an invalid or taken name or place."""
-
-    def reset(self) -> None:
-        """Reset world, time and noise to the start."""
-
-    def load(self, playground: str) -> str:
-        """Load a playground by name, path or text; return the reason if it is rejected."""
-
-    def catch_up(self) -> None:
-        """Execute deferred ticks, and defer none until the next tick."""
-
-    def update_robots(self) -> None:
-        """Create or destroy endpoints if robots were added or removed."""
-
-    def count_refusal(self) -> None:
-        """Count a rejected message."""
-
-
 Handler = Callable[[Any, Any], Any]
 
 
-def at_current_tick(simulator: SimulatorControl, handler: Handler) -> Handler:
+def at_current_tick(runner: WorldRunner, handler: Handler) -> Handler:
     """Wrap a service handler so that deferred ticks are executed first."""
 
     def handle(request: Any, response: Any) -> Any:
-        simulator.catch_up()
+        runner.catch_up()
         return handler(request, response)
 
     return handle
@@ -128,8 +77,9 @@ def at_current_tick(simulator: SimulatorControl, handler: Handler) -> Handler:
 class WorldServices:
     """The world services on the node of the simulator."""
 
-    def __init__(self, node: Node, simulator: SimulatorControl) -> None:
-        self._simulator, self._warn = simulator, ThrottledLog(node)
+    def __init__(self, node: Node, runner: WorldRunner, robots: RobotEndpointSet, counters: MessageCounters) -> None:
+        self._runner, self._robots, self._counters = runner, robots, counters
+        self._warn = ThrottledLog(node)
         handlers: dict[str, Handler] = {
             "~/pause": self._pause,
             "~/step": self._step,
@@ -141,27 +91,27 @@ class WorldServices:
             "~/get_playground": self._get_playground,
         }
         self._services = [
-            node.create_service(service.type, name, at_current_tick(simulator, handlers[name]))
+            node.create_service(service.type, name, at_current_tick(runner, handlers[name]))
             for name, service in SERVICES.items()
         ]
         self._subscription = node.create_subscription(TransformStamped, PLACE_TOPIC, self._place, qos.COMMAND)
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        self._simulator.pause(bool(request.data))
-        response.success, response.message = True, "paused" if self._simulator.paused else "running"
+        self._runner.pause(bool(request.data))
+        response.success, response.message = True, "paused" if self._runner.paused else "running"
         return response
 
     def _step(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        if not self._simulator.paused:
+        if not self._runner.paused:
             response.success, response.message = False, "the simulation is running: pause it first"
             return response
-        response.success = self._simulator.step()
-        now = f"now {self._simulator.world.now_ns / SECOND_NS:.3f} s"
+        response.success = self._runner.step()
+        now = f"now {self._runner.world.now_ns / SECOND_NS:.3f} s"
         response.message = now if response.success else f"{now}: {WORLD_STOPPED}"
         return response
 
     def _reset(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._simulator.reset()
+        self._runner.reset()
         response.success, response.message = True, "world, time and noise were reset"
         return response
 
@@ -170,7 +120,7 @@ class WorldServices:
 
         def answer(request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
             response.results = [self._attempt(act, one.name, one.value) for one in request.parameters]
-            self._simulator.update_robots()
+            self._runner.update_robots()
             return response
 
         return answer
@@ -187,10 +137,10 @@ class WorldServices:
     def _spawn(self, name: str, value: ParameterValue) -> None:
         x, y, yaw = _pose_of(name, value)
         start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
-        self._simulator.spawn(start)
+        self._runner.spawn(start)
 
     def _remove(self, name: str, _value: ParameterValue) -> None:
-        world = self._simulator.world
+        world = self._runner.world
         if name not in world.robots:
             raise ValueError(_unknown(name, tuple(world.robots)))
         world.remove(name)
@@ -199,7 +149,7 @@ class WorldServices:
         self._move(name, *_pose_of(name, value))
 
     def _move(self, name: str, x: float, y: float, yaw: float) -> None:
-        world = self._simulator.world
+        world = self._runner.world
         if name in world.robots:
             world.post(name, MoveRobot(x, y, yaw))
         elif name in world.movables:
@@ -208,7 +158,7 @@ class WorldServices:
             raise ValueError(_unknown(name, (*world.robots, *world.movables)))
 
     def _get_poses(self, request: GetParameters.Request, response: GetParameters.Response) -> GetParameters.Response:
-        world = self._simulator.world
+        world = self._runner.world
         poses = {thing.name: thing.pose for thing in world.objects}
         poses |= {name: robot.pose for name, robot in world.robots.items()}
         for name in request.names:
@@ -221,21 +171,22 @@ class WorldServices:
         return response
 
     def _get_playground(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = True, writer.dumps(self._simulator.world.playground)
+        response.success, response.message = True, writer.dumps(self._runner.world.playground)
         return response
 
     def _place(self, message: TransformStamped) -> None:
-        self._simulator.catch_up()
+        self._runner.catch_up()
         try:
             self._place_frame(message)
         except ValueError as error:
-            self._simulator.count_refusal()
+            self._counters.rejected += 1
             self._warn(PLACE_TOPIC, f"rejected: {error}")
 
     def _place_frame(self, message: TransformStamped) -> None:
         """Move an object or robot; `child_frame_id` is its name or a robot's frame."""
-        of_frame = {names.frame("base_link"): robot for robot, names in self._simulator.names.items()}
-        maps = {"", *(names.frame("map") for names in self._simulator.names.values())}
+        robots = self._robots.names
+        of_frame = {names.frame("base_link"): robot for robot, names in robots.items()}
+        maps = {"", *(names.frame("map") for names in robots.values())}
         if message.header.frame_id not in maps:
             raise ValueError(f"found frame '{message.header.frame_id}', expected '{max(maps)}'")
         name, transform = message.child_frame_id, message.transform

@@ -1,8 +1,8 @@
-"""The web page as a ROS node: parameters, and a server in a thread that shares nothing (`thymio_sim_ros.web`).
+"""The web page as a ROS node: parameters, and an HTTP server in its own thread (`thymio_sim_ros.web`).
 
-The page speaks the Foxglove protocol to the bridge; the server only gives it its files, the shipped playgrounds as
-`/playgrounds/NAME.json`, and `/config.json`, which names the bridge's port. Loopback by default; nothing is written,
-nothing else is served, and nothing of it is secret: tokens are for the bridge (SECURITY.md).
+The page communicates with the bridge by the Foxglove protocol. The server only serves files, read-only: those of the
+page, the shipped playgrounds as `/playgrounds/NAME.json`, and `/config.json` with the port of the bridge. It listens on
+loopback by default. None of the files is secret, therefore it needs no tokens (SECURITY.md).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rclpy.executors import Executor
 
 import thymio_sim_ros
 from thymio_sim_ros import resources
-from thymio_sim_ros.banner import places
+from thymio_sim_ros.addresses import describe_urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
@@ -33,21 +33,24 @@ from thymio_sim_ros.web.settings import max_connections
 class WebParams:
     """Parameters of the web node."""
 
-    port: int = param(HTTP_PORT, "TCP port of the page; 0 takes a free one", low=0, high=65535, fixed=True)
-    address: str = param(ADDRESS, "Address to listen on; 0.0.0.0 for the whole network", fixed=True)
+    port: int = param(HTTP_PORT, "TCP port of the page; 0 selects a free one", low=0, high=65535, fixed=True)
+    address: str = param(ADDRESS, "Address to listen on; 0.0.0.0 for all IPv4 interfaces", fixed=True)
     foxglove_port: int = param(
         FOXGLOVE_PORT, "Port of the Foxglove bridge on the same host", low=1, high=65535, fixed=True
     )
     allowed_hosts: list[str] = param(
-        [""], "Host names beside localhost under which a page on loopback may be opened", fixed=True
+        [""], "Additional host names under which a page on loopback may be opened", fixed=True
     )
 
 
 class WebPage:
-    """The web node and its HTTP server. `port` is the one really taken."""
+    """The web node and its HTTP server; `port` is the actual port."""
 
     def __init__(self, context: Context, defaults: WebParams | None = None, tokens: Tokens | None = None) -> None:
-        """`tokens`: those of the bridge, for the address that is printed; None: what the node was given."""
+        """Start the server. Raises StartError if aiohttp is missing or the port cannot be used.
+
+        `tokens` of the bridge are part of the printed address; None: those of the environment or of parameters.
+        """
         self.node = parameter_node("web_ui", context=context)
         try:
             self.params = parameters.declare(self.node, defaults or WebParams())
@@ -92,27 +95,28 @@ class WebPage:
 
     @property
     def startup_message(self) -> str:
-        """Where to look, for a person."""
-        return f"Page: {places('http', self.params.address, self.port, '/')}"
+        """Where to open the page, as text for the log."""
+        return f"Page: {describe_urls('http', self.params.address, self.port, '/')}"
 
     @property
     def access_urls(self) -> str:
-        """Where to look with which token, for standard output; never for the log, which clients may read."""
+        """Addresses with their tokens, for standard output; not for the log, which clients can read."""
         if not self.tokens.is_required:
             return ""
         place = "http", self.params.address, self.port, "/"
-        return f"Page      {places(*place, self.tokens.full)}\nRead only {places(*place, self.tokens.read_only)}"
+        full, read_only = (describe_urls(*place, token) for token in (self.tokens.full, self.tokens.read_only))
+        return f"Page      {full}\nRead only {read_only}"
 
     def run_once(self, executor: Executor) -> None:
-        """Nothing but parameters to answer."""
+        """Spin the executor once, for the services of parameters."""
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
     def stop(self) -> None:
-        """Close the port, end the thread."""
+        """Stop the server and its thread."""
         self._server.close()
 
     def close(self) -> None:
-        """The same, and destroy the node."""
+        """Stop the server and destroy the node."""
         self.stop()
         self.node.destroy_node()
 

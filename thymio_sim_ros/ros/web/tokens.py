@@ -1,8 +1,8 @@
 """The tokens that a node is started with: environment variables, or parameters that it never declares.
 
-What a node declares, every node of the ROS domain and every client of the bridge may read, and `ros2 param dump` writes
-to a file. So `token` and `read_only_token` are read from the command line or a parameter file, and stay out of the
-node's parameters. For the same reason addresses with a token go to standard output, not to the log (/rosout).
+Every node of the ROS domain and every client of the bridge may read declared parameters, and `ros2 param dump` writes
+them to a file. Therefore `token` and `read_only_token` are read from the command line or a parameter file but never
+declared. For the same reason addresses with a token are printed to standard output, not logged (/rosout).
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ PARAMETERS = frozenset(VARIABLES)
 
 
 def given_tokens(node: Node, environment: Mapping[str, str] = os.environ) -> Tokens:
-    """The tokens that the user gave the node, empty ones where there are none; StartError for what is no token."""
+    """The tokens that the user gave the node, empty if there are none. Raises StartError for invalid or equal ones."""
     full, read_only = (
         _checked(name, parameters.undeclared(node, name) or environment.get(variable, ""))
         for name, variable in VARIABLES.items()
     )
     if full and full == read_only:
-        raise StartError("token and read_only_token are the same; expected two different ones")
+        raise StartError("parameters token and read_only_token: found the same token, expected two different ones")
     return Tokens(full, read_only)
 
 

@@ -87,14 +87,17 @@ class LedState:
     changes: int = field(default=0, compare=False)
 
     def show(self, group: str, levels: tuple[int, ...]) -> None:
-        """Set the levels of a group without taking it over."""
+        """Set the levels of a group without taking it over from the firmware.
+
+        Raises ValueError for a wrong number of levels, KeyError for an unknown group.
+        """
         levels = _limited(group, levels)
         if levels != self.levels[group]:
             self.levels[group] = levels
             self.changes += 1
 
     def set(self, group: str, levels: tuple[int, ...]) -> None:
-        """Take over a group and end its gesture."""
+        """Take over a group from the firmware and end its gesture. Raises as `show` does."""
         self.show(group, levels)
         self.taken.add(group)
         if self.gesture is not None and self.gesture.group == group:

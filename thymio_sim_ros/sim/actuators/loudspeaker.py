@@ -63,11 +63,11 @@ class LoudspeakerState:
         return self.note is None and not self.samples
 
     def sound_level(self, _now_ns: int) -> float:
-        """Level near the robot; see `SoundSource`."""
+        """Return the level near the robot; 0 is silent."""
         return SPEAKER_SHARE * self.sounding_level
 
     def play(self, column_state: tuple[Note, ...], samples: bytes, now_ns: int) -> None:
-        """Begin with the first note, or with samples; neither is silence."""
+        """Start to play notes or samples; without either, be silent."""
         self.note, self._waiting = (column_state[0], column_state[1:]) if column_state else (None, ())
         self.samples = samples
         self.began_ns = now_ns
@@ -75,7 +75,7 @@ class LoudspeakerState:
         self._measure(now_ns)
 
     def go_on(self, now_ns: int) -> None:
-        """Let time come so far: the next note, or the end."""
+        """Advance to this time: to the next note, or to the end."""
         while self.note is not None and self.note.duration_ns is not None:
             end_ns = self.began_ns + self.note.duration_ns
             if now_ns < end_ns:
@@ -89,7 +89,7 @@ class LoudspeakerState:
                 self._measure(now_ns)
 
     def adjust(self, now_ns: int, *, wave: tuple[int, ...] | None = None, shift: int | None = None) -> None:
-        """Change wave or volume, also of what tones."""
+        """Change wave or volume, also of the sound that is playing."""
         self.wave = self.wave if wave is None else wave
         self.shift = self.shift if shift is None else shift
         self.changes += 1

@@ -35,11 +35,11 @@ class MotorState:
     ends_ns: int | None = None
     control: tuple[WheelControl, WheelControl] | None = None
     batch_changes: tuple[set[int], int] | None = None
-    """Where a crowd wants to read that a command has come, and the number to be written there."""
+    """In a batch: the set of robots with a new command, and the number of this robot in it."""
 
 
 def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
-    """Left and right in m/s as a command has them, whether a wheel can turn so fast or not."""
+    """Return the speeds of the left and right wheel in m/s that a command asks for, not limited."""
     if isinstance(command, BodyTwist):
         turn = command.angular_rad_s * robot_constants.WHEEL_TRACK_M / 2
         return command.linear_m_s - turn, command.linear_m_s + turn
@@ -47,7 +47,7 @@ def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
 
 
 def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
-    """Left and right in m/s; both are scaled down together when one would be above the limit."""
+    """Return the speeds of the left and right wheel in m/s, both scaled down together to the limit."""
     left, right = wanted_speeds(command)
     largest = max(abs(left), abs(right))
     scale = robot_constants.MAX_SPEED_M_S / largest if largest > robot_constants.MAX_SPEED_M_S else 1.0
@@ -70,7 +70,7 @@ def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwis
 
 
 def _time_out(state: MotorState, now_ns: int) -> bool:
-    """Let the targets hold again when a command ends; whether it does now."""
+    """Restore the targets if a command has timed out; return whether it has now."""
     is_over = state.ends_ns is not None and now_ns >= state.ends_ns
     if is_over:
         state.speeds_m_s, state.ends_ns = state.targets_m_s, None
@@ -87,7 +87,7 @@ def _update(state: MotorState, view: ActuatorView, dt_s: float) -> None:
 
 
 def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> tuple[float, float]:
-    """Speeds in m/s that the control loops give to wheels at their speeds."""
+    """Return the speeds in m/s that the control loops give to the wheels."""
     assert state.control is not None
     unit_m_s = robot_constants.MAX_SPEED_M_S / robot_constants.FULL_TARGET
     left, right = (
@@ -98,7 +98,7 @@ def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> 
 
 
 class _BatchTargets:
-    """What a crowd's motors aim at, kept from tick to tick; looked at again when a command has come."""
+    """Target speeds of the motors of a batch, updated when a command has come."""
 
     def __init__(self, states: Sequence[MotorState]) -> None:
         self.commanded = np.zeros((2, len(states)))
@@ -111,7 +111,7 @@ class _BatchTargets:
             state.batch_changes = (self.changed, number)
 
     def refresh(self, states: Sequence[MotorState], wheels: WheelArrays, now_ns: int) -> None:
-        """Take over what has changed."""
+        """Update the arrays for robots whose commands have changed."""
         for number in self.timed:
             if _time_out(states[number], now_ns):
                 self.changed.add(number)

@@ -67,7 +67,7 @@ class PenState:
         return tuple(Stroke(line.color, line.width_m, tuple(line.points)) for line in self._lines)
 
     def lift(self) -> None:
-        """End the stroke; the next one begins where the pen is then."""
+        """End the stroke; the next one begins at the position of the pen then."""
         self._at = self._line = None
 
     def draw(self, view: ActuatorView) -> None:
@@ -95,7 +95,7 @@ class PenState:
 
 
 def _is_straight(start: Point, end: Point, passed: list[Point]) -> bool:
-    """Whether a short line from start to end passes all these points closely."""
+    """Return whether the line from start to end is short and passes all these points closely."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     length = math.hypot(dx, dy)
     if not 0.0 < length < _LONGEST_M:

@@ -33,14 +33,14 @@ class SoundStream:
         self._firsts: list[int] = []
 
     def hear(self, reading: LoudspeakerReading) -> None:
-        """The next reading of the robot's loudspeaker."""
+        """Add the next reading of the robot's loudspeaker."""
         goes_on = bool(self._heard) and self._heard[-1].began_ns == reading.began_ns
         begins_ns = reading.stamp_ns - TICK_NS if goes_on else reading.began_ns
         self._heard.append(reading)
         self._firsts.append(-(-begins_ns // SAMPLE_NS))
 
     def samples(self, first: int, count: int) -> Samples:
-        """So many samples from number `first` on; sample 0 belongs to time 0."""
+        """Return `count` samples from sample `first` on; sample 0 belongs to time 0."""
         stream = np.zeros(count, dtype=np.int64)
         number = max(0, bisect_right(self._firsts, first) - 1)
         while number < len(self._firsts) and self._firsts[number] < first + count:
@@ -54,7 +54,7 @@ class SoundStream:
 
 
 def _said(reading: LoudspeakerReading, begin: int, end: int) -> Samples:
-    """Samples number `begin` to `end` of one sound, and silence after it."""
+    """Return samples `begin` to `end` of one sound, and silence after it."""
     places = np.arange(begin, end) + reading.began_ns // -SAMPLE_NS
     said = np.zeros(end - begin, dtype=np.int64)
     if reading.frequency_hz:
@@ -68,7 +68,7 @@ def _said(reading: LoudspeakerReading, begin: int, end: int) -> Samples:
 
 
 def mixed(streams: Sequence[SoundStream], first: int, end: int) -> Iterator[bytes]:
-    """All streams together from sample `first` to `end`, limited to what unsigned 8 bits hold, part after part."""
+    """Iterate over the sum of all streams from sample `first` to `end`, in parts, clamped to unsigned 8 bits."""
     for begin in range(first, end, _PART):
         total = np.zeros(min(_PART, end - begin), dtype=np.int64)
         for stream in streams:

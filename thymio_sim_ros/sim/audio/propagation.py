@@ -40,9 +40,10 @@ class Sound:
 
 
 def level_at(sounds: Iterable[Sound], x_m: float, y_m: float) -> float:
-    """The level of all sounds together at a point.
+    """Return the level of all sounds together at a point in the world's frame; not clamped to FULL_LEVEL.
 
-    An amplitude falls as 1/d (free field), but not within NEAR_M; the energies of different sources add up.
+    The amplitude of a source falls as 1/d (free field), but not within NEAR_M. Sources are not coherent, so their
+    energies, the squares of the amplitudes, are added, not the amplitudes.
     """
     energy = 0.0
     for sound in sounds:

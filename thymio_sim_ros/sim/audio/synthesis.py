@@ -50,7 +50,7 @@ class Note:
 
 
 def tone(frequency_hz: float, duration_ns: int | None) -> Note:
-    """A note within what the robot can play; only the size of a frequency counts."""
+    """Return a note within the range of the robot; the sign of the frequency is ignored."""
     return Note(max(LOWEST_HZ, min(HIGHEST_HZ, abs(frequency_hz))), duration_ns)
 
 
@@ -95,6 +95,6 @@ UNKNOWN_SOUND = ((440, 10),)
 
 
 def system_sound(number: int) -> tuple[Note, ...]:
-    """The notes of one of the robot's own sounds; a short tone for a number that is none."""
+    """Return the notes of a system sound; a short tone for an unknown number."""
     known = 0 <= number < len(SYSTEM_SOUNDS)
     return tuple(tone(hz, ticks * BLOCK_NS) for hz, ticks in (SYSTEM_SOUNDS[number] if known else UNKNOWN_SOUND))

@@ -51,7 +51,7 @@ class RobotArrays(Protocol):
         ...
 
     def states(self, kind: type[S]) -> list[S]:
-        """The state of one actuator of every robot."""
+        """Return the state of one actuator of every robot, in the order of the world."""
         ...
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:

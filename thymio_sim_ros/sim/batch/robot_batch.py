@@ -112,7 +112,7 @@ class RobotBatch:
         return found
 
     def states(self, kind: type[S]) -> list[S]:
-        """The state of one actuator of every robot."""
+        """Return the state of one actuator of every robot, in the order of the world."""
         found = self._states.get(kind)
         if found is None:
             found = self._states[kind] = [robot.state(kind) for robot in self._robots]
@@ -143,7 +143,7 @@ class RobotBatch:
         return self._raycaster.cast(self.poses, fan)
 
     def measure(self, due: Sequence[int]) -> ReadingTable:
-        """The readings of the sensors with these numbers, and of those woken."""
+        """Return the readings of the sensors with these numbers, and of those woken."""
         woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
         awake: Sequence[int] = sorted({*due, *chain.from_iterable(woken.values())}) if woken else due
         columns: list[tuple[str, Sequence[Reading | None]]] = []
@@ -160,7 +160,7 @@ class RobotBatch:
         return ReadingTable(self._names, columns)
 
     def _measure_some(self, number: int, some: Sequence[int]) -> Sequence[Reading | None]:
-        """The readings of one sensor of some robots."""
+        """Return the readings of one sensor of some robots."""
         column: list[Reading | None] = [None] * len(self._robots)
         view = self._batch_views.get(number)
         for index in some:
@@ -172,5 +172,5 @@ class RobotBatch:
         return column
 
     def _in_order(self, some: Collection[Robot]) -> list[Robot]:
-        """Some robots in the order of all."""
+        """Return some robots in the order of the world."""
         return [robot for robot in self._robots if robot in some] if some else []

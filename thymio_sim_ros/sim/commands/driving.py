@@ -46,7 +46,7 @@ class BodyTwist:
 
 @dataclass(frozen=True, slots=True)
 class SetMotorModel:
-    """How the motors follow from now on: one of `MOTOR_MODELS`."""
+    """Set how the motors follow their targets: one of `MOTOR_MODELS`. Raises ValueError for another name."""
 
     model: str
 
@@ -57,7 +57,7 @@ class SetMotorModel:
 
 @dataclass(frozen=True, slots=True)
 class ResetOdometry:
-    """Let the wheel odometry start again from zero, here."""
+    """Reset the wheel odometry to zero at the present position."""
 
 
 Driving = MotorTargets | WheelVelocities | BodyTwist | SetMotorModel | ResetOdometry

@@ -74,7 +74,10 @@ class ReleaseLeds:
 
 @dataclass(frozen=True, slots=True)
 class PlayGesture:
-    """Start a gesture: one of `LED_GESTURES`, with a period of 0.1…60 s, negative for backwards."""
+    """Start a gesture: one of `LED_GESTURES`, with a period of 0.1…60 s, negative for backwards.
+
+    Raises ValueError for another name or period.
+    """
 
     name: str
     period_s: float

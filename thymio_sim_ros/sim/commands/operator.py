@@ -77,7 +77,10 @@ class Tap:
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """Hold the robot at an angle until the next command: rad, ±pi; roll lifts its left side, pitch lowers its front."""
+    """Hold the robot at an angle in rad, ±pi, until the next command; roll lifts its left side, pitch lowers its front.
+
+    Raises ValueError for a value out of range.
+    """
 
     roll_rad: float
     pitch_rad: float
@@ -88,7 +91,10 @@ class Tilt:
 
 @dataclass(frozen=True, slots=True)
 class Clap:
-    """A clap beside the robot, in units of mic.intensity, 0…255; other robots hear it attenuated by distance."""
+    """A clap beside the robot, in units of mic.intensity, 0…255; other robots hear it attenuated by distance.
+
+    Raises ValueError for a value out of range.
+    """
 
     intensity: int
 
@@ -98,7 +104,10 @@ class Clap:
 
 @dataclass(frozen=True, slots=True)
 class SetNoiseLevel:
-    """A continuous noise for this robot only, in units of mic.intensity, 0…255."""
+    """A continuous noise for this robot only, in units of mic.intensity, 0…255.
+
+    Raises ValueError for a value out of range.
+    """
 
     intensity: int
 
@@ -108,7 +117,10 @@ class SetNoiseLevel:
 
 @dataclass(frozen=True, slots=True)
 class SetAmbientLight:
-    """Light that reaches the ground sensors besides their own, in units of prox.ground.ambiant, 0…1023."""
+    """Light that reaches the ground sensors besides their own, in units of prox.ground.ambiant, 0…1023.
+
+    Raises ValueError for a value out of range.
+    """
 
     level: int
 
@@ -118,7 +130,10 @@ class SetAmbientLight:
 
 @dataclass(frozen=True, slots=True)
 class SetProximity:
-    """Override the counts of the seven proximity sensors, 0…4505 in Thymio's order; -1: measured."""
+    """Override the counts of the seven proximity sensors, 0…4505 in Thymio's order; -1: measured.
+
+    Raises ValueError for a value out of range.
+    """
 
     counts: tuple[int, ...]
 
@@ -128,7 +143,10 @@ class SetProximity:
 
 @dataclass(frozen=True, slots=True)
 class SetGround:
-    """Override the counts of the two ground sensors, without ambient light, 0…1023; -1: measured."""
+    """Override the counts of the two ground sensors, without ambient light, 0…1023; -1: measured.
+
+    Raises ValueError for a value out of range.
+    """
 
     counts: tuple[int, ...]
 
@@ -138,7 +156,10 @@ class SetGround:
 
 @dataclass(frozen=True, slots=True)
 class SetTemperature:
-    """Temperature round the robot in °C, -40…85."""
+    """Temperature around the robot in °C, -40…85.
+
+    Raises ValueError for a value out of range.
+    """
 
     celsius: float
 
@@ -151,7 +172,7 @@ class RemoteKey:
     """A frame of an RC5 remote control: address 0…31, command 0…127.
 
     A frame that repeats address, command and toggle bit of the one before is the same key still held, and ignored.
-    Without a `toggle`, it is a new press.
+    Without a `toggle`, it is a new press. Raises ValueError for a value out of range.
     """
 
     address: int
@@ -165,7 +186,10 @@ class RemoteKey:
 
 @dataclass(frozen=True, slots=True)
 class SetBattery:
-    """Voltage of the battery, 0…5 V."""
+    """Voltage of the battery, 0…5 V.
+
+    Raises ValueError for a value out of range.
+    """
 
     volts: float
 

@@ -28,7 +28,10 @@ class EnableComm:
 
 @dataclass(frozen=True, slots=True)
 class SetCommPayload:
-    """prox.comm.tx: the value sent in every frame, at most 2047 counts; a negative one is no data (int16)."""
+    """prox.comm.tx: the value sent in every frame, at most 2047; a negative one is no data (int16).
+
+    Raises ValueError for a value out of range.
+    """
 
     value: int
 

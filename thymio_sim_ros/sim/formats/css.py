@@ -55,7 +55,7 @@ class Style:
 
 
 def parse(text: str, properties: Container[str]) -> Style:
-    """The declarations of these properties, the at-rules and the references of a style attribute or a style sheet.
+    """Return the declarations of some properties, the at-rules and the references of a style attribute or style sheet.
 
     `properties` are in lower case and without a vendor's prefix; that of a declaration is left out.
     """
@@ -71,7 +71,7 @@ def parse(text: str, properties: Container[str]) -> Style:
 
 
 def _value(tokens: Sequence[tuple[str, str]], begin: int) -> tuple[str, ...]:
-    """The words up to the end of a declaration; a few of them, as only short values are compared."""
+    """Return the first words of the value of a declaration; a few are enough, as only short values are compared."""
     words = []
     for kind, value in tokens[begin : begin + 6]:
         if kind == "other" and value in ";{}":
@@ -83,7 +83,7 @@ def _value(tokens: Sequence[tuple[str, str]], begin: int) -> tuple[str, ...]:
 
 
 def _tokens(text: str) -> Iterator[tuple[str, str]]:
-    """Kind and content of each token but space; of `url(…)` one token of the kind url, quoted or not."""
+    """Iterate over kind and content of each token except space; `url(…)`, quoted or not, is one token of kind url."""
     place = 0
     while match := _TOKEN.match(text, place):
         place = match.end()

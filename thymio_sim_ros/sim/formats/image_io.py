@@ -1,7 +1,7 @@
-"""Ground pictures: a data URI of a PNG, JPEG or SVG → pixels; and pixels → PNG. The only user of Pillow.
+"""Ground images: pixels of a data URI of a PNG, JPEG or SVG, and PNG files of pixels. The only user of Pillow.
 
-Pictures come from strangers: sizes are checked before anything is unpacked, those of one picture and those of all
-pictures of a playground together (`Budget`). Why Pillow and resvg: docs/decisions.md.
+Images are untrusted: sizes are checked before anything is decompressed, those of one image and those of all images of a
+playground together (`Budget`). The reasons for Pillow and resvg are in docs/decisions.md.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ __all__ = [
 ]
 
 MAX_PICTURE_BYTES = 4_000_000
-"""Largest picture as a file."""
+"""Largest size of an image file."""
 MAX_SIDE = 8192
 MAX_PIXELS = 25_000_000
-"""Of one picture: as many as a ground has at most (sim/ground/raster.py)."""
+"""Largest number of pixels of an image: that of a ground (sim/ground/raster.py)."""
 MAX_PIXELS_IN_ALL = 32_000_000
-"""Of all pictures of a playground; each pixel takes four bytes for as long as the playground is there."""
+"""Largest number of pixels of all images of a playground; each takes four bytes as long as the playground exists."""
 MAX_SVG_BYTES_IN_ALL = 6_000_000
 MAX_SCANS = 40
-"""Passes over a JPEG; cameras and drawing programs write one to ten, and each costs as much as the whole picture."""
+"""Largest number of scans of a JPEG; cameras write one to ten, and each costs as much as the whole image."""
 
 MEDIA_TYPES = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".svg": "image/svg+xml"}
 """Ending of a file → media type of its data URI."""
@@ -60,7 +60,7 @@ _PILLOW_ERRORS = (OSError, SyntaxError, ValueError, EOFError, OverflowError, str
 
 @dataclass(slots=True)
 class Budget:
-    """What the pictures of one playground may still cost together. Invariant: only `decode` reduces it."""
+    """What the images of one playground may still cost together. Invariant: only `decode` reduces it."""
 
     pixels: int = MAX_PIXELS_IN_ALL
     svg_bytes: int = MAX_SVG_BYTES_IN_ALL
@@ -68,12 +68,12 @@ class Budget:
 
 
 _budget: ContextVar[Budget] = ContextVar("budget of pictures")
-"""Shapes of other packages decode pictures too, so it is not handed through their interface."""
+"""A context variable and not an argument, as shapes of other packages decode images, too."""
 
 
 @contextmanager
 def budgeted() -> Iterator[Budget]:
-    """Meanwhile every `decode` of this thread draws on one budget."""
+    """Within this context every `decode` of the thread is charged to one budget."""
     token = _budget.set(Budget())
     try:
         yield _budget.get()
@@ -83,7 +83,7 @@ def budgeted() -> Iterator[Budget]:
 
 @dataclass(frozen=True, slots=True)
 class Pixels:
-    """Pixels row by row from the top, each red, green, blue, opacity from 0 to 255."""
+    """Pixels row by row from the top: bytes red, green, blue, opacity of each."""
 
     columns: int
     rows: int
@@ -91,38 +91,40 @@ class Pixels:
 
 
 def data_uri(data: bytes, media_type: str) -> str:
-    """A file's content as a data URI."""
+    """Return the content of a file as a data URI."""
     return f"data:{media_type};base64,{base64.b64encode(data).decode('ascii')}"
 
 
 def decode(uri: str, *, key: str, width_m: float) -> Pixels:
-    """The pixels of a data URI; an SVG is drawn finely enough for `width_m`. FieldError names `key`.
+    """Return the pixels of a data URI; an SVG is drawn with the resolution of the ground for `width_m`.
 
-    Within `budgeted`, pictures share its limits; elsewhere each has them for itself.
+    Raises FieldError, with this key, for anything but a PNG, JPEG or SVG image within the limits.
+
+    Within `budgeted`, all images share its limits; elsewhere each image has them for itself.
     """
     budget = _budget.get(None) or Budget()
     head, _, body = uri.partition(",")
     media_type = head.removeprefix("data:").removesuffix(";base64")
     if media_type not in MEDIA_TYPES.values():
-        raise FieldError(key, f"'{media_type[:40]}'", "a data URI of a PNG, JPEG or SVG")
+        raise FieldError(key, f"'{media_type[:40]}'", "a data URI of a PNG, JPEG or SVG image")
     try:
         data = base64.b64decode(body, validate=True)
     except (binascii.Error, ValueError) as error:
         raise FieldError(key, "characters that are not base64", "base64") from error
     if len(data) > MAX_PICTURE_BYTES:
-        raise FieldError(key, f"{len(data)} bytes", f"a picture of at most {MAX_PICTURE_BYTES}")
+        raise FieldError(key, f"{len(data)} bytes", f"an image of at most {MAX_PICTURE_BYTES} bytes")
     if media_type == MEDIA_TYPES[".svg"]:
         budget.svg_bytes -= len(data)
         if budget.svg_bytes < 0:
             found = f"more than {MAX_SVG_BYTES_IN_ALL} bytes of SVG so far"
-            raise FieldError(key, found, "fewer or simpler ones, or PNG pictures")
+            raise FieldError(key, found, "fewer or simpler SVG images, or PNG images")
         data, seconds = svg.draw(data, key, width_m, seconds=budget.svg_seconds)
         budget.svg_seconds -= seconds
     return _unpack(data, key, budget)
 
 
 def css_color(value: object, *, key: str) -> str:
-    """'#rrggbb' for a color as CSS writes it, or as a number 0xrrggbb; FieldError names `key`."""
+    """Return '#rrggbb' for a CSS color or a number 0xrrggbb. Raises FieldError, with this key, for anything else."""
     if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 0xFFFFFF:
         return f"#{value:06x}"
     if isinstance(value, str) and re.fullmatch(r"#[0-9A-Fa-f]{6}", value):
@@ -137,7 +139,7 @@ def css_color(value: object, *, key: str) -> str:
 
 
 def _plain_css(text: str) -> str:
-    """A color as Pillow has it, with commas and without opacity: of `rgb(1 2 3 / 50%)`, `hsla(120deg, 50%, 50%, 1)`."""
+    """Return a color as Pillow expects it, without opacity: `rgb(1, 2, 3)` for `rgb(1 2 3 / 50%)`."""
     match = re.fullmatch(r"(rgb|hsl)a?\((.*)\)", text.strip(), re.IGNORECASE)
     if match is None:
         return text.strip()
@@ -146,7 +148,10 @@ def _plain_css(text: str) -> str:
 
 
 def encode_png(pixels: Pixels, *, most: int = MAX_SIDE) -> bytes:
-    """The pixels as a PNG file, made smaller where a side has more than `most`."""
+    """Return the pixels as a PNG file, scaled down if a side has more than `most` pixels.
+
+    Raises FieldError if Pillow is missing.
+    """
     # frombuffer copies nothing
     image = _pillow("").frombuffer("RGBA", (pixels.columns, pixels.rows), pixels.rgba, "raw", "RGBA", 0, 1)
     image.thumbnail((most, most))
@@ -165,42 +170,42 @@ def _unpack(data: bytes, key: str, budget: Budget) -> Pixels:
         _check_size(columns, rows, key, budget)
         if image.format == "JPEG":
             _check_scans(data, key)
-            # a camera was held upright, perhaps
+            # apply the orientation of the camera
             image = imported("PIL.ImageOps", "Pillow", key).exif_transpose(image)
         return _rgba(image, image_module)
     except image_module.DecompressionBombError as error:
-        raise FieldError(key, "pixels without measure", f"at most {MAX_PIXELS} pixels") from error
+        raise FieldError(key, "too many pixels", f"at most {MAX_PIXELS} pixels") from error
     except _PILLOW_ERRORS as error:
-        raise FieldError(key, "a picture that cannot be read", "a whole PNG or JPEG") from error
+        raise FieldError(key, "an image that cannot be read", "a complete PNG or JPEG file") from error
 
 
 def _check_size(columns: int, rows: int, key: str, budget: Budget) -> None:
-    """Refuse a picture by what its header says, before it is unpacked; charge the budget for it."""
+    """Check the size in the header, before anything is decompressed, and charge the budget for it."""
     size = f"{columns} x {rows} pixels"
     if max(columns, rows) > MAX_SIDE or columns * rows > MAX_PIXELS:
-        raise FieldError(key, size, f"at most {MAX_SIDE} a side and {MAX_PIXELS} in all")
+        raise FieldError(key, size, f"at most {MAX_SIDE} per side and {MAX_PIXELS} in all")
     if columns * rows > budget.pixels:
-        found = f"{size}, where {budget.pixels} of the playground's {MAX_PIXELS_IN_ALL} are left for pictures"
-        raise FieldError(key, found, "fewer or smaller pictures; one pixel for each millimeter is enough")
+        found = f"{size}, with {budget.pixels} of {MAX_PIXELS_IN_ALL} left for images of this playground"
+        raise FieldError(key, found, "fewer or smaller images; one pixel per millimeter is enough")
     budget.pixels -= columns * rows
 
 
 def _check_scans(data: bytes, key: str) -> None:
-    """Refuse a progressive JPEG that goes over its pixels again and again."""
+    """Raise FieldError for a progressive JPEG with too many scans."""
     scans = data.count(b"\xff\xda")
     if scans > MAX_SCANS:
-        raise FieldError(key, f"a JPEG of {scans} scans", f"at most {MAX_SCANS}")
+        raise FieldError(key, f"a JPEG with {scans} scans", f"at most {MAX_SCANS}")
 
 
 def _rgba(image: Any, image_module: ModuleType) -> Pixels:
-    """The pixels of a picture of Pillow, a band of rows at a time: Pillow's own ways hold them three times over."""
+    """Return the pixels of a Pillow image, converted in bands of rows: Pillow itself needs three times the memory."""
     columns, rows = image.size
     rgba = io.BytesIO()
     height = max(1, _BAND_PIXELS // columns)
     for top in range(0, rows, height):
         band = image.crop((0, top, columns, min(rows, top + height)))
         if band.mode.startswith("I"):
-            # Pillow would cut 16 bit grays off at 255.
+            # Pillow would clip 16-bit grays at 255.
             band = image_module.fromarray((np.asarray(band).astype(np.uint32) >> 8).clip(0, 255).astype(np.uint8))
         rgba.write(band.convert("RGBA").tobytes())
     image.close()

@@ -1,8 +1,8 @@
-"""An SVG picture as pixels, drawn by resvg; refused where its cost or its look would depend on something else.
+"""SVG images as pixels, drawn by resvg; rejected if their cost has no limit or their look depends on the machine.
 
-It may hold neither text (fonts differ from machine to machine, and with them the readings), nor pictures and references
-to elsewhere, nor filters, masks, blend modes and markers (their cost has no limit), whether by elements, by attributes
-or by CSS. These checks give clear messages; the limits of the process that draws (`svg_process`) hold for all the rest.
+An SVG may contain no text (fonts, and with them readings, differ between machines), no images and external references,
+and no filters, masks, blend modes and markers (their cost has no limit), be it as elements, attributes or CSS. These
+checks give clear messages; everything else is limited by the drawing process (`svg_process`).
 """
 
 from __future__ import annotations
@@ -23,46 +23,46 @@ from thymio_sim_ros.sim.model.optional_import import imported
 __all__ = ["draw"]
 
 PIXEL_M = 0.001
-"""An SVG is drawn this fine, like the ground; its edges are smooth all the same."""
+"""Size of a pixel of a drawn SVG in m, that of the ground; edges are anti-aliased."""
 MAX_SIDE = 4096
 MAX_PIXELS = 6_000_000
 MAX_PARTS = 20_000
-"""Elements that are drawn, repeated ones counted each time."""
+"""Largest number of elements that are drawn, repeated ones counted each time."""
 MAX_DEPTH = 40
-"""Elements inside one another, references counted; each may hold a picture of its own while it is drawn."""
+"""Largest depth of nested elements, references included; each may need a buffer while it is drawn."""
 
 _REFUSED = {
-    "text": "paths (in Inkscape: Path, Object to Path)",
+    "text": "paths (in Inkscape: Path > Object to Path)",
     "image": "shapes and paths, or a PNG instead of the SVG",
     "foreignObject": "shapes and paths",
-    "script": "no programs",
-    "marker": "no markers, or markers turned into paths",
+    "script": "no scripts",
+    "marker": "no markers (convert them to paths)",
     "filter": "no filters",
-    "mask": "no masks, or clip paths in their place",
-    "animate": "nothing that moves",
-    "animateTransform": "nothing that moves",
-    "set": "nothing that moves",
+    "mask": "no masks (clip paths are allowed)",
+    "animate": "no animation",
+    "animateTransform": "no animation",
+    "set": "no animation",
 }
 _EFFECTS = {
     "filter": "no filters",
     "backdrop-filter": "no filters",
-    "mask": "no masks, or clip paths in their place",
-    "mask-image": "no masks, or clip paths in their place",
-    "mask-border": "no masks, or clip paths in their place",
-    "mask-border-source": "no masks, or clip paths in their place",
-    "mask-box-image": "no masks, or clip paths in their place",
+    "mask": "no masks (clip paths are allowed)",
+    "mask-image": "no masks (clip paths are allowed)",
+    "mask-border": "no masks (clip paths are allowed)",
+    "mask-border-source": "no masks (clip paths are allowed)",
+    "mask-box-image": "no masks (clip paths are allowed)",
     "mix-blend-mode": "no blend modes",
     "isolation": "no isolated groups",
-    "marker": "no markers, or markers turned into paths",
-    "marker-start": "no markers, or markers turned into paths",
-    "marker-mid": "no markers, or markers turned into paths",
-    "marker-end": "no markers, or markers turned into paths",
+    "marker": "no markers (convert them to paths)",
+    "marker-start": "no markers (convert them to paths)",
+    "marker-mid": "no markers (convert them to paths)",
+    "marker-end": "no markers (convert them to paths)",
 }
-"""Properties that are refused, as attributes and in CSS, but with a value of `_WITHOUT_EFFECT`."""
+"""Properties that are rejected, as attributes and in CSS, except with a value of `_WITHOUT_EFFECT`."""
 _WITHOUT_EFFECT = frozenset({"none", "auto", "normal", "initial", "unset"})
 """Inkscape writes `filter:none;mix-blend-mode:normal;isolation:auto` into every style."""
 MAX_STYLES = 300_000
-"""Characters of CSS, equal styles counted once."""
+"""Largest number of characters of CSS, equal styles counted once."""
 _HREFS = ("href", "xlink:href")
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(px|pt|pc|mm|cm|in|q)?\s*", re.IGNORECASE)
 _INCHES = {"px": 1 / 96, "pt": 1 / 72, "pc": 1 / 6, "in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "q": 1 / 101.6}
@@ -74,7 +74,7 @@ _SIDES = re.compile(rb"""\s(?:width|height)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 @dataclass(frozen=True, slots=True)
 class _Weight:
-    """Elements that are drawn, and how many of them lie inside one another."""
+    """Number of elements that are drawn, and their depth of nesting."""
 
     parts: int
     depth: int
@@ -84,9 +84,9 @@ _ENDLESS = _Weight(MAX_PARTS + 1, 1)
 
 
 def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[bytes, float]:
-    """An SVG as the PNG that resvg draws, finely enough for `width_m`, and the seconds that it took.
+    """Return an SVG as the PNG that resvg draws, with the resolution of the ground for `width_m`, and the time it took.
 
-    FieldError names `key`, also for one that cannot be drawn within `seconds`.
+    Raises FieldError, with this key, for an SVG that is rejected or cannot be drawn within `seconds`.
     """
     try:
         root = xml_tree.parse(data)
@@ -102,7 +102,7 @@ def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[byte
     try:
         text = _resized(data.decode("utf-8"), root, size, columns, rows)
     except ValueError as error:
-        raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a whole SVG in UTF-8") from error
+        raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a complete SVG in UTF-8") from error
     try:
         return svg_process.draw(text, resvg, seconds=seconds)
     except DrawError as error:
@@ -119,7 +119,7 @@ def _check(root: Element, key: str) -> None:
             raise FieldError(where, f"<{element.tag}>", _REFUSED[element.tag])
         for target in _targets(element):
             if not target.startswith("#"):
-                raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
+                raise FieldError(where, f"a reference to '{target[:40]}'", "references within the image")
         _check_style(element, styles, where)
     by_id: dict[str, list[Element]] = {}
     for element in root.walk():
@@ -128,7 +128,7 @@ def _check(root: Element, key: str) -> None:
 
 
 class _Styles:
-    """The CSS of one picture. Equal texts are parsed once: drawing programs repeat their styles on each element."""
+    """The CSS of one image. Equal texts are parsed once: drawing programs repeat their styles on each element."""
 
     def __init__(self, key: str) -> None:
         self._key = key
@@ -136,7 +136,7 @@ class _Styles:
         self._size = 0
 
     def parse(self, text: str) -> Style:
-        """What a text of CSS says; FieldError when all texts together are too long."""
+        """Parse a text of CSS. Raises FieldError if all texts together are too long."""
         found = self._known.get(text)
         if found is None:
             self._size += len(text)
@@ -146,28 +146,28 @@ class _Styles:
         return found
 
     def urls(self, element: Element) -> Iterator[str]:
-        """Targets of every `url(…)` in the attributes of an element."""
+        """Iterate over the targets of every `url(…)` in the attributes of an element."""
         for name, value in element.attributes.items():
             if name == "style" or "\\" in value or "url" in value.lower():
                 yield from self.parse(value).urls
 
 
 def _check_style(element: Element, styles: _Styles, where: str) -> None:
-    """Refuse what an element's attributes or its style sheet ask for that has no limit or lies elsewhere."""
+    """Raise FieldError for effects of unlimited cost and external references in attributes or a style sheet."""
     for name, value in element.attributes.items():
         if name.startswith("svg:"):
-            raise FieldError(where, f"the attribute {name} with a name space", "attributes without one")
+            raise FieldError(where, f"the attribute {name} with a namespace", "attributes without a namespace")
         if name in _EFFECTS and value.strip().lower() not in _WITHOUT_EFFECT:
             raise FieldError(where, f'{name}="{value[:40]}"', _EFFECTS[name])
     for target in styles.urls(element):
         if not target.startswith("#"):
-            raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
+            raise FieldError(where, f"a reference to '{target[:40]}'", "references within the image")
     texts = [element.attributes["style"]] if "style" in element.attributes else []
     if element.tag == "style":
         texts.append(element.text)
         sheet = styles.parse(element.text)
         if "import" in sheet.rules:
-            raise FieldError(where, "@import in <style>", "styles inside the picture")
+            raise FieldError(where, "@import in <style>", "styles within the image")
         if sheet.urls:
             raise FieldError(where, "url(…) in <style>", "references in the attributes of elements")
     for text in texts:
@@ -185,13 +185,14 @@ def _weigh(
     key: str,
     above: int = 0,
 ) -> _Weight:
-    """What it costs to draw an element, with all that it repeats, fills or cuts itself with.
+    """Return the cost of drawing an element with everything that it references.
 
-    Each thing is drawn anew for each reference to it, and what lies inside one another is held at the same time;
-    both could grow without measure. A circle of references has no end at all.
+    An element is drawn anew for each reference to it, and nested elements are in memory at the same time, so both the
+    number and the depth could grow exponentially. Weights are computed once per element (`known`); an element that is
+    being weighed counts as endless, which detects cycles of references. Raises FieldError above the limits.
     """
     if above > MAX_DEPTH:
-        raise FieldError(key, f"elements more than {MAX_DEPTH} deep", "a simpler picture")
+        raise FieldError(key, f"elements nested more than {MAX_DEPTH} deep", "a simpler image")
     weight = known.get(id(element))
     if weight is None:
         known[id(element)] = _ENDLESS
@@ -201,14 +202,14 @@ def _weigh(
             1 + sum(one.parts for one in inner), 1 + max((one.depth for one in inner), default=0)
         )
     if weight.parts > MAX_PARTS:
-        raise FieldError(key, f"more than {MAX_PARTS} elements to draw", "a simpler picture")
+        raise FieldError(key, f"more than {MAX_PARTS} elements to draw", "a simpler image")
     if above + weight.depth > MAX_DEPTH:
-        raise FieldError(key, f"elements more than {MAX_DEPTH} deep", "a simpler picture")
+        raise FieldError(key, f"elements nested more than {MAX_DEPTH} deep", "a simpler image")
     return weight
 
 
 def _references(element: Element, styles: _Styles) -> list[str]:
-    """Ids of the elements that this one is drawn with."""
+    """Return the ids of the elements that this one is drawn with."""
     found = [target[1:] for target in styles.urls(element)]
     if element.tag == "use":
         found += (target[1:] for target in _targets(element))
@@ -216,12 +217,12 @@ def _references(element: Element, styles: _Styles) -> list[str]:
 
 
 def _targets(element: Element) -> list[str]:
-    """What it refers to; where both ways of saying so are used, renderers differ in which they take."""
+    """Return the references of an element; if it has both attributes, renderers differ in which one they use."""
     return [element.attributes[key] for key in _HREFS if key in element.attributes]
 
 
 def _size(root: Element, key: str) -> tuple[float, float]:
-    """Width and height in px; of what is not given in absolute units, as much as the view box says."""
+    """Return width and height in px; from the view box if they are not given in absolute units."""
     width, height = (_pixels(root.attributes.get(side, "")) for side in ("width", "height"))
     box = re.split(r"[\s,]+", root.attributes.get("viewBox", "").strip())
     across, down = map(_pixels, box[2:]) if len(box) == 4 else (math.nan, math.nan)
@@ -234,12 +235,12 @@ def _size(root: Element, key: str) -> tuple[float, float]:
     if not (math.isfinite(ratio) and ratio > 0.0):
         raise FieldError(key, "an SVG without a size", "viewBox, or width and height, in <svg>")
     if not 0.01 <= ratio <= 100:
-        raise FieldError(key, f"{width:g} x {height:g} px", "a width and a height of at most 100 to 1")
+        raise FieldError(key, f"{width:g} x {height:g} px", "an aspect ratio of at most 100 to 1")
     return width, height
 
 
 def _pixels(length: str) -> float:
-    """An absolute length; not a number for what is none."""
+    """Return an absolute length in px; NaN for anything else."""
     match = _LENGTH.fullmatch(length)
     try:
         return math.nan if match is None else float(match[1]) * CSS_DPI * _INCHES[(match[2] or "px").lower()]
@@ -248,11 +249,11 @@ def _pixels(length: str) -> float:
 
 
 def _resized(text: str, root: Element, size: tuple[float, float], columns: int, rows: int) -> str:
-    """The SVG so that it is drawn on so many pixels: resvg rounds sizes up before it makes them larger."""
+    """Return the SVG with its size set to this number of pixels: resvg rounds a size up before it scales."""
     data = text.encode("utf-8")
     match = _ROOT.match(data, root.offset)
     if match is None:
-        raise ValueError("its first element is not where it seems to be")
+        raise ValueError("its root element was not found")
     attributes = _SIDES.sub(b"", match[2]) + f' width="{columns}" height="{rows}"'.encode()
     if "viewBox" not in root.attributes:
         attributes += f' viewBox="0 0 {size[0]!r} {size[1]!r}"'.encode()

@@ -39,10 +39,10 @@ class DrawError(ThymioSimError):
 
 
 def draw(text: str, resvg: ModuleType, *, seconds: float) -> tuple[bytes, float]:
-    """The PNG of an SVG, and the seconds that it took; DrawError for one that cannot be drawn within `seconds`."""
+    """Return the PNG of an SVG, and the seconds it took. Raises DrawError if it cannot be drawn within `seconds`."""
     begin = time.monotonic()
     too_long = DrawError(
-        f"SVG pictures that take longer than {MAX_SECONDS:g} s to draw", "simpler ones, or PNG pictures"
+        f"SVG images that take longer than {MAX_SECONDS:g} s to draw", "simpler SVG images, or PNG images"
     )
     if seconds <= 0.0:
         raise too_long
@@ -60,17 +60,19 @@ def draw(text: str, resvg: ModuleType, *, seconds: float) -> tuple[bytes, float]
     except subprocess.TimeoutExpired as error:
         raise too_long from error
     except OSError as error:
-        raise DrawError(f"an SVG, and no process to draw it in ({error})", "a Python that can start itself") from error
+        raise DrawError(
+            f"an SVG, and no process could be started to draw it ({error})", "a Python interpreter that starts"
+        ) from error
     if done.returncode == 0:
         return done.stdout, time.monotonic() - begin
     if done.returncode == svg_worker.REFUSED:
         reason = done.stdout.decode("utf-8", "replace")
-        raise DrawError(f"an SVG that cannot be drawn ({reason})", "a whole SVG in UTF-8")
+        raise DrawError(f"an SVG that cannot be drawn ({reason})", "a complete SVG in UTF-8")
     if done.returncode in _OUT_OF_TIME:
         raise too_long
     raise DrawError(
-        f"an SVG whose drawing process ended by itself ({done.returncode})",
-        f"one that can be drawn in {MAX_MEMORY // 1024**2} MB of memory",
+        f"an SVG whose drawing process exited with code {done.returncode}",
+        f"an SVG that can be drawn in {MAX_MEMORY // 1024**2} MB of memory",
     )
 
 
@@ -80,8 +82,8 @@ _OUT_OF_TIME = [-number for number in (getattr(signal, "SIGXCPU", None), getattr
 def _interpreter() -> str:
     if getattr(sys, "frozen", False) or not sys.executable or not _PYTHON.fullmatch(Path(sys.executable).name):
         raise DrawError(
-            f"an SVG in a program without a Python of its own ({sys.executable or 'unknown'})",
-            "a PNG picture, or to run with python",
+            f"an SVG in a program that embeds Python ({sys.executable or 'unknown'})",
+            "a PNG image, or a program that runs in a Python interpreter",
         )
     return sys.executable
 
@@ -91,7 +93,7 @@ def _folder(resvg: ModuleType) -> str:
 
 
 def _apart() -> dict[str, Any]:
-    """A process that Ctrl-C in the terminal does not reach, and that opens no window."""
+    """Return the options for a process that does not get Ctrl-C of the terminal and opens no window."""
     if sys.platform == "win32":
         return {"creationflags": subprocess.CREATE_NO_WINDOW | subprocess.CREATE_NEW_PROCESS_GROUP}
     return {"start_new_session": True}

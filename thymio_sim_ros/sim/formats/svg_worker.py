@@ -18,7 +18,7 @@ _CPU_S = 2
 
 
 def _limit(memory: int) -> None:
-    """Where the system has such limits: not on Windows, and that of memory hardly on macOS."""
+    """Limit time and memory of this process where the system can: not on Windows, and memory hardly on macOS."""
     try:
         import resource
     except ImportError:

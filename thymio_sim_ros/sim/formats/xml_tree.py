@@ -1,7 +1,7 @@
-"""XML text as a small tree that knows its lines; whatever could grow or fetch something is refused.
+"""XML text as a small tree with line numbers; entities and external references are rejected.
 
-Used for `.playground` files and SVG pictures, which come from strangers: a document type that declares entities
-is an error, nothing is ever loaded from elsewhere, and depth and number of elements have a limit.
+Used for `.playground` files and SVG images, which are untrusted: a document type that declares entities is an error,
+nothing is ever loaded from elsewhere, and depth and number of elements are limited.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ MAX_ELEMENTS = 100_000
 
 
 _SPACE = " "
-"""Between a name space and a name; no name holds one."""
+"""Separates namespace and name; no name contains a space."""
 _KNOWN = {f"http://www.w3.org/1999/xlink{_SPACE}href": "xlink:href"}
 _SVG = f"http://www.w3.org/2000/svg{_SPACE}"
 
 
 class XmlError(ThymioSimError):
-    """XML that is refused: its line (1 is the first), what was found, what was expected."""
+    """Rejected XML: the line (from 1), what was found, what was expected."""
 
     def __init__(self, line: int, found: str, expected: str) -> None:
         super().__init__(f"line {line}: found {found}, expected {expected}")
@@ -36,22 +36,22 @@ class XmlError(ThymioSimError):
 
 @dataclass(slots=True)
 class Element:
-    """An element: its name without its name space, attributes, children, text directly in it.
+    """An element: its name without namespace, attributes, children, text directly in it.
 
-    Attributes are those without a name space, `xlink:href`, whatever its prefix is, and those in the name space of SVG
-    as `svg:name`; others mean nothing here.
+    Attributes are those without a namespace, `xlink:href` with any prefix, and those in the namespace of SVG as
+    `svg:name`; others are ignored.
     """
 
     tag: str
     attributes: Mapping[str, str]
     line: int
     offset: int
-    """Of its first character, in bytes, where the text is UTF-8."""
+    """Offset of its first character in bytes, if the text is UTF-8."""
     children: list[Element] = field(default_factory=list)
     text: str = ""
 
     def walk(self) -> Iterator[Element]:
-        """This element and everything below it, in the order of the text."""
+        """Iterate over this element and everything below it, in the order of the text."""
         waiting = [self]
         while waiting:
             element = waiting.pop()
@@ -60,12 +60,12 @@ class Element:
 
 
 def parse(data: bytes | str) -> Element:
-    """The root of a document; XmlError for text that is no XML or declares entities."""
+    """Return the root of a document. Raises XmlError for text that is not XML, declares entities, or is too large."""
     return _Builder().build(data)
 
 
 class _Builder:
-    """One reading of one document."""
+    """Parses one document."""
 
     def __init__(self) -> None:
         self._parser = expat.ParserCreate(namespace_separator=_SPACE)
@@ -73,7 +73,7 @@ class _Builder:
         self._root: Element | None = None
         self._count = 0
         self._texts: list[list[str]] = []
-        """Text of each open element so far, in the pieces that the parser gives."""
+        """Text of each open element so far, in the pieces from the parser."""
         self._parser.buffer_text = True
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
@@ -87,7 +87,7 @@ class _Builder:
         except expat.ExpatError as error:
             raise XmlError(error.lineno, expat.ErrorString(error.code), "XML") from error
         except (ValueError, LookupError) as error:
-            raise XmlError(1, "an encoding that is not known here", "UTF-8") from error
+            raise XmlError(1, "an unknown encoding", "UTF-8") from error
         assert self._root is not None
         return self._root
 
@@ -95,7 +95,7 @@ class _Builder:
         line = self._parser.CurrentLineNumber
         self._count += 1
         if len(self._open) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
-            raise XmlError(line, "elements without measure", f"at most {MAX_ELEMENTS}, {MAX_DEPTH} deep")
+            raise XmlError(line, "too many or too deeply nested elements", f"at most {MAX_ELEMENTS}, {MAX_DEPTH} deep")
         named = ((_attribute(key), value) for key, value in attributes.items())
         own = {key: value for key, value in named if key is not None}
         element = Element(name.rpartition(_SPACE)[2], own, line, self._parser.CurrentByteIndex)
@@ -113,14 +113,16 @@ class _Builder:
         self._texts[-1].append(data)
 
     def _entity(self, name: str, *_declaration: object) -> None:
-        raise XmlError(self._parser.CurrentLineNumber, f"a declaration of the entity '{name}'", "no entities")
+        raise XmlError(
+            self._parser.CurrentLineNumber, f"a declaration of the entity '{name}'", "no entity declarations"
+        )
 
     def _external(self, *_reference: object) -> int:
-        raise XmlError(self._parser.CurrentLineNumber, "a reference to something outside", "a file that stands alone")
+        raise XmlError(self._parser.CurrentLineNumber, "an external reference", "a self-contained file")
 
 
 def _attribute(key: str) -> str | None:
-    """The name of an attribute in `Element.attributes`; None for one that means nothing here."""
+    """Return the name of an attribute in `Element.attributes`; None for one that is ignored."""
     if _SPACE not in key:
         return key
     return f"svg:{key.removeprefix(_SVG)}" if key.startswith(_SVG) else _KNOWN.get(key)

@@ -1,6 +1,6 @@
-"""A print in the raster of the ground: which color each of the ground's pixels takes, and with few enough colors.
+"""Prints (images on the floor) in the raster of the ground: resampling, mixing with the ground, reducing the colors.
 
-Both work on bands of rows: a print of 25 million pixels would else take a gigabyte of intermediate values.
+The work is done in bands of rows: a print of 25 million pixels would otherwise need a gigabyte of intermediate values.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ Area = tuple[int, int, int, int]
 
 
 def area_of(mark: Floor | Mark, pixel_m: float, origin: tuple[int, int], shape: tuple[int, int]) -> Area:
-    """The pixels of a ground round a mark. The ground has `shape` rows and columns, its first pixel at `origin`."""
+    """Return the pixels of the bounding box of a mark, clipped to a ground of `shape` rows and columns.
+
+    `origin` are column and row of its first pixel. The area is empty if they do not overlap.
+    """
     xs = [x / pixel_m - origin[0] for x, _ in mark.vertices]
     ys = [y / pixel_m - origin[1] for _, y in mark.vertices]
     left, right = max(0, math.floor(min(xs))), min(shape[1], math.ceil(max(xs)))
@@ -39,7 +42,7 @@ def area_of(mark: Floor | Mark, pixel_m: float, origin: tuple[int, int], shape: 
 def bands(
     printed: Print, pixel_m: float, origin: tuple[int, int], shape: tuple[int, int]
 ) -> Iterator[tuple[Area, _Words]]:
-    """The area of a print band by band from below, and its colors there by row (y) and column (x).
+    """Iterate over a print band by band from below: its area, and its colors there, shape (rows, columns).
 
     A color is the number 0xaabbggrr: opacity, blue, green, red; it is 0 outside of the print. A print finer than the
     ground is averaged over whole blocks first.
@@ -51,6 +54,8 @@ def bands(
     size_x, size_y = printed.size_x_m / printed.columns, printed.size_y_m / printed.rows
     merge_x, merge_y = max(1, math.floor(pixel_m / size_x + 1e-9)), max(1, math.floor(pixel_m / size_y + 1e-9))
     words: _Words = _blocks(source, merge_x, merge_y).view("<u4")[..., 0]
+    # Centers of the ground's pixels relative to the print, turned into its frame: column and row of the print's pixel
+    # there (nearest neighbor; its rows count from the top).
     x = (np.arange(left, right) + 0.5 + origin[0]) * pixel_m - printed.pose.x_m
     cos, sin = math.cos(printed.pose.yaw_rad), math.sin(printed.pose.yaw_rad)
     height = max(1, _BAND_PIXELS // (right - left))
@@ -58,8 +63,7 @@ def bands(
         end = min(top, begin + height)
         y = (np.arange(begin, end) + 0.5 + origin[1]) * pixel_m - printed.pose.y_m
         colors = np.zeros((end - begin, right - left), dtype=np.uint32)
-        if sin == 0.0:  # and nearly all prints are
-            # Columns depend on x alone and rows on y alone.
+        if sin == 0.0:  # nearly all prints: columns depend on x alone and rows on y alone
             column = np.floor((cos * x + printed.size_x_m / 2) / (size_x * merge_x)).astype(np.intp)
             row = np.floor((printed.size_y_m / 2 - cos * y) / (size_y * merge_y)).astype(np.intp)
             across = np.flatnonzero((column >= 0) & (column < words.shape[1]))
@@ -75,12 +79,15 @@ def bands(
 
 
 def laid_on(words: _Words, under: npt.NDArray[np.uint16], palette: npt.NDArray[np.float64]) -> _Codes:
-    """Colors of a print, none of them clear, on a ground of these color numbers, as numbers 0xrrggbb.
+    """Return the colors 0xrrggbb that pixels of a print have on the ground, shape (pixels,).
 
-    Rows of `palette` are red, green, blue of each color number, 0…255.
+    Args:
+        words: colors 0xaabbggrr of the print, none fully transparent, shape (pixels,).
+        under: color numbers of the ground, shape (pixels,).
+        palette: red, green, blue of each color number, 0…255, shape (numbers, 3).
     """
     codes = ((words & 0xFF) << 16 | words & 0xFF00 | words >> 16 & 0xFF).astype(np.uint32, copy=False)
-    mixed = np.flatnonzero(words < 0xFF000000)
+    mixed = np.flatnonzero(words < 0xFF000000)  # not opaque: alpha blending
     if len(mixed):
         parts = (words[mixed] >> 24) / 255
         ground = palette[under[mixed]]
@@ -94,9 +101,13 @@ def laid_on(words: _Words, under: npt.NDArray[np.uint16], palette: npt.NDArray[n
 
 
 def few_colors(codes: Sequence[_Codes], most: int) -> tuple[_Bytes, npt.NDArray[np.uint16]]:
-    """At most `most` colors, 65 536 or fewer, that stand for those of all pixels; and a table from code to color.
+    """Reduce colors to at most `most`, which must not be above 65 536.
 
-    All that occur, if they are few enough; otherwise near ones are replaced by their mean.
+    If more colors occur, the color cube is divided into cells, each color is replaced by the mean of the pixels in its
+    cell, and the cells are as small as possible.
+
+    Returns:
+        The colors, shape (colors, 3), and the index of the color for each code 0xrrggbb, shape (2**24,).
     """
     occurs = np.zeros(_CODES, dtype=bool)
     for part in codes:
@@ -109,7 +120,7 @@ def few_colors(codes: Sequence[_Codes], most: int) -> tuple[_Bytes, npt.NDArray[
     cube: npt.NDArray[np.bool_] = occurs.reshape(256, 256, 256)
     bits = 0
     while bits == 0 or (np.count_nonzero(cube) > most and bits < 8):
-        # Eight neighbors in the cube of colors become one.
+        # Merge eight neighbors of the cube into one cell: `side` cells of 2**bits shades along each axis.
         bits += 1
         side = 256 >> bits
         cube = np.asarray(cube.reshape(side, 2, side, 2, side, 2).any(axis=(1, 3, 5)))
@@ -132,7 +143,7 @@ def few_colors(codes: Sequence[_Codes], most: int) -> tuple[_Bytes, npt.NDArray[
 
 
 def _blocks(source: _Bytes, across: int, down: int) -> _Bytes:
-    """Means over blocks of pixels, weighted by opacity; the last ones may be smaller."""
+    """Return the means over blocks of pixels, weighted by opacity; the last blocks may be smaller."""
     if across == down == 1:
         return source
     rows, columns = math.ceil(source.shape[0] / down), math.ceil(source.shape[1] / across)
@@ -147,6 +158,7 @@ def _means(source: _Bytes, across: int, down: int) -> _Bytes:
     rows, columns = math.ceil(source.shape[0] / down), math.ceil(source.shape[1] / across)
     padded = np.zeros((rows * down, columns * across, 4), dtype=np.float32)
     padded[: source.shape[0], : source.shape[1]] = source
+    # Colors are averaged with the opacity as weight (premultiplied alpha), so that transparent pixels have no color.
     padded[..., :3] *= padded[..., 3:] / 255
     there = np.zeros((rows * down, columns * across), dtype=np.float32)
     there[: source.shape[0], : source.shape[1]] = 1.0

@@ -1,4 +1,4 @@
-"""The playground as a grid for path planners: occupied where something fixed stands or there is no floor, else free."""
+"""The playground as an occupancy grid for path planners: occupied where a solid is or no floor is, otherwise free."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from thymio_sim_ros.sim.model.primitives import Disc, Floor, Solid
 __all__ = ["CELL_M", "Grid", "grid"]
 
 CELL_M = 0.01
-"""Edge of a cell, unless the playground is so large that they are more than `MOST_CELLS` in a row."""
+"""Side of a cell in m; larger if the playground would have more than `MOST_CELLS` cells along an axis."""
 MOST_CELLS = 2000
 
 Cells = npt.NDArray[np.bool_]
@@ -24,7 +24,7 @@ Values = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """Cells row by row from the lower left corner, true where they are occupied."""
+    """Cells row by row from the lower left `corner` (m in the world's frame); true where occupied."""
 
     corner: Point
     cell_m: float
@@ -34,7 +34,7 @@ class Grid:
 
 
 def grid(floors: Sequence[Floor], solids: Sequence[Solid]) -> Grid:
-    """All floors and solids, cells judged by their middles; no cells where there are neither."""
+    """Return the grid of floors and solids; a cell is occupied if its center is. Empty if there are neither."""
     corners = list(_corners(floors, solids))
     if not corners:
         return Grid((0.0, 0.0), CELL_M, 0, 0, ())
@@ -67,7 +67,7 @@ def _corners(floors: Iterable[Floor], solids: Iterable[Solid]) -> Iterator[Point
 
 
 def _inside(x: Values, y: Values, vertices: Sequence[Point]) -> Cells:
-    """Which of these points lie in a convex polygon, counter-clockwise."""
+    """Return which points lie in a convex counter-clockwise polygon, shape (rows, columns): left of every side."""
     inside: Cells = np.ones((len(y), len(x)), dtype=bool)
     for (ax, ay), (bx, by) in zip(vertices, (*vertices[1:], vertices[0]), strict=True):
         inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= -1e-9

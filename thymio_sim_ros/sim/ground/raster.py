@@ -1,7 +1,7 @@
-"""The picture on the ground: which color each square of `pixel_m` has, and where there is no floor at all.
+"""The raster of the ground: the color of each square of `pixel_m`, and where there is no floor.
 
-One pixel for each millimeter (more where the ground is very large), aligned with the world's origin. Floors make
-it, paint and prints cover floor, and a pen draws on it; what a pen has drawn can be taken away again.
+A pixel is 1 mm wide (more if the ground is very large) and aligned with the world's origin. Floors are filled first,
+paint and prints cover floor only, and a pen draws on it; drawings can be erased.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ _MAX_PIXELS = 25_000_000
 _MAX_COLORS = 65_534
 
 _SPARE_COLORS = 1000
-"""Left free by prints, for paint and pens that come later."""
+"""Color numbers that prints leave free for paint and pens that come later."""
 
 MAX_COST = 1_200_000_000
-"""The `cost` of a picture that is accepted: two prints on the largest ground, or thirty floors of its size."""
+"""Largest `cost` that is accepted: two prints on the largest ground, or thirty floors of its size."""
 _ROW_COST, _PRINT_COST = 2000, 20
-"""What a row and a pixel of a print cost in pixels of paint, measured."""
+"""Measured cost of a row and of a pixel of a print, in pixels of paint."""
 
 
 def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
-    """What it takes to make the picture of a ground, in pixels of paint; about a nanosecond each."""
+    """Return the cost of rasterizing a ground, in pixels of paint; each takes about a nanosecond."""
     pixel_m, origin, shape = _grid(floors)
     found = 0
     for mark in (*floors, *paints):
@@ -43,7 +43,7 @@ def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
 
 
 def _grid(floors: Sequence[Floor]) -> tuple[float, tuple[int, int], tuple[int, int]]:
-    """Of the picture of these floors: size of a pixel in m, column and row of the first, number of rows and columns."""
+    """Return the size of a pixel in m, column and row of the first pixel, and number of rows and columns."""
     corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
     low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
     high_x, high_y = (max(corner[axis] for corner in corners) for axis in (0, 1))
@@ -77,7 +77,7 @@ class Picture:
         """The pixels before anything was drawn; None while nothing is."""
 
     def color_at(self, x_m: float, y_m: float) -> Color | None:
-        """The color of a place, or None where there is no floor."""
+        """Return the color at a point, or None where there is no floor."""
         column = math.floor(x_m / self.pixel_m) - self.origin[0]
         row = math.floor(y_m / self.pixel_m) - self.origin[1]
         height, width = self.pixels.shape
@@ -89,9 +89,9 @@ class Picture:
     def draw_segment(
         self, x0_m: float, y0_m: float, x1_m: float, y1_m: float, width_m: float, color: Color | None
     ) -> Area | None:
-        """Draw a line with round ends on the floor, at least a pixel wide; None as color takes drawings away.
+        """Draw a line with round ends on the floor, at least a pixel wide; None as color erases drawings.
 
-        Returns the pixels that may have changed, or None when there are none.
+        Returns the pixels that may have changed, or None if there are none.
         """
         scale = 1.0 / self.pixel_m
         ax, ay = x0_m * scale - self.origin[0], y0_m * scale - self.origin[1]
@@ -103,6 +103,8 @@ class Picture:
         if left >= right or bottom >= top or (color is None and self._before is None):
             return None
         px, py = np.arange(left, right)[None, :] + (0.5 - ax), np.arange(bottom, top)[:, None] + (0.5 - ay)
+        # A pixel is covered if its center is within the radius of the segment: `along` is the parameter 0…1 of the
+        # nearest point of the segment, the clamped projection.
         square = dx * dx + dy * dy
         along = np.clip((px * dx + py * dy) / square, 0.0, 1.0) if square > 0.0 else np.zeros((1, 1))
         covered = (px - along * dx) ** 2 + (py - along * dy) ** 2 <= radius * radius
@@ -116,18 +118,18 @@ class Picture:
         return (left, bottom, right, top)
 
     def restore(self) -> bool:
-        """Take away all that was drawn; whether there was anything."""
+        """Erase everything that was drawn; returns whether there was anything."""
         if self._before is None:
             return False
         self.pixels[:], self._before = self._before, None
         return True
 
     def move_to(self, pixels: npt.NDArray[np.uint16], grays: npt.NDArray[np.float64]) -> None:
-        """Live in these arrays, which hold the same, from now on."""
+        """Use these arrays, which have the same content, from now on: they are the memory of a kernel."""
         self.pixels, self.grays = pixels, grays
 
     def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint16]:
-        """Rows `top`…`bottom` and columns `left`…`right` (not included), without floor beyond the picture."""
+        """Return rows `top` to `bottom` and columns `left` to `right` (exclusive); outside the raster is no floor."""
         height, width = self.pixels.shape
         part = np.zeros((bottom - top, right - left), dtype=np.uint16)
         y0, y1, x0, x1 = max(top, 0), min(bottom, height), max(left, 0), min(right, width)
@@ -136,7 +138,11 @@ class Picture:
         return part
 
     def _fill(self, vertices: Sequence[Point], color: Color, *, everywhere: bool) -> None:
-        """Paint the pixels whose center lies in a convex polygon; without `everywhere` only those that are floor."""
+        """Paint the pixels whose center lies in a convex polygon; without `everywhere` only those that are floor.
+
+        Scan line by scan line: a counter-clockwise polygon is right of its descending sides and left of its ascending
+        ones, so the span of a row is from the largest crossing of the former to the smallest of the latter.
+        """
         number = self._number(color)
         xs = [x / self.pixel_m - self.origin[0] for x, _ in vertices]
         ys = [y / self.pixel_m - self.origin[1] for _, y in vertices]
@@ -147,7 +153,7 @@ class Picture:
         outside = np.zeros(len(row), dtype=bool)
         for this in range(len(xs)):
             ax, ay, bx, by = xs[this - 1], ys[this - 1], xs[this], ys[this]
-            if by == ay:
+            if by == ay:  # a horizontal side has no crossing; rows below or above it are outside
                 outside |= (bx - ax) * (row - ay) < 0
                 continue
             crossing = ax + (bx - ax) * (row - ay) / (by - ay)
@@ -165,7 +171,11 @@ class Picture:
                 pixels[pixels > 0] = number
 
     def _print(self, printed: Print) -> None:
-        """Put a print on the floor; what is half transparent lets half of the ground through."""
+        """Put a print on the floor; transparent parts mix with the ground.
+
+        There are at most 65 535 color numbers. The first pass collects the colors of all pixels; they are then reduced
+        to those that are free, and the second pass writes them.
+        """
         palette = np.array(self._palette) * 255
         covered, codes = [], []
         for (left, bottom, right, top), words in bands(printed, self.pixel_m, self.origin, self.pixels.shape):
@@ -184,7 +194,7 @@ class Picture:
             under[here] = numbers[table[code]]
 
     def _number(self, color: Color) -> int:
-        """The number of a color; when there are too many colors, of the nearest gray among them."""
+        """Return the number of a color; if there are too many colors, that of the color with the nearest gray."""
         known = self._numbers.get(color)
         if known is not None:
             return known

@@ -1,4 +1,4 @@
-"""A picture as few plain rectangles, for viewers that know no textures: coarse where there is much to see."""
+"""An image as a few rectangles of one color, for viewers without textures; coarser if it has much detail."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SHADES = 16
 
 @dataclass(frozen=True, slots=True)
 class Tile:
-    """A rectangle of one color (red, green, blue, opacity 0…1), its edges in parts of the picture, from below left."""
+    """A rectangle of one color (red, green, blue, opacity 0…1); edges are parts of the image, from the lower left."""
 
     left: float
     bottom: float
@@ -29,7 +29,7 @@ class Tile:
 
 
 def mosaic(pixels: Pixels, *, most: int = _MOST_TILES) -> list[Tile]:
-    """At most `most` tiles, 1 to 4000: rows of equal colors in one piece, in as many rows as that allows."""
+    """Return at most `most` tiles (clamped to 1…4000): runs of equal color in as many rows as that allows."""
     most = max(1, min(most, _MOST_TILES))
     image = np.frombuffer(pixels.rgba, dtype=np.uint8).reshape(pixels.rows, pixels.columns, 4)
     finest = _FINEST

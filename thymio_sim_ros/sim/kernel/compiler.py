@@ -122,6 +122,7 @@ class _Function:
         own = set(self._types)
         body = self._block(_tree(kernel).body)
         local = "".join(f"(local ${name} {kind})" for name, kind in self._types.items() if name not in own)
+        # A function with a result must end with a value, even if all paths return before.
         if self._result:
             head.append(f"(result {self._result})")
             body += f"\n({self._result}.const 0)"
@@ -179,6 +180,8 @@ class _Function:
 
     def _for(self, name: str, limits: list[ast.expr], body: list[ast.stmt]) -> str:
         first, last = (ast.Constant(0), limits[0]) if len(limits) == 1 else limits
+        # As in Python: the limits are evaluated once, and an assignment to the variable does not change the iteration,
+        # so count and end are locals of their own.
         number = self._loops
         count, end = f"_count{number}", f"_end{number}"
         for own in (count, end, name):
@@ -193,6 +196,8 @@ class _Function:
         return begin + loop
 
     def _loop(self, is_over: str, before: str, body: list[ast.stmt], after: str) -> str:
+        # A branch to a block continues after it, a branch to a loop repeats it. `break` branches to $out, `continue` to
+        # $next, whose end is followed by the step of the loop (`after`).
         number = self._loops
         self._loops += 1
         self._open.append(number)
@@ -239,6 +244,7 @@ class _Function:
                 sign = "_s" if kind == "i32" and not isinstance(op, ast.Eq | ast.NotEq) else ""
                 return f"({kind}.{_COMPARISONS[type(op)]}{sign} {a} {b})"
             case ast.Compare(left=left, ops=[first, *ops], comparators=[right, *others]) if ops:
+                # a < b < c is a < b and b < c; b is evaluated twice, which has no effect as expressions have none.
                 one = ast.copy_location(ast.Compare(left, [first], [right]), node)
                 rest = ast.copy_location(ast.Compare(right, ops, others), node)
                 return self._condition(ast.copy_location(ast.BoolOp(ast.And(), [one, rest]), node))
@@ -253,7 +259,7 @@ class _Function:
         raise self._refuse(node)
 
     def _alike(self, left: ast.expr, right: ast.expr) -> tuple[tuple[str, str], str]:
-        """Two values as one type."""
+        """Return two values as one type, and this type: a float if one of them is."""
         a, b = self._value(left), self._value(right)
         kind = "f64" if "f64" in (a[1], b[1]) else "i32"
         return (self._as(a, kind, left), self._as(b, kind, right)), kind
@@ -299,7 +305,7 @@ class _Function:
         match node.func, node.args:
             case ast.Name(id="min" | "max" as name), [left, right]:
                 (a, b), kind = self._alike(left, right)
-                if kind == "f64":
+                if kind == "f64":  # WebAssembly has no minimum of integers
                     return f"(f64.{name} {a} {b})", kind
             case ast.Name(id="abs"), [value]:
                 return f"(f64.abs {self._as(self._value(value), 'f64', node)})", "f64"
@@ -346,7 +352,7 @@ def _constant(number: float) -> _Typed:
 
 
 def _loaded(target: ast.expr) -> ast.expr:
-    """A place that is assigned to, as a value."""
+    """Return the target of an assignment as an expression that reads it."""
     if isinstance(target, ast.Subscript):
         return ast.copy_location(ast.Subscript(target.value, target.slice, ast.Load()), target)
     return ast.copy_location(ast.Name(getattr(target, "id", ""), ast.Load()), target)

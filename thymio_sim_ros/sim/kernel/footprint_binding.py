@@ -18,7 +18,10 @@ Tiles = npt.NDArray[np.int32]
 
 
 class FootprintBinding:
-    """Points of robots on a ground. Invariant: what is drawn into its `pixels` and noted in its `tiles` is seen."""
+    """The arrays of the footprint kernel for one ground and a fixed number of robots.
+
+    `pixels`, `tiles` and `grays` are the memory of the kernel: the ground must draw into them from then on.
+    """
 
     def __init__(
         self,
@@ -30,10 +33,16 @@ class FootprintBinding:
         sizes: Sequence[float],
         counts: Sequence[int],
     ) -> None:
-        """Rows of `points` are x, y in a robot's frame.
+        """Allocate the arrays and copy the ground into them.
 
-        `counts` and `sizes` are those of the kernel, but for the number of places and the answers.
-        Pixels, tiles and grays are copied; later changes must be made to the copies in this object.
+        Args:
+            robots: number of robots.
+            points: x, y of the footprints in the robot's frame, shape (points, 2).
+            pixels: color numbers of the ground, shape (rows, columns).
+            tiles: the only color of each tile, shape (tile rows, tile columns).
+            grays: gray of each color number.
+            sizes: see `footprint_kernel.sample`.
+            counts: those of the kernel, without the number of places and the result.
         """
         each = (robots, len(points))
         floats = [(len(sizes),), (robots, 3), (2, robots), points.shape, each, each, grays.shape, each, each]
@@ -67,11 +76,14 @@ class FootprintBinding:
         )  # fmt: skip
 
     def is_for(self, robots: int, points: Values) -> bool:
-        """Whether it is for these points of so many robots."""
+        """Return whether it was made for these points of this number of robots."""
         return len(self._poses) == robots and np.array_equal(self._points, points)
 
     def sample(self, poses: Values) -> tuple[Values, Values] | None:
-        """As `Ground.sample_under`; None when a tile is not known."""
+        """Return reflectances and parts of floor, shape (robots, points) each, or None if a tile is unknown.
+
+        `poses` are x, y, yaw of the robots, shape (robots, 3).
+        """
         self._poses[:] = poses
         np.cos(self._poses[:, 2], out=self._turns[0])
         np.sin(self._poses[:, 2], out=self._turns[1])

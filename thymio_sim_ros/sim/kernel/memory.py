@@ -60,7 +60,7 @@ class KernelMemory:
 
     @classmethod
     def holding(cls, floats: Sequence[Shape], ints: Sequence[Shape] = ()) -> tuple[KernelMemory, list[Any], list[Any]]:
-        """A memory for just these arrays, and the arrays: of float64, and of int32."""
+        """Allocate a memory for arrays of these shapes; returns it, the float64 arrays and the int32 arrays."""
         kinds = [(shape, np.float64) for shape in floats], [(shape, np.int32) for shape in ints]
         memory = cls(sum(cls.room(shape, kind) for part in kinds for shape, kind in part))
         found = [[memory.array(shape, kind) for shape, kind in part] for part in kinds]
@@ -76,7 +76,9 @@ class KernelMemory:
         start = -(-self._used // ALIGNMENT) * ALIGNMENT
         end = start + int(np.prod(shape)) * np.dtype(kind).itemsize
         if end > len(self._bytes):
-            raise MemoryError(f"an array of {shape}: found {len(self._bytes) - start} bytes, expected {end - start}")
+            raise MemoryError(
+                f"an array of {shape}: found {len(self._bytes) - start} free bytes, expected {end - start}"
+            )
         self._used = end
         return self._bytes[start:end].view(kind).reshape(shape)
 

@@ -18,12 +18,13 @@ Indices = npt.NDArray[np.intp]
 Numbers = npt.NDArray[np.int32]
 
 _SPARE = 2
-"""There is room for so many times the pairs and planes that there are at first."""
+"""Factor by which more pairs and planes are allocated than needed, so that a growing list seldom needs new memory."""
 _FEW = 64
+"""Smallest number of pairs or planes that are allocated."""
 
 
 class FanArrays(Protocol):
-    """What a fan says of its sensors."""
+    """What the kernel needs of a fan (`raycast.batch.Fan`, which is above this room)."""
 
     places: Values
     directions: Values
@@ -36,16 +37,28 @@ class FanArrays(Protocol):
 
 
 class RaycastBinding:
-    """What is near, and what rays meet of it. Invariant: after `begin`, which says what is near."""
+    """The arrays of the ray cast kernel for one fan and a fixed number of robots and obstacles.
+
+    `begin` sets the candidates; `cast` may be called as long as it does not return None.
+    """
 
     def __init__(
         self, fan: FanArrays, robots: int, things: int, fixed: int, hull: Sequence[float], most_m: float
     ) -> None:
-        """`hull`: middle, turn and half size of a robot in its frame; the list of what is near holds for `most_m`."""
+        """Store the sizes; memory is allocated by `begin`.
+
+        Args:
+            fan: sensors and rays.
+            robots: number of robots.
+            things: number of obstacles, fixed and loose.
+            fixed: number of fixed obstacles.
+            hull: frame of a hull: x and y of its middle, cosine and sine of its heading, half size along and across.
+            most_m: how far anything may move along an axis before the candidates are stale.
+        """
         self._fan, self._robots, self._things, self._fixed = fan, robots, things, fixed
         self._sizes = (fan.range_m, fan.reach_m, most_m, *hull)
         self._room = (0, 0)
-        """For pairs, and for planes."""
+        """Number of pairs and of planes that there is memory for."""
 
     def begin(
         self,
@@ -56,25 +69,35 @@ class RaycastBinding:
         thing: Indices,
         places: Values,
     ) -> None:
-        """What is near: pairs in the order of robots, found when loose things and robots were at `places`.
+        """Set the candidate pairs.
 
-        `frames` and `kinds` are those of things and robots; a polygon's planes are rows of three, the last is the hull.
+        Args:
+            frames: frames of obstacles and robots, shape (obstacles + robots, 7).
+            kinds: their kinds, shape (obstacles + robots,).
+            polygons: half planes of each polygon, shape (sides, 3); the hull is the last.
+            robot: robots of the pairs, ascending.
+            thing: obstacles of the pairs.
+            places: positions of loose obstacles and robots now, shape (loose + robots, 2).
         """
         planes = np.concatenate(polygons)
         if len(thing) > self._room[0] or len(planes) > self._room[1]:
             self._room = (max(_FEW, _SPARE * len(thing)), max(_FEW, _SPARE * len(planes)))
-            self._take()
+            self._allocate()
         self._table[:] = frames
         self._kinds[:] = kinds
         self._plane_rows[: len(planes)] = planes
         self._side_numbers[: len(polygons) + 1] = np.cumsum([0, *map(len, polygons)])
+        # The pairs are sorted by robot: those of robot r are first[r] to first[r + 1].
         self._first[0] = 0
         np.cumsum(np.bincount(robot, minlength=self._robots), out=self._first[1:])
         self._near[: len(thing)] = thing
         self._was[:] = places
 
     def cast(self, poses: Values, rows: Values) -> tuple[Indices, Values] | None:
-        """As `BatchRaycaster.cast`, of things with these `rows` now; None when what is near has to be found anew."""
+        """Cast all rays for robots at `poses`, shape (robots, 3), and obstacles with these rows, shape (obstacles, 7).
+
+        Returns what `BatchRaycaster.cast` returns, or None if the candidates are stale or were never set.
+        """
         if self._room[0] == 0:
             return None
         self._poses[:] = poses
@@ -87,8 +110,8 @@ class RaycastBinding:
             return None
         return self._numbers[:seen].astype(np.intp), self._distances[:seen].copy()
 
-    def _take(self) -> None:
-        """Take memory and bind the kernel to it."""
+    def _allocate(self) -> None:
+        """Allocate memory for the pairs and planes of `_room`, and bind the kernel to it."""
         pairs, planes = self._room
         fan, robots = self._fan, self._robots
         sensors, count = fan.directions.shape[1:]

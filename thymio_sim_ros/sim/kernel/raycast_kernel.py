@@ -1,4 +1,8 @@
-"""Kernel: the distances of the rays of all robots, computed as in `BatchRaycaster.cast`, operation by operation."""
+"""Kernel: the distances of the rays of all robots, computed as in `BatchRaycaster.cast`, operation by operation.
+
+The order of the operations is part of the contract: kernel and numpy path give the same bits. The derivations are in
+`raycast/scalar.py` (discs, half planes) and `raycast/batch.py` (boxes, facing, candidates).
+"""
 
 from __future__ import annotations
 
@@ -9,10 +13,11 @@ from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
 __all__ = ["COUNTS", "cast"]
 
 COUNTS = ("robots", "sensors", "rays", "things", "fixed", "is_narrow", "seen", "is_stale")
-"""What each of `counts` is: the last two are answers."""
+"""Meaning of each element of `counts`; the last two are results."""
 _ROBOTS, _SENSORS, _RAYS, _THINGS, _FIXED, _IS_NARROW, _SEEN, _IS_STALE = range(len(COUNTS))
 _RANGE, _REACH, _MOST, _HULL = 0, 1, 2, 3
-"""Places in `sizes`; the frame of a hull has six numbers."""
+"""Indices in `sizes`: range and reach of the rays, how far anything may move before the candidates are stale, and the
+six numbers of the hull's frame."""
 _FAR = math.inf
 _TINY = 1e-300
 _DISC, _BOX = -2, -1
@@ -20,7 +25,7 @@ _DISC, _BOX = -2, -1
 
 @kernel
 def meet_disc(x: float, y: float, dx: float, dy: float, radius: float) -> float:
-    """How far a ray goes until it enters a disc round the origin."""
+    """Return the distance at which a ray enters a disc around the origin, inf if it does not."""
     middle = -(x * dx + y * dy)
     square = radius * radius - (x * x + y * y - middle * middle)
     enter = middle - math.sqrt(max(square, 0.0))
@@ -29,7 +34,7 @@ def meet_disc(x: float, y: float, dx: float, dy: float, radius: float) -> float:
 
 @kernel
 def meet_box(x: float, y: float, dx: float, dy: float, half_x: float, half_y: float) -> float:
-    """How far a ray goes until it enters a box round the origin."""
+    """Return the distance at which a ray enters a box around the origin, inf if it does not."""
     across_x = 1.0 / (_TINY if dx == 0.0 else dx)
     across_y = 1.0 / (_TINY if dy == 0.0 else dy)
     middle_x = -x * across_x
@@ -43,7 +48,7 @@ def meet_box(x: float, y: float, dx: float, dy: float, half_x: float, half_y: fl
 
 @kernel
 def meet_polygon(x: float, y: float, dx: float, dy: float, planes: Floats, first: int, last: int) -> float:
-    """How far a ray goes until it is inside all of some half planes."""
+    """Return the distance at which a ray enters the half planes `first` to `last` (exclusive), inf if it does not."""
     enter = -_FAR
     leave = _FAR
     for plane in range(first, last):
@@ -62,7 +67,10 @@ def meet_polygon(x: float, y: float, dx: float, dy: float, planes: Floats, first
 
 @kernel
 def is_facing(x: float, y: float, ax: float, ay: float, cos: float, sin: float, radius: float) -> int:
-    """Whether a ray of a sensor at x, y may meet a circle round the origin: axis, and angle to its outermost ray."""
+    """Return whether a ray of a sensor at x, y may meet a circle around the origin.
+
+    The sensor's axis is ax, ay; `cos` and `sin` are of the angle between the axis and its outermost ray.
+    """
     ahead = -(ax * x + ay * y)
     aside = abs(ax * y - ay * x)
     return 1 if aside * cos - ahead * sin <= radius and ahead >= -radius else 0
@@ -88,12 +96,27 @@ def cast(
     numbers: Ints,
     distances: Floats,
 ) -> None:
-    """Number of each sensor that sees anything, counted robot by robot, and the distances of its rays.
+    """Write the numbers of the sensors that detect something to `numbers`, and their rays' lengths to `distances`.
 
-    Things are those that never move, those that may, then robots: a frame of seven numbers each. Those near robot r are
-    `things` from `first[r]` on; the list is stale when anything is too far from where it `was`. The planes of polygon k
-    are those from `sides[k]` on; the last polygon is the hull. Of sensors there are x, y of places and axes, cosine and
-    sine of `edges`, x, y of `directions` of every ray.
+    Args:
+        counts: see `COUNTS`; the number of sensors that detect something, and whether the candidates are stale, are
+            written.
+        sizes: see `_RANGE` and the indices after it.
+        places: origins of the sensors in the robot's frame, shape (2, sensors).
+        axes: directions of the sensors' axes, shape (2, sensors).
+        edges: cosines and sines of the angles between axis and outermost ray, shape (2, sensors).
+        directions: directions of the rays, shape (2, sensors, rays).
+        poses: x, y, yaw of the robots, shape (robots, 3).
+        turns: cosines and sines of the yaws, shape (2, robots); numpy's, as kernels have no sine.
+        frames: fixed obstacles, loose obstacles, robots, shape (all, 7); those of the robots are written here.
+        was: positions of loose obstacles and robots when the candidates were found, shape (loose + robots, 2).
+        kinds: kind of each frame (`raycast/obstacle_table.py`).
+        first: index in `things` of the first candidate of each robot, shape (robots + 1,).
+        things: candidates of all robots: indices in `frames`.
+        planes: half planes of all polygons, shape (planes, 3); the hull is the last polygon.
+        sides: index in `planes` of the first half plane of each polygon, shape (polygons + 1,).
+        numbers: result, shape (robots * sensors,): robot * sensors + sensor.
+        distances: result, shape (robots * sensors, rays), inf for a ray that meets nothing.
     """
     robots = counts[_ROBOTS]
     sensors = counts[_SENSORS]
@@ -104,6 +127,8 @@ def cast(
     most = sizes[_MOST]
     far = limit * (1.0 + 1e-12)
     loose = own - counts[_FIXED]
+
+    # Write the frames of the robots, and test whether anything has moved too far for the list of candidates.
     is_stale = 0
     for thing in range(loose):
         at = 7 * (counts[_FIXED] + thing)
@@ -126,6 +151,10 @@ def cast(
     counts[_IS_STALE] = is_stale
     if is_stale == 1:
         return
+
+    # `seen` counts the rows of results that are final. The sensors of the current robot get the rows after them, even
+    # if they detect nothing, and are compacted when the robot is done. A row is final only at or before the row it was
+    # computed in, so that nothing is overwritten too early.
     seen = 0
     for robot in range(robots):
         sees = 0
@@ -136,6 +165,7 @@ def cast(
             half_y = frames[at + 5]
             turn_c = frames[at + 2]
             turn_s = frames[at + 3]
+            # position and heading (c, s) of the robot in the frame of the obstacle
             dx = poses[3 * robot] - frames[at]
             dy = poses[3 * robot + 1] - frames[at + 1]
             x = turn_c * dx + turn_s * dy
@@ -161,7 +191,7 @@ def cast(
                         == 0
                     ):
                         continue
-                    if sees == 0:
+                    if sees == 0:  # the first obstacle that this robot may see: clear its rows
                         sees = 1
                         for number in range(sensors * rays):
                             distances[seen * rays + number] = _FAR
@@ -180,7 +210,7 @@ def cast(
                         if met < far:
                             number = (seen + sensor) * rays + ray
                             distances[number] = min(distances[number], met)
-        if sees == 1:
+        if sees == 1:  # keep the rows of the sensors that detect something
             begin = seen
             for sensor in range(sensors):
                 nearest = _FAR

@@ -14,10 +14,10 @@ Values = npt.NDArray[np.float64]
 
 
 class RngBinding:
-    """Numbers drawn ahead: a row of `numbers` for each user, of which the first `used` are gone."""
+    """Numbers drawn ahead: `numbers` has shape (users, width); the first `used` of each row are used up."""
 
     def __init__(self, users: int, width: int, most: int) -> None:
-        """`most`: turns at once."""
+        """Allocate the arrays, for calls that draw at most `most` numbers."""
         memory, floats, ints = KernelMemory.holding(
             [(users, width), (most,)], [(len(rng_kernel.COUNTS),), (users,), (most,)]
         )
@@ -29,7 +29,10 @@ class RngBinding:
         self._call = memory.bind(rng_kernel.draw, self._counts, self._users, self.numbers, self.used, self._drawn)
 
     def draw(self, users: npt.NDArray[np.intp]) -> Values | None:
-        """A number for each turn of a user, to be read until the next call; None when one has too few left."""
+        """Draw a number for each entry of `users`, shape (entries,); valid until the next call.
+
+        Returns None, and draws nothing, if a user has too few numbers left.
+        """
         turns = len(users)
         self._users[:turns] = users
         self._counts[0] = turns

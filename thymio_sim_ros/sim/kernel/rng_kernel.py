@@ -7,13 +7,13 @@ from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
 __all__ = ["COUNTS", "draw"]
 
 COUNTS = ("turns", "width", "is_short")
-"""What each of `counts` is: so many turns, so many numbers in a row; the last is an answer."""
+"""Meaning of each element of `counts`: numbers to draw, numbers in a row; the last is a result."""
 _TURNS, _WIDTH, _IS_SHORT = range(len(COUNTS))
 
 
 @kernel
 def draw(counts: Ints, users: Ints, numbers: Floats, used: Ints, drawn: Floats) -> None:
-    """The next number for each turn of a user, unless one has too few: then none is dealt."""
+    """Write the next number of the user of each turn to `drawn`; if a user has too few, undo all and set `is_short`."""
     width = counts[_WIDTH]
     counts[_IS_SHORT] = 0
     for turn in range(counts[_TURNS]):

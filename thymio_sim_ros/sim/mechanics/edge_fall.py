@@ -42,6 +42,8 @@ class EdgeFall:
 
     def check_floor(self, floor_support: FloorSupport) -> None:
         """Make the robot fall if there is no floor under its origin."""
+        # The clearance is a lower bound of the distance to the edge, so for some ticks the robot cannot reach it by its
+        # own wheels. A robot in contact may be pushed faster and is checked in each tick.
         if self._safe_ticks > 0 and not self._body.touching:
             self._safe_ticks -= 1
         elif self._fall is None:

@@ -28,11 +28,11 @@ class Fall:
     course_rad: float
 
     def is_free(self, now_ns: int) -> bool:
-        """Whether it is still in the air."""
+        """Return whether it is still in the air."""
         return now_ns - self.began_ns < FALL_NS
 
     def tilt(self, now_ns: int) -> Tilt:
-        """How it is tipped: evenly more while in the air, then as it lies."""
+        """Return the tilt: it grows linearly in the air, then stays."""
         slant = _SLANT_RAD * min(1.0, (now_ns - self.began_ns) / FALL_NS)
         if slant == 0.0:
             return LEVEL

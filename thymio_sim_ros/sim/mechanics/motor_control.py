@@ -38,7 +38,7 @@ class WheelControl:
         self._is_halved = False
 
     def tick(self, target: float, speed: float, dt_s: float) -> float:
-        """One step for a wheel of this target and measured speed, in units; the speed that it now tends to have."""
+        """Advance by a tick; returns the speed of the wheel after it, in Thymio units like `target` and `speed`."""
         self._control(target, speed)
         applied = self.output / 2 if self._is_halved else self.output
         self._watch_current(abs(applied - PWM_PER_SPEED_UNIT * speed))

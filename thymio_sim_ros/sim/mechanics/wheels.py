@@ -111,7 +111,7 @@ class Wheels:
 
 
 def twist_of(left_m_s: float, right_m_s: float) -> Twist:
-    """The motion of a body whose wheels roll at these speeds."""
+    """Return the velocity of a body whose wheels roll at these speeds (m/s)."""
     return Twist((left_m_s + right_m_s) / 2, (right_m_s - left_m_s) / WHEEL_TRACK_M)
 
 

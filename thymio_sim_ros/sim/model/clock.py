@@ -31,7 +31,7 @@ class SimClock:
         self.now_ns = 0
 
     def advance(self) -> int:
-        """One tick later; the new time."""
+        """Advance by one tick; returns the new time in ns."""
         self.now_ns += TICK_NS
         return self.now_ns
 
@@ -62,7 +62,7 @@ class Schedule:
         """When the next thing happens that does not fit."""
 
     def due(self, now_ns: int) -> Sequence[int]:
-        """Numbers of the things that happen in the tick that ends now, in order."""
+        """Return the numbers of what is due in the tick that ends now, in order."""
         due = self._cycle[now_ns // TICK_NS % _CYCLE_TICKS]
         if now_ns < self._odd_ns:
             return due
@@ -74,22 +74,23 @@ class Schedule:
 
 
 def next_due_ns(period_ns: int, phase_ns: int, now_ns: int) -> int:
-    """The first tick after this one in which a `Schedule` lets a thing happen."""
+    """Return the time of the first tick after this one in which a `Schedule` has something due."""
     first_ns = phase_ns or period_ns
     periods = max(0, (now_ns - first_ns) // period_ns + 1)
     return -(-(first_ns + periods * period_ns) // TICK_NS) * TICK_NS
 
 
 class Pacer:
-    """Wall time → ticks owed. Invariant: never owes more than `max_batch` ticks at once.
+    """Computes from wall time how many ticks are owed. Invariant: never owes more than `max_batch` ticks at once.
 
-    `real_time_factor` is simulated per wall seconds; 0 means as fast as possible, in batches. What can't
-    be caught up is dropped and counted; `achieved` is the factor over about the last second.
+    `real_time_factor` is simulated time divided by wall time; 0 means as fast as possible, in batches. Ticks that
+    cannot be caught up are dropped and counted; `achieved` is the factor over about the last second. Raises ValueError
+    for a factor that is negative or not finite.
     """
 
     def __init__(self, real_time_factor: float, *, max_batch: int = 10) -> None:
         if not 0.0 <= real_time_factor < float("inf"):
-            raise ValueError(f"real-time factor {real_time_factor}: expected a number from 0 up")
+            raise ValueError(f"real-time factor: found {real_time_factor}, expected a number of at least 0")
         self.achieved = 0.0
         self.dropped_ticks = 0
         self._factor = real_time_factor
@@ -100,7 +101,7 @@ class Pacer:
         self._window_ticks = 0
 
     def owed(self, monotonic_ns: int) -> int:
-        """Ticks to do now, for a reading of a monotonic wall clock."""
+        """Return the number of ticks to do now, given a monotonic wall time in ns."""
         if self._next_due_ns is None:
             self._next_due_ns = monotonic_ns + self._tick_wall_ns
             self._window_start_ns = monotonic_ns
@@ -118,13 +119,13 @@ class Pacer:
         return self._grant(ticks)
 
     def wait_ns(self, monotonic_ns: int, ticks: int = 1) -> int:
-        """Wall time until so many ticks are due; 0 when they are owed already."""
+        """Return the wall time in ns until this number of ticks is due; 0 if they are owed already."""
         if self._next_due_ns is None or not self._factor:
             return 0
         return max(0, int(self._next_due_ns + (ticks - 1) * self._tick_wall_ns - monotonic_ns) + 1)
 
     def ticks_until(self, monotonic_ns: int) -> int:
-        """How many ticks, at least one, there are to the first that is not due before this moment."""
+        """Return the number of ticks, at least one, to the first one that is not due before this wall time."""
         if self._next_due_ns is None or not self._factor:
             return 1
         return max(1, math.ceil((monotonic_ns - self._next_due_ns) / self._tick_wall_ns) + 1)

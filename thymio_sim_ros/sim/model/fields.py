@@ -1,8 +1,9 @@
 """What a field of a playground file may hold, and the reading of frozen dataclasses from such data.
 
 A field is a dataclass field whose type is annotated with a rule (`Annotated[float, Number("m", …)]`).
-Loader, published JSON schema and the editor's forms are all derived from these declarations; its unit is
-part of a key's name (`size_x_m`). Unknown keys, missing keys and values out of range are refused.
+Loader, published JSON schema and the forms of the page's creator (`field_declarations.py`) are derived from these
+declarations. The unit is part of a key's name (`size_x_m`). Unknown keys, missing keys and values out of range are
+refused.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ __all__ = [
     "Shade",
     "Text",
     "as_color",
+    "hinted_rule",
     "image_keys",
     "json_schema",
     "nearest",
@@ -238,7 +240,7 @@ def _rules(kind: Any) -> dict[str, _Rule]:
         hint = hints[field.name]
         default = field.default
         required = default is dataclasses.MISSING
-        rule, optional = _unwrap(hint)
+        rule, optional = hinted_rule(hint)
         schema = _schema(rule)
         if not required and isinstance(default, str | int | float):
             schema = schema | {"default": default}
@@ -248,11 +250,11 @@ def _rules(kind: Any) -> dict[str, _Rule]:
     return found
 
 
-def _unwrap(hint: Any) -> tuple[Any, bool]:
-    """(the rule or dataclass of a type hint, whether null is allowed)."""
+def hinted_rule(hint: Any) -> tuple[Any, bool]:
+    """(the rule, bool or dataclass of a type hint, whether null is allowed)."""
     if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
         members = [member for member in typing.get_args(hint) if member is not type(None)]
-        return _unwrap(members[0])[0], True
+        return hinted_rule(members[0])[0], True
     if typing.get_origin(hint) is Annotated:
         return typing.get_args(hint)[1], False
     return hint, False

@@ -33,12 +33,12 @@ class Pose:
     yaw_rad: float
 
     def place(self, point: Point) -> Point:
-        """A point of this pose's frame, seen from the frame that holds the pose."""
+        """Transform a point from the frame of this pose to the frame in which the pose is given."""
         cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
         return (self.x_m + cos * point[0] - sin * point[1], self.y_m + sin * point[0] + cos * point[1])
 
     def place_all(self, points: Sequence[Point]) -> tuple[Point, ...]:
-        """`place` for every point."""
+        """Transform points as `place` does."""
         cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
         return tuple((self.x_m + cos * x - sin * y, self.y_m + sin * x + cos * y) for x, y in points)
 
@@ -63,12 +63,12 @@ LEVEL = Tilt(0.0, 0.0)
 
 
 def wrap_angle(angle_rad: float) -> float:
-    """The same direction in [-π, π]."""
+    """Return the same direction in [-π, π]."""
     return math.remainder(angle_rad, math.tau)
 
 
 def is_convex(vertices: Sequence[Point]) -> bool:
-    """Whether the vertices go counter-clockwise round a convex area (straight corners are allowed)."""
+    """Return whether the vertices go counter-clockwise around a convex area (straight corners are allowed)."""
     area = 0.0
     for index, (x, y) in enumerate(vertices):
         previous_x, previous_y = vertices[index - 1]
@@ -80,12 +80,12 @@ def is_convex(vertices: Sequence[Point]) -> bool:
 
 
 def convex_hulls_overlap(one: Sequence[Point], other: Sequence[Point]) -> bool:
-    """Whether two convex polygons share more than an edge (separating axes)."""
+    """Return whether two convex polygons overlap by more than an edge (separating axis theorem)."""
     return not (_has_separating_edge(one, other) or _has_separating_edge(other, one))
 
 
 def disc_overlaps_hull(center: Point, radius_m: float, hull: Sequence[Point]) -> bool:
-    """Whether a disc and a convex polygon share more than an edge."""
+    """Return whether a disc and a convex polygon overlap by more than an edge."""
     outside = False
     for (ax, ay), (bx, by) in _edges(hull):
         dx, dy = bx - ax, by - ay

@@ -50,25 +50,31 @@ class Noise:
         return self._enabled
 
     def gauss(self, sigma: float) -> float:
-        """A normal number with mean 0 and standard deviation `sigma`; exactly 0 when noise is off."""
+        """Return a normal random number with mean 0 and standard deviation `sigma`; exactly 0 if noise is off."""
         if not self._enabled:
             return 0.0
         number = self._pending
         if number is not None:
             self._pending = None
             return number * sigma
+        # Box-Muller: two uniform numbers give two independent normal numbers, cosine and sine of the angle times
+        # the length. 1 - u is in (0, 1], so the logarithm is finite.
         angle, length = self._draw() * math.tau, math.sqrt(-2.0 * math.log(1.0 - self._draw()))
         self._pending = math.sin(angle) * length
         return math.cos(angle) * length * sigma
 
     def uniform(self, low: float, high: float) -> float:
-        """A uniform number between `low` and `high`; their mean when noise is off."""
+        """Return a uniform random number in [low, high); the mean of both if noise is off."""
         if not self._enabled:
             return (low + high) / 2
         return low + (high - low) * (self._ahead.pop() if self._ahead else self._random.random())
 
     def draw_ahead(self, count: int) -> bytes | Values:
-        """The next numbers, as floats or as 8 bytes each for `uniforms`; return unused ones by `release`."""
+        """Draw the next `count` numbers, as floats or, for `uniforms`, as 8 bytes each.
+
+        Unused numbers must be returned by `release`.
+        """
+        # `randbytes` takes the same 32-bit words from the generator as `random`, but all in one call.
         if len(self._ahead) == 0:
             return self._random.randbytes(8 * count)
         return np.array([self._draw() for _ in range(count)])
@@ -88,11 +94,12 @@ class Noise:
 
 
 def uniforms(blocks: Sequence[bytes | Values]) -> Values:
-    """Blocks of `Noise.draw_ahead` as rows of uniform numbers.
+    """Return blocks of `Noise.draw_ahead` as uniform numbers, shape (blocks, numbers).
 
     `random.random` combines 27 and 26 bits of two 32-bit words of the generator; the same is done here on arrays.
     """
     raw = [block for block in blocks if isinstance(block, bytes)]
+    # (a >> 5) * 2**26 + (b >> 6) is an integer of 53 bits, divided by 2**53: exactly the float that Python makes.
     words = np.frombuffer(b"".join(raw), dtype="<u4").reshape(len(raw), len(raw[0]) // 4 if raw else 0)
     made = iter(((words[:, 0::2] >> 5) * 67108864.0 + (words[:, 1::2] >> 6)) / 9007199254740992.0)
     return np.array([next(made) if isinstance(block, bytes) else block for block in blocks])
@@ -110,7 +117,10 @@ class UniformBank:
         """The numbers scaled to these limits."""
 
     def draw(self, low: float, high: float, count: int) -> Values:
-        """The next `count` numbers of every user, shape (count, users); read-only. See `Noise.uniform`."""
+        """Return the next `count` numbers in [low, high) of every user, shape (count, users), read only.
+
+        All are the mean of `low` and `high` if noise is off.
+        """
         if not self._noises or not self._noises[0].enabled:
             return np.full((count, len(self._noises)), (low + high) / 2)
         while self._used + count > len(self._numbers):
@@ -149,7 +159,10 @@ class NormalBank:
                 self._used[row], self._numbers[row, -1] = _WIDTH - 1, pending
 
     def draw(self, users: npt.NDArray[np.intp], sigma: float) -> Values:
-        """One normal number for each entry of `users`, which is sorted; a user may occur at most `_BLOCK` times."""
+        """Return one normal number with standard deviation `sigma` for each entry of `users`, shape (entries,).
+
+        `users` are sorted indices; each may occur at most `_BLOCK` times. All are 0 if noise is off.
+        """
         if len(users) == 0 or not self._noises[0].enabled:
             return np.zeros(len(users))
         draw = self._draw_compiled if self._is_compiled else self._draw_numpy
@@ -163,13 +176,16 @@ class NormalBank:
 
     def release(self) -> None:
         """Return the unused numbers, so that users draw from their own generators again."""
+        # Normal numbers 2k and 2k + 1 are made of uniform numbers 2k and 2k + 1. If the first of a pair is used, the
+        # second one is returned as it is, and only the uniform numbers after the pair.
         for row, (noise, used) in enumerate(zip(self._noises, self._used.tolist(), strict=True)):
             pending = float(self._numbers[row, used]) if used % 2 else None
             noise.release(self._uniforms[row, used + used % 2 :].tolist(), pending)
         self._used[:] = _WIDTH
 
     def _draw_numpy(self, users: npt.NDArray[np.intp]) -> Values | None:
-        """The next number for each entry of `users`; None if a user has too few left."""
+        """Return the next number for each entry of `users`; None if a user has too few left."""
+        # As `users` is sorted, the index minus that of the first equal entry counts the earlier entries of the user.
         before = np.arange(len(users)) - np.searchsorted(users, users)
         counts = np.bincount(users, minlength=len(self._noises))
         if (self._used + counts).max() > _WIDTH:
@@ -179,7 +195,7 @@ class NormalBank:
         return dealt
 
     def _draw_compiled(self, users: npt.NDArray[np.intp]) -> Values | None:
-        """What `_draw_numpy` does, by a kernel."""
+        """Do the same as `_draw_numpy` by a kernel."""
         binding = self._rng_binding
         if binding is None or binding.most < len(users):
             binding = RngBinding(*self._numbers.shape, most=2 * len(users))

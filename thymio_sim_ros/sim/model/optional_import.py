@@ -11,8 +11,10 @@ __all__ = ["imported"]
 
 
 def imported(name: str, package: str, key: str) -> ModuleType:
-    """A module of a package; FieldError names `key` and how to install it."""
+    """Import a module of an optional package. Raises FieldError, with this key, if it is missing."""
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise FieldError(key, f"a picture that needs the package {package}", f"`pip install {package}`") from error
+        raise FieldError(
+            key, f"an image that needs the missing package {package}", f"`pip install {package}`"
+        ) from error

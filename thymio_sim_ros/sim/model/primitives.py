@@ -140,7 +140,7 @@ class Solid:
         return () if isinstance(self.outline, Disc) else self.pose.place_all(self.outline.vertices)
 
     def at(self, pose: Pose) -> Solid:
-        """The same thing elsewhere."""
+        """Return the same solid at another pose."""
         return replace(self, pose=pose)
 
 
@@ -153,7 +153,7 @@ class Floor:
     color: Color
 
     def holds(self, point: Point) -> bool:
-        """Whether a place lies on it, edges included."""
+        """Return whether a point lies on it, edges included."""
         x, y = point
         return all(
             (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= -1e-9
@@ -225,7 +225,7 @@ class Trigger:
         return max(math.dist(self.middle, vertex) for vertex in self.vertices)
 
     def holds(self, x_m: float, y_m: float) -> bool:
-        """Whether a point lies inside, by the even-odd rule."""
+        """Return whether a point lies inside, by the even-odd rule."""
         inside = False
         for index, (bx, by) in enumerate(self.vertices):
             ax, ay = self.vertices[index - 1]

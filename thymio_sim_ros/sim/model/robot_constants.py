@@ -83,7 +83,7 @@ INTEGRATOR_LIMIT = 4806
 
 
 def hull() -> tuple[tuple[float, float], ...]:
-    """The collision outline, counter-clockwise from the front right (section 1.1)."""
+    """Return the collision outline in m, counter-clockwise from the front right (section 1.1)."""
     corner = math.asin(HULL_WIDTH_M / 2 / HULL_RADIUS_M)
     front = tuple(
         (HULL_RADIUS_M * math.cos(angle), HULL_RADIUS_M * math.sin(angle))

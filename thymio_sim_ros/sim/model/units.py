@@ -44,17 +44,17 @@ _GROUND_MIDDLE = 0.44
 
 
 def speed_to_units(speed_m_s: float) -> int:
-    """Ground speed of a wheel as motor.*.speed, truncated as in the reference."""
+    """Return the ground speed of a wheel in m/s as motor.*.speed, truncated as in the reference."""
     return int(speed_m_s * _UNITS_PER_M_S)
 
 
 def speeds_to_units(speeds_m_s: Values) -> Counts:
-    """`speed_to_units` of many speeds."""
+    """Convert speeds as `speed_to_units` does, shape kept."""
     return (speeds_m_s * _UNITS_PER_M_S).astype(np.int64)
 
 
 def units_to_speed(target: int) -> float:
-    """motor.*.target as ground speed in m/s; the wheels are limited, not the target.
+    """Return motor.*.target as ground speed in m/s; the wheels are limited, not the target.
 
     Source: docs/spec/thymio-robot.md section 2.
     """
@@ -62,19 +62,19 @@ def units_to_speed(target: int) -> float:
 
 
 def units_to_pwm(speed: int) -> int:
-    """motor.*.pwm for a speed in units."""
+    """Return motor.*.pwm for a speed in Thymio units."""
     pwm = int(PWM_PER_SPEED_UNIT * speed)
     return pwm if -PWM_LIMIT <= pwm <= PWM_LIMIT else PWM_LIMIT if pwm > 0 else -PWM_LIMIT
 
 
 def units_to_pwms(speeds: Counts) -> Counts:
-    """`units_to_pwm` of many speeds."""
+    """Convert speeds as `units_to_pwm` does, shape kept."""
     pwms: Counts = np.maximum(-PWM_LIMIT, np.minimum(PWM_LIMIT, (PWM_PER_SPEED_UNIT * speeds).astype(np.int64)))
     return pwms
 
 
 def proximity_response(distance_m: float) -> float:
-    """Response F of one ray to something at a distance; 0 beyond the range.
+    """Return the response F of one ray to an obstacle at a distance in m; 0 beyond the range.
 
     F(x) = m (c - x0²) / (x² - 2 x0 x + c) with m = 4505, x0 = 0.3 mm, c = 73 cm²; F = m below x0.
     """
@@ -86,7 +86,7 @@ def proximity_response(distance_m: float) -> float:
 
 
 def proximity_responses(distances_m: Values) -> Values:
-    """`proximity_response` of many rays."""
+    """Compute `proximity_response` of many rays, shape kept."""
     near = np.minimum(distances_m, PROXIMITY_RANGE_M)
     found = _PROXIMITY_SCALE / (near * near - 2.0 * _PROXIMITY_X0_M * near + _PROXIMITY_C_M2)
     found[near < _PROXIMITY_X0_M] = PROXIMITY_FULL
@@ -95,7 +95,7 @@ def proximity_responses(distances_m: Values) -> Values:
 
 
 def proximity_distance(count: float) -> float:
-    """Distance in m at which one ray, or a wall across the sensor's axis, gives a count above 0; at most the range."""
+    """Return the distance in m of a wall across the axis that gives this count above 0; at most the range."""
     if count >= PROXIMITY_FULL:
         return 0.0
     square = _PROXIMITY_X0_M**2 - _PROXIMITY_C_M2 + _PROXIMITY_SCALE / count
@@ -103,12 +103,12 @@ def proximity_distance(count: float) -> float:
 
 
 def ground_response(reflectance: float) -> float:
-    """Count of a ground sensor over a gray 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
+    """Return the count of a ground sensor over a gray 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
     return _GROUND_BLACK + _GROUND_SPAN / (1.0 + math.exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
 
 
 def ground_reflectance(count: float) -> float:
-    """The gray 0…1 over which a ground sensor gives a count."""
+    """Return the gray 0…1 over which a ground sensor gives a count."""
     above = count - _GROUND_BLACK
     if not 0.0 < above < _GROUND_SPAN:
         return 0.0 if above <= 0.0 else 1.0
@@ -116,38 +116,38 @@ def ground_reflectance(count: float) -> float:
 
 
 def ground_responses(reflectances: Values) -> Values:
-    """`ground_response` of many grays."""
+    """Compute `ground_response` of many grays, shape kept."""
     found: Values = _GROUND_BLACK + _GROUND_SPAN / (1.0 + np.exp(-_GROUND_SLOPE * (reflectances - _GROUND_MIDDLE)))
     return found
 
 
 def acceleration_to_units(acceleration_m_s2: float) -> int:
-    """One axis of acc: 23 for each g, within ±32 (section 7.3)."""
+    """Return one axis of acc for m/s²: 23 for each g, within ±32 (section 7.3)."""
     return round(max(-ACC_LIMIT, min(ACC_LIMIT, acceleration_m_s2 * (ACC_PER_G / GRAVITY_M_S2))))
 
 
 def accelerations_to_units(accelerations_m_s2: Values) -> Counts:
-    """`acceleration_to_units` of many."""
+    """Convert accelerations as `acceleration_to_units` does, shape kept."""
     counts = accelerations_m_s2 * (ACC_PER_G / GRAVITY_M_S2)
     return np.rint(np.maximum(-ACC_LIMIT, np.minimum(ACC_LIMIT, counts))).astype(np.int64)
 
 
 def units_to_acceleration(count: int) -> float:
-    """acc as m/s²."""
+    """Return one axis of acc in m/s²."""
     return count * (GRAVITY_M_S2 / ACC_PER_G)
 
 
 def celsius_to_units(celsius: float) -> int:
-    """temperature: tenths of a degree (section 7.4)."""
+    """Return temperature for °C: tenths of a degree (section 7.4)."""
     return round(10.0 * celsius)
 
 
 def volts_to_units(volts: float) -> int:
-    """Each word of _vbat: their sum times 1000/3978 is hundredths of a volt (section 7.4)."""
+    """Return each word of _vbat for V: their sum times 1000/3978 is hundredths of a volt (section 7.4)."""
     return round(volts * 100.0 * 3978.0 / 1000.0 / 2.0)
 
 
 def saturate_led(word: int) -> int:
-    """Brightness 0…32 of an Aseba word: the firmware keeps its low byte, and 32 and more is full (section 8.1)."""
+    """Return the brightness 0…32 of an Aseba word: its low byte, of which 32 or more is full (section 8.1)."""
     level = word & 0xFF
     return level if level < LED_FULL else LED_FULL

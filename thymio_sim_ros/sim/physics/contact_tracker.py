@@ -28,7 +28,7 @@ class ContactTracker:
             space.on_collision(_OBJECT_TYPE, _OBJECT_TYPE, pre_solve=_bounce)
 
     def watch(self, shape: pymunk.Shape, owner: RobotBody | str) -> None:
-        """A shape of a robot, or of a thing of this name, is going to be in the space."""
+        """Register the shape of a robot, or of an object or wall of this name, before it is added to the space."""
         if isinstance(owner, RobotBody):
             self._robots[shape] = owner
             self._names[shape] = owner.name
@@ -43,7 +43,7 @@ class ContactTracker:
                 robot.hold()
 
     def unwatch(self, shape: pymunk.Shape) -> None:
-        """A shape will not be in the space again."""
+        """Unregister a shape that has left the space for good. Raises KeyError for one that is not registered."""
         self.forget(shape)
         self._robots.pop(shape, None)
         del self._names[shape]
@@ -52,6 +52,7 @@ class ContactTracker:
         one, other = arbiter.shapes
         points = arbiter.contact_point_set
         x, y = _middle(points)
+        # Relative velocity of the two bodies at the contact, along the normal from the first shape to the second.
         speed = max(0.0, (_velocity(one, (x, y)) - _velocity(other, (x, y))).dot(points.normal))
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
@@ -74,12 +75,15 @@ def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
 
 
 def _middle(points: pymunk.ContactPointSet) -> tuple[float, float]:
-    """The middle of a contact, whichever of its points and shapes come first."""
+    """Return the middle of a contact in the world's frame.
+
+    `fsum` is exact, so the result does not depend on the order of points and shapes, which mirrored worlds change.
+    """
     ends = [end for point in points.points for end in (point.point_a, point.point_b)]
     return (math.fsum(end.x for end in ends) / len(ends), math.fsum(end.y for end in ends) / len(ends))
 
 
 def _velocity(shape: pymunk.Shape, point: tuple[float, float]) -> pymunk.Vec2d:
-    """Of a shape's body where it is touched."""
+    """Return the velocity of a shape's body at a point in the world's frame."""
     assert shape.body is not None
     return shape.body.velocity_at_world_point(point)

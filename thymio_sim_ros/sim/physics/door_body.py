@@ -1,4 +1,4 @@
-"""The body of a door: it slides between two places and pushes what is in its way.
+"""The body of a door: it slides between two positions and pushes what is in its way.
 
 Its way goes as half a cosine: (1 - cos(π p / T)) / 2 of it is done when it has been opening for p of its T seconds
 (docs/spec/playground-formats.md section 1.2); a door that turns back half-way goes back the same way. What cannot get
@@ -51,7 +51,7 @@ class DoorBody:
     )
 
     def __init__(self, solid: Solid, moved: set[Any]) -> None:
-        """`moved`: where it adds itself when rays see it elsewhere."""
+        """Create the closed door; it adds itself to `moved` whenever its obstacle has changed."""
         self._moved = moved
         assert solid.slide is not None
         self._solid = solid
@@ -67,26 +67,26 @@ class DoorBody:
 
     @property
     def is_fallen(self) -> bool:
-        """Never: it hangs on rails."""
+        """Always False: doors do not fall."""
         return False
 
     @property
     def name(self) -> str:
-        """Its shape's name."""
+        """Name of its shape."""
         return self._solid.name
 
     @property
     def solid(self) -> Solid:
-        """What it is, where it is closed."""
+        """The solid at its closed position."""
         return self._solid
 
     @property
     def obstacle(self) -> Obstacle:
-        """What rays see of it."""
+        """The obstacle that rays see."""
         return self._obstacle
 
     def begin_tick(self, *, is_wanted_open: bool) -> None:
-        """Set out for where it is to be after this tick."""
+        """Set the velocity that brings it to its position after this tick."""
         if is_wanted_open != self._is_opening:
             self._is_opening, self._rest_ticks = is_wanted_open, 0
         change_s = TICK_S if is_wanted_open else -TICK_S
@@ -115,7 +115,7 @@ class DoorBody:
         self._moved.add(self)
 
     def end_tick(self, space: pymunk.Space) -> None:
-        """Be exactly there, at rest."""
+        """Put the body exactly at that position, at rest; test whether something stops the door."""
         if not self.is_moving:
             return
         self.body.position, self.body.angle = (self.pose.x_m, self.pose.y_m), self.pose.yaw_rad
@@ -124,13 +124,13 @@ class DoorBody:
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 
     def _after(self, change_s: float) -> float:
-        """How long it has been opening, and so much more."""
+        """Return the opening time after a change, within 0 and the duration of the slide."""
         slide = self._solid.slide
         assert slide is not None
         return max(0.0, min(slide.duration_s, self._opening_s + change_s))
 
     def _is_stopped(self, space: pymunk.Space) -> bool:
-        """Whether something in its way does not give way."""
+        """Return whether an object or robot in its way does not give way."""
         for met in space.shape_query(self.shape):
             other = met.shape.body if met.shape is not None else None
             if other is None or other.body_type != pymunk.Body.DYNAMIC:

@@ -1,4 +1,4 @@
-"""The doors of a world, opened while a robot is on a pressure plate of them."""
+"""The doors of a world; a door opens while a robot is on one of its pressure plates."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class DoorController:
     """Doors by name, in the order of the playground, and the areas that open them."""
 
     def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger], moved: set[Any]) -> None:
-        """`moved`: as `DoorBody` has it."""
+        """Create the doors; each adds itself to `moved` whenever its obstacle has changed."""
         self._doors = {solid.name: DoorBody(solid, moved) for solid in solids if solid.slide is not None}
         self._areas = tuple((trigger, *trigger.middle, trigger.reach_m) for trigger in triggers)
 
     @property
     def doors(self) -> Mapping[str, DoorBody]:
-        """All doors."""
+        """All doors by name."""
         return MappingProxyType(self._doors)
 
     @property
@@ -35,7 +35,7 @@ class DoorController:
         return not any(door.is_moving for door in self._doors.values())
 
     def begin_tick(self, broadphase: Broadphase) -> None:
-        """Doors set out: they open while a robot is in an area of theirs, and close again."""
+        """Open the doors that have a robot on a pressure plate, close the others."""
         if not self._doors:
             return
         wanted_open = {
@@ -48,6 +48,6 @@ class DoorController:
             door.begin_tick(is_wanted_open=name in wanted_open)
 
     def end_tick(self, space: pymunk.Space) -> None:
-        """Doors are where they are to be."""
+        """Put all doors at their positions after this tick."""
         for door in self._doors.values():
             door.end_tick(space)

@@ -49,7 +49,7 @@ class MovableBody:
     )
 
     def __init__(self, solid: Solid, floor: pymunk.Body, moved: set[Any]) -> None:
-        """`moved`: where it adds itself when rays see it elsewhere, or no more."""
+        """Create the body; it adds itself to `moved` whenever its obstacle has changed or is gone."""
         self._moved = moved
         load = solid.load
         assert load is not None
@@ -75,23 +75,23 @@ class MovableBody:
 
     @property
     def name(self) -> str:
-        """Its shape's name."""
+        """Name of its shape."""
         return self._solid.name
 
     @property
     def solid(self) -> Solid:
-        """What it is, where it started."""
+        """The solid at its start pose."""
         return self._solid
 
     @property
     def obstacle(self) -> Obstacle:
-        """What rays see of it."""
+        """The obstacle that rays see."""
         if self._obstacle is None:
             self._obstacle = obstacle_of(self._solid.at(self.pose))
         return self._obstacle
 
     def place(self, pose: Pose) -> None:
-        """Put it somewhere, at rest; what has fallen stands on the floor again."""
+        """Move it to a pose, at rest; a fallen object stands on the floor again."""
         self.is_fallen = False
         self._stop()
         self.body.position, self.body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
@@ -100,18 +100,18 @@ class MovableBody:
             self.body.space.reindex_shapes_for_body(self.body)
 
     def fall(self) -> None:
-        """Be gone, until it is placed."""
+        """Fall: nothing touches or sees it until `place`."""
         self.is_fallen, self.is_moving, self.is_fast = True, False, False
         self._moved.add(self)
 
     def end_tick(self) -> None:
-        """Tell the new pose, if it has moved."""
+        """Update the pose from the body, unless it sleeps."""
         body = self.body
         if not (self.is_fallen or body.is_sleeping):
             self.finish_sub_step(*body.position, body.angle, *body.velocity, body.angular_velocity)
 
     def finish_sub_step(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
-        """Be where the body is, with its speeds; slower than `AT_REST_M_S` it rests."""
+        """Update pose and flags from the state of the body (m, rad, s); stop it below `AT_REST_M_S`."""
         speed = math.hypot(vx, vy)
         self.is_fast = speed > _FAST_M_S
         speed += abs(spin) * self.reach_m

@@ -62,12 +62,13 @@ class BodyReader:
         self._ids = b""
         self._id_of: dict[pymunk.Body, int] = {}
         self.order = 0
-        """Changes whenever the order of the rows changes."""
+        """Increases whenever the order of the rows changes; rows found by `rows` are then no longer valid."""
         self.state = np.zeros((0, 6))
-        """Columns x, y, angle, vx, vy, rate of turn, a row for each body."""
+        """State of all bodies, shape (bodies, 6): x, y, angle, vx, vy, rate of turn. A view of pymunk's buffer, which
+        the next `read` overwrites."""
 
     def read(self) -> None:
-        """Update `state`."""
+        """Update `state`, and `order` if bodies were added or removed or come in another order."""
         self._buffer.clear()
         self._each()
         self.state = np.frombuffer(self._buffer.float_buf()).reshape(-1, 6)
@@ -77,7 +78,7 @@ class BodyReader:
             self.order += 1
 
     def rows(self, bodies: Sequence[pymunk.Body]) -> Indices:
-        """Where in `state` some bodies of the space are."""
+        """Return the rows of bodies in `state`, shape (bodies,). Raises KeyError for a body outside the space."""
         rows = {number: row for row, number in enumerate(np.frombuffer(self._ids, dtype=np.uintp).tolist())}
         known = self._id_of
         for body in bodies:
@@ -87,7 +88,11 @@ class BodyReader:
 
 
 def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], object]:
-    """What reads all bodies of a space into a buffer."""
+    """Return a function that reads all bodies of a space into a buffer.
+
+    `batch.get_space_bodies` makes the same call but builds its arguments anew each time; here they are built once. The
+    pointers are valid as long as space and buffer live, which the returned function keeps alive.
+    """
     each = getattr(_chipmunk_cffi.lib, "cpSpaceEachBody", None)
     if each is None or not hasattr(_chipmunk_cffi.lib, "pmSpaceBodyGetIteratorFuncBatched"):
         return partial(batch.get_space_bodies, space, _STATE, buffer)
@@ -96,7 +101,7 @@ def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], 
 
 
 def _data(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
-    """The C struct by which pymunk reads from a buffer or writes to it."""
+    """Return the C struct by which pymunk reads from a buffer or writes to it; it does not keep the buffer alive."""
     data = _chipmunk_cffi.ffi.new("pmBatchedData *")
     data.floatArray, data.intArray, data.fields = buffer._float_arr, buffer._int_arr, fields.value
     return data

@@ -80,12 +80,12 @@ class Physics:
         return self._door_controller.doors
 
     def movable_obstacles(self) -> list[Obstacle | None]:
-        """The obstacles of `objects`; None for a fallen one."""
+        """Return the obstacles of `objects`, in that order; None for a fallen one."""
         self._moved.clear()
         return [_obstacle_or_none(body) for body in self.objects]
 
     def moved_obstacles(self) -> dict[int, Obstacle | None]:
-        """Obstacles of the objects that have moved since the last call of this or of `movable_obstacles`.
+        """Return the obstacles of objects that have moved since the last call of this or of `movable_obstacles`.
 
         The keys are indices in `objects`; None stands for an object that has fallen.
         """
@@ -158,12 +158,16 @@ class Physics:
         return self._robots.contacts()
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
-        """Obstacles within `reach_m` of a robot's origin that are at least `height_m` high."""
+        """Return the obstacles within `reach_m` of a robot's origin that are at least `height_m` high.
+
+        A fallen robot has none. The robot itself is not among them.
+        """
         if robot.is_fallen:
             return Surroundings(())
         x, y = robot.pose.x_m, robot.pose.y_m
         low_x, low_y, high_x, high_y = x - reach_m, y - reach_m, x + reach_m, y + reach_m
         near = []
+        # First the bounds, which are cheap, then the exact test.
         for obstacle in self._broadphase.fixed(x, y, reach_m):
             left, bottom, right, top = obstacle.bounds
             if (
@@ -196,5 +200,5 @@ class Physics:
 
 
 def _obstacle_or_none(body: MovableBody | DoorBody) -> Obstacle | None:
-    """The obstacle of an object or door; None if it has fallen."""
+    """Return the obstacle of an object or door; None if it has fallen."""
     return None if body.is_fallen else body.obstacle

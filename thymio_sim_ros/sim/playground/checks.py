@@ -1,4 +1,4 @@
-"""What must be true of a playground as a whole: names, places, doors; and what a person should be told.
+"""Checks of a playground as a whole: names, positions, doors, cost of the ground.
 
 Each check raises FieldError with the key of what is wrong.
 """
@@ -17,37 +17,37 @@ __all__ = ["check_doors", "check_ground", "check_names", "check_starts", "off_fl
 
 
 def check_names(shapes: Iterable[NamedShape], robots: Iterable[RobotStart]) -> None:
-    """Refuse a name that occurs twice."""
+    """Raise FieldError for a name that occurs twice."""
     seen: dict[str, str] = {}
     named = [(f"shapes[{index}]", shape.name) for index, shape in enumerate(shapes)]
     named += [(f"robots[{index}]", robot.name) for index, robot in enumerate(robots)]
     for key, name in named:
         if name in seen:
-            raise FieldError(f"{key}.name", f"'{name}' as in {seen[name]}", "a name of its own")
+            raise FieldError(f"{key}.name", f"'{name}', the name of {seen[name]}", "a unique name")
         seen[name] = key
 
 
 def check_ground(floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
-    """Refuse a ground that is painted over so often that nothing else could be done for long."""
+    """Raise FieldError for a ground that takes too long to rasterize."""
     cost = raster.cost(floors, paints)
     if cost > raster.MAX_COST:
-        found = f"a ground that takes {cost / raster.MAX_COST:.3g} times as long to paint as is allowed"
-        raise FieldError("shapes", found, "fewer or smaller floors and pictures, or a smaller ground")
+        found = f"a ground that takes {cost / raster.MAX_COST:.3g} times the allowed time to paint"
+        raise FieldError("shapes", found, "fewer or smaller floors and images, or a smaller ground")
 
 
 def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:
-    """Refuse a robot that starts inside a solid or another robot."""
+    """Raise FieldError for a robot that starts inside a solid or another robot."""
     occupied = Occupied(map(footprint_of, solids))
     for index, robot in enumerate(robots):
         footprint = footprint_of_robot(robot.name, robot.pose)
         blocker = occupied.blocker(footprint)
         if blocker is not None:
-            raise FieldError(f"robots[{index}]", f"'{robot.name}' inside '{blocker}'", "a free place")
+            raise FieldError(f"robots[{index}]", f"'{robot.name}' inside '{blocker}'", "a free position")
         occupied.add(footprint)
 
 
 def off_floor(robots: tuple[RobotStart, ...], solids: Iterable[Solid], floors: tuple[Floor, ...]) -> list[str]:
-    """Robots and movable things that start in the air: allowed, as they may be put elsewhere, but hardly meant.
+    """Return notes on robots and objects that start beside the floor: allowed, as they can be moved, but hardly meant.
 
     Without any ground there is no edge either, and nothing falls (sim/ground/floor_support.py).
     """
@@ -65,10 +65,12 @@ def off_floor(robots: tuple[RobotStart, ...], solids: Iterable[Solid], floors: t
 
 
 def check_doors(shapes: tuple[NamedShape, ...], primitives: Iterable[Primitive]) -> None:
-    """Refuse a trigger of what is no door."""
+    """Raise FieldError for a pressure plate whose door does not exist."""
     doors = [primitive.name for primitive in primitives if isinstance(primitive, Solid) and primitive.slide is not None]
     keys = {shape.name: f"shapes[{index}].door" for index, shape in enumerate(shapes)}
     for primitive in primitives:
         if isinstance(primitive, Trigger) and primitive.door not in doors:
-            expected = "one of the doors " + ", ".join(doors) if doors else "the name of a door; there is none"
+            expected = (
+                "one of the doors " + ", ".join(doors) if doors else "the name of a door; the playground has none"
+            )
             raise FieldError(keys[primitive.name], describe(primitive.door), expected)

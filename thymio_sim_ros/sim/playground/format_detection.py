@@ -1,8 +1,8 @@
-"""From the bytes of a file to the data of a playground: which format it is, and the files that belong to it.
+"""Detects the format of a playground file, reads it as data, and gives access to the files beside it.
 
-Ours is JSON with "format"; the thesis' JSON has other keys; a text that begins with "<" is Aseba's XML; a zip holds
-one of these and its pictures. Everything here comes from strangers: sizes are limited before anything is unpacked,
-and a file is looked for in one folder, or in one archive, and nowhere else.
+The project's own format is JSON with "format"; the JSON of the thesis has other keys; a text that begins with "<" is
+Aseba's XML; a zip archive contains one of these and its images. All files are untrusted: sizes are limited before
+anything is decompressed, and files are read from one folder or archive only.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ from thymio_sim_ros.sim.playground.importers import aseba, thesis
 __all__ = ["MAX_BYTES", "Beside", "Source", "folder", "is_recognized", "nothing_beside", "read_source", "unpacked_svg"]
 
 MAX_BYTES = 32_000_000
-"""Largest file; pictures inside it count."""
+"""Largest size of a file, images inside it included."""
 MAX_ARCHIVE_FILES = 200
 MAX_TEXT = 100_000
-"""Bytes of a text in JSON, as it is written there; what a playground says is far shorter."""
+"""Largest size of a string in JSON, as written; the texts of a playground are far shorter."""
 MAX_PICTURE_TEXT = 8_000_000
-"""Bytes of a picture in JSON, a data URI in ASCII; with room for `\\/`, as some write the slash."""
+"""Largest size of an image in JSON, a data URI in ASCII; with room for slashes that are written as `\\/`."""
 MAX_PARTS = 1_000_000
-"""Values in JSON: each takes some fifty bytes, be it written with two."""
+"""Largest number of values in JSON: each takes about fifty bytes of memory, even if written with two."""
 
 Beside = Callable[[str], bytes]
-"""A file beside the playground by its name, or FieldError; one byte more than `MAX_PICTURE_BYTES` at most."""
+"""Reads a file beside the playground by its name, at most one byte more than `MAX_PICTURE_BYTES`; raises FieldError."""
 
 _ZIP = b"PK\x03\x04"
 _BOM = b"\xef\xbb\xbf"
@@ -49,29 +49,34 @@ _PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
 _CANNOT_UNPACK = (
     zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError,
 )  # fmt: skip
-"""What a damaged, encrypted or exotic archive raises; of places before its begin the file says ValueError."""
+"""Exceptions for a damaged, encrypted or unusual archive; ValueError for offsets before its beginning."""
 _WORDS = re.compile(r'"(?:[^"\\]++|\\.)*+"|NaN|-?Infinity')
 """Strings of JSON, and words that Python takes for numbers outside them."""
 _PARTS = re.compile(r'"(?:[^"\\]++|\\.)*+"|[{}]')
 _STRINGS = re.compile(rb'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _COLON = re.compile(r"\s*:")
-"""What makes a string a key."""
+"""Follows a string that is a key."""
 _MARKS = re.compile(
     rb'"format"\s*:\s*\d|"(?:%s)"\s*:|<aseba-playground' % "|".join(("playground", *thesis.KEYS)).encode()
 )
-"""What tells a playground from any other JSON or XML."""
+"""Distinguishes a playground from any other JSON or XML."""
 _HALVES = re.compile(r"[\ud800-\udfff]")
-"""Halves of characters: escapes may hold them, UTF-8 may not, and keys are told in errors and notes."""
+"""Surrogates: JSON escapes may contain them, UTF-8 may not, and keys are quoted in errors and notes."""
 _SHOWN = 12
-"""Characters that an error shows."""
+"""Number of characters that an error quotes."""
 _IN_FOLDER = "a file in the playground's folder"
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Data of our format, unchecked; the files beside it; for a converted file what was lost, and places in it.
+    """A playground as unchecked data.
 
-    `sets_free`: the simulator that the file is for pushes robots out of the things in which they start.
+    Attributes:
+        data: data of a JSON playground, converted from another format if necessary.
+        beside: reads the files beside it.
+        notes: what a conversion has lost.
+        places: positions in the original by key, for errors in a converted file.
+        sets_free: whether robots that start inside something are moved, as the simulator of the original does.
     """
 
     data: object
@@ -82,7 +87,10 @@ class Source:
 
 
 def read_source(data: bytes, name: str, beside: Beside) -> Source:
-    """The playground in a file's bytes; `name` is its title if it has none. Raises FieldError."""
+    """Return the playground in the bytes of a file; `name` is its title if it has none.
+
+    Raises FieldError if it is too large, damaged, or in none of the formats.
+    """
     name = " ".join(name.encode("utf-8", "replace").decode("utf-8").split()) or "Playground"
     if len(data) > MAX_BYTES:
         raise FieldError("", f"more than {MAX_BYTES} bytes", "a smaller file")
@@ -95,7 +103,7 @@ def read_source(data: bytes, name: str, beside: Beside) -> Source:
     try:
         parsed = _parse_json(data.decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise FieldError("", f"a wrong byte at {error.start}", "UTF-8 text") from error
+        raise FieldError("", f"an invalid byte at offset {error.start}", "UTF-8 text") from error
     if isinstance(parsed, Mapping) and "format" not in parsed and parsed.keys() & {"playground", *thesis.KEYS}:
         converted = thesis.convert(parsed, name)
         return Source(converted.data(), beside, tuple(converted.notes), converted.places)
@@ -103,7 +111,7 @@ def read_source(data: bytes, name: str, beside: Beside) -> Source:
 
 
 def is_recognized(data: bytes) -> bool:
-    """Whether a file that cannot be read looks like a playground nevertheless, so that an error may quote from it."""
+    """Return whether a rejected file looks like a playground, so that an error may quote from it. Never raises."""
     if data.startswith(_ZIP):
         try:
             data, _ = _unzip(data)
@@ -113,12 +121,12 @@ def is_recognized(data: bytes) -> bool:
 
 
 def nothing_beside(name: str) -> bytes:
-    """Of a text that came without a folder."""
-    raise FieldError("", f"the file '{name}'", "the picture itself as a data URI, or a zip that holds both")
+    """Raise FieldError: there is no file beside a text without a folder."""
+    raise FieldError("", f"the file '{name}'", "the image as a data URI, or a zip archive with both files")
 
 
 def folder(path: Path) -> Beside:
-    """Reads files of a folder, and of no other."""
+    """Return a function that reads files of a folder and its subfolders, and raises FieldError for any other."""
 
     def read_file(name: str) -> bytes:
         try:
@@ -140,9 +148,9 @@ def unpacked_svg(data: bytes) -> bytes:
     try:
         unpacked = unpacker.decompress(data, MAX_PICTURE_BYTES + 1)
     except zlib.error as error:
-        raise FieldError("", "an .svgz file that cannot be unpacked", "an SVG packed with gzip") from error
+        raise FieldError("", "an .svgz file that cannot be decompressed", "an SVG compressed with gzip") from error
     if not unpacker.eof and len(unpacked) <= MAX_PICTURE_BYTES:
-        raise FieldError("", "an .svgz file that is cut off", "a whole one")
+        raise FieldError("", "a truncated .svgz file", "a complete file")
     return unpacked
 
 
@@ -156,11 +164,11 @@ def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
 
 
 def _unzip(data: bytes) -> tuple[bytes, Beside]:
-    """The playground's own file in an archive, and the files beside it there."""
+    """Return the playground's file in an archive, and a function that reads the files beside it."""
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
     except _CANNOT_UNPACK as error:
-        raise FieldError("", "a broken zip archive", "a whole one") from error
+        raise FieldError("", "a damaged zip archive", "a complete zip archive") from error
     names = [entry.filename for entry in archive.infolist() if entry.filename and not entry.is_dir()]
     if len(names) > MAX_ARCHIVE_FILES:
         raise FieldError("", f"{len(names)} files in the archive", f"at most {MAX_ARCHIVE_FILES}")
@@ -168,7 +176,7 @@ def _unzip(data: bytes) -> tuple[bytes, Beside]:
     chosen = [name for name in fitting if PurePosixPath(name).name == "world.xml"] or fitting
     if len(chosen) != 1:
         found = ", ".join(chosen[:5]) or "no playground"
-        raise FieldError("", f"{found} in the archive", "one world.xml with its pictures")
+        raise FieldError("", f"{found} in the archive", "one world.xml with its images")
     (inner,) = chosen
     home = PurePosixPath(inner).parent
 
@@ -186,18 +194,18 @@ def _unzip(data: bytes) -> tuple[bytes, Beside]:
 
 
 def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
-    """The first bytes of an entry; never more are unpacked, whatever the archive says about its size."""
+    """Return the first bytes of an entry; no more are decompressed, whatever size the archive declares."""
     try:
         with archive.open(name) as file:
             return file.read(most)
     except _CANNOT_UNPACK as error:
-        raise FieldError(describe(name), "an entry that cannot be unpacked", "a plain zip archive") from error
+        raise FieldError(describe(name), "an entry that cannot be extracted", "a plain zip archive") from error
 
 
 def _check_parts(data: bytes) -> None:
-    """Refuse JSON that would take far more memory than its bytes: it is neither decoded nor parsed before."""
+    """Raise FieldError for JSON that would need far more memory than its bytes; it is not decoded or parsed before."""
     if sum(map(data.count, (b",", b"[", b"{"))) > MAX_PARTS or data.count(b'"') > 2 * MAX_PARTS:
-        raise FieldError("", f"more than {MAX_PARTS} values", "a playground")
+        raise FieldError("", f"more than {MAX_PARTS} values", "fewer values")
     for match in _STRINGS.finditer(data):
         begin, size = match.start(), match.end() - match.start()
         if size <= MAX_TEXT:
@@ -206,7 +214,7 @@ def _check_parts(data: bytes) -> None:
         most = MAX_PICTURE_TEXT if is_picture else MAX_TEXT
         if size > most:
             line, column = data.count(b"\n", 0, begin) + 1, begin - data.rfind(b"\n", 0, begin)
-            raise FieldError(f"line {line}, column {column}", f"a text of {size} bytes", f"at most {most}")
+            raise FieldError(f"line {line}, column {column}", f"a string of {size} bytes", f"at most {most}")
 
 
 def _parse_json(text: str) -> object:
@@ -220,7 +228,7 @@ def _parse_json(text: str) -> object:
             raise _TwiceError
         half = next(filter(_HALVES.search, members), None)
         if half is not None:
-            raise FieldError("", f"half a character in the key {describe(half)}", "whole characters")
+            raise FieldError("", f"an unpaired surrogate in the key {describe(half)}", "valid Unicode")
         return members
 
     try:
@@ -229,18 +237,20 @@ def _parse_json(text: str) -> object:
         found = repr(text[error.pos : error.pos + _SHOWN]) if error.pos < len(text) else "the end of the text"
         raise FieldError(_line_and_column(text, error.pos), found, f"JSON ({error.msg})") from error
     except (RecursionError, ValueError) as error:
-        raise FieldError("", "numbers or nesting without measure", "a playground") from error
+        raise FieldError(
+            "", "numbers that are too long or values nested too deeply", "shorter or flatter data"
+        ) from error
     except _TwiceError as error:
         place, key = _second(text)
-        raise FieldError(_line_and_column(text, place), f"the key {describe(key)} twice", "every key once") from error
+        raise FieldError(_line_and_column(text, place), f"the duplicate key {describe(key)}", "unique keys") from error
 
 
 class _TwiceError(ThymioSimError):
-    """An object has a key twice."""
+    """A JSON object has a duplicate key."""
 
 
 def _second(text: str) -> tuple[int, str]:
-    """Where a key stands that its object has already, and the key; there is one."""
+    """Return offset and name of the first duplicate key; there is one."""
     keys: list[set[str]] = []
     for token in _PARTS.finditer(text):
         match token.group():

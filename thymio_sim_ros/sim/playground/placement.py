@@ -1,4 +1,4 @@
-"""Whether a thing can stand somewhere: footprints, and what is in their way."""
+"""Tests whether a robot or object can be placed: footprints and their overlap."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _HULL = robot_constants.hull()
 
 
 class PlacementError(ThymioSimError, ValueError):
-    """A thing that cannot stand where it is wanted: its name, and the name of what is there."""
+    """A position is occupied. `thing` is the name of the robot or object, `blocker` the name of what is there."""
 
     def __init__(self, thing: str, pose: Pose, blocker: str) -> None:
-        super().__init__(f"'{thing}' cannot stand at {pose.x_m:.3f}, {pose.y_m:.3f} m: '{blocker}' is in its way")
+        super().__init__(f"'{thing}' cannot be placed at {pose.x_m:.3f}, {pose.y_m:.3f} m: occupied by '{blocker}'")
         self.thing = thing
         self.blocker = blocker
 
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """The ground that a thing covers, in the world's frame: a convex polygon, or a disc when it has no vertices."""
+    """The area that a robot or solid covers, in the world's frame: a convex polygon, or a disc without vertices."""
 
     name: str
     middle: Point
@@ -42,7 +42,7 @@ class Footprint:
         return x - radius, y - radius, x + radius, y + radius
 
     def overlaps(self, other: Footprint) -> bool:
-        """Whether both share more than an edge."""
+        """Return whether both overlap by more than an edge."""
         if math.dist(self.middle, other.middle) >= self.radius_m + other.radius_m:
             return False
         if not self.vertices:
@@ -53,18 +53,18 @@ class Footprint:
 
 
 def footprint_of(solid: Solid) -> Footprint:
-    """A solid's, where it is."""
+    """Return the footprint of a solid at its pose."""
     vertices = () if isinstance(solid.outline, Disc) else solid.vertices
     return Footprint(solid.name, (solid.pose.x_m, solid.pose.y_m), solid.outline.reach_m, vertices)
 
 
 def footprint_of_robot(name: str, pose: Pose) -> Footprint:
-    """A robot's at a pose."""
+    """Return the footprint of a robot at a pose."""
     return Footprint(name, (pose.x_m, pose.y_m), robot_constants.HULL_RADIUS_M, pose.place_all(_HULL))
 
 
 class Occupied:
-    """Footprints by place."""
+    """Footprints in a spatial grid."""
 
     def __init__(self, footprints: Iterable[Footprint] = ()) -> None:
         self._squares: SpatialGrid[Footprint] = SpatialGrid()
@@ -72,9 +72,9 @@ class Occupied:
             self.add(footprint)
 
     def add(self, footprint: Footprint) -> None:
-        """Let something stand there from now on."""
+        """Add a footprint."""
         self._squares.add(footprint, footprint.bounds)
 
     def blocker(self, footprint: Footprint) -> str | None:
-        """The name of what is in the way of a footprint."""
+        """Return the name of a footprint that overlaps this one; None if there is none."""
         return next((there.name for there in self._squares.near(footprint.bounds) if there.overlaps(footprint)), None)

@@ -73,13 +73,13 @@ class _Titles:
 
 
 def load(path: str | Path) -> Playground:
-    """The playground of a file, named after it; PlaygroundError also when it can't be read."""
+    """Read a playground file; it is named after the file. Raises PlaygroundError, also if it cannot be read."""
     path = Path(path)
     return _read(_content(path), path.stem, str(path), format_detection.folder(path.parent))
 
 
 def headline(path: Path) -> Headline:
-    """Title and description of a file without building it, for lists; PlaygroundError when they are not there."""
+    """Return title and description of a file without building the playground. Raises PlaygroundError."""
     try:
         found = format_detection.read_source(_content(path), path.stem, format_detection.folder(path.parent))
         members = _members(found.data)
@@ -91,16 +91,19 @@ def headline(path: Path) -> Headline:
 
 
 def loads(text: str | bytes, name: str) -> Playground:
-    """The playground of a text or a file's bytes; errors name it as `name`. There is no file beside it."""
+    """Read a playground from a text or the bytes of a file; there are no files beside it.
+
+    Raises PlaygroundError with `name` as its path.
+    """
     try:
         data = text if isinstance(text, bytes) else text.encode("utf-8")
     except UnicodeEncodeError as error:
-        raise PlaygroundError(name, "", f"half a character at {error.start}", "UTF-8 text") from error
+        raise PlaygroundError(name, "", f"an unpaired surrogate at {error.start}", "UTF-8 text") from error
     return _read(data, Path(name).stem, name, format_detection.nothing_beside)
 
 
 def schema() -> dict[str, Any]:
-    """The JSON schema of a playground file, derived from the shapes; `description` tells units."""
+    """Return the JSON schema of playground files, derived from the shapes; `description` states units."""
     kinds = all_shapes()
     name = json_schema(RobotStart)["properties"]["name"]
     shapes = []
@@ -132,7 +135,7 @@ def _content(path: Path) -> bytes:
 
 
 def _members(data: object) -> dict[str, object]:
-    """What is in a playground of a version that is read, without the version."""
+    """Return the members of a playground without the version, which must be FORMAT."""
     if not isinstance(data, Mapping):
         raise FieldError("", describe(data), "an object")
     members = dict(data)
@@ -141,7 +144,7 @@ def _members(data: object) -> dict[str, object]:
         raise FieldError("format", describe(version), str(FORMAT))
     editor = members.pop("$schema", "")
     if not isinstance(editor, str):
-        raise FieldError("$schema", describe(editor), "a text; only editors read it")
+        raise FieldError("$schema", describe(editor), "a string (only editors read it)")
     return members
 
 
@@ -156,7 +159,7 @@ def _read(data: bytes, name: str, path: str, beside: Beside) -> Playground:
 
 
 def _original(key: str, places: Mapping[str, str]) -> str:
-    """A key of a converted file with its place in the original."""
+    """Return a key of a converted file with its place in the original."""
     item = key.partition(".")[0]
     return f"{places[item]} ({key})" if item in places else key
 
@@ -232,18 +235,18 @@ def _shape(item: object, index: int, kinds: Mapping[str, ShapeKind], beside: Bes
 
 
 def _check_pictures(shapes: tuple[NamedShape, ...]) -> None:
-    """Refuse more pictures than one file may hold: what is loaded can be written as one, and read again."""
+    """Raise FieldError for more images than one file may hold, so that a playground can be written as one file."""
     size = 0
     for index, named in enumerate(shapes):
         for image in fields.image_keys(type(named.shape)):
             size += len(getattr(named.shape, image) or "")
             if size > MAX_PICTURES_BYTES:
-                found = f"more than {MAX_PICTURES_BYTES} bytes of pictures so far, in base64"
-                raise FieldError(f"shapes[{index}].{image}", found, "fewer or smaller ones")
+                found = f"more than {MAX_PICTURES_BYTES} bytes of images as base64"
+                raise FieldError(f"shapes[{index}].{image}", found, "fewer or smaller images")
 
 
 def _embedded(value: object, key: str, beside: Beside) -> object:
-    """A picture's file as a data URI; anything else as it is."""
+    """Return the name of an image file as a data URI of its content; anything else unchanged."""
     if not isinstance(value, str) or value.startswith("data:"):
         return value
     suffix = Path(value).suffix.lower()
@@ -271,10 +274,10 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
         except FieldError as error:
             raise FieldError(f"shapes[{index}].{error.key}", error.found, error.expected) from error
         except ValueError as error:
-            raise FieldError(f"shapes[{index}]", str(error), f"a {named.kind} that can be built") from error
+            raise FieldError(f"shapes[{index}]", str(error), f"a valid {named.kind}") from error
         except Exception as error:  # of a shape that another package added
             found_error = f"{type(error).__name__}: {error}"
-            raise FieldError(f"shapes[{index}]", found_error, f"a {named.kind} that can be built") from error
+            raise FieldError(f"shapes[{index}]", found_error, f"a valid {named.kind}") from error
         if len(found) > MAX_PRIMITIVES:
-            raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts so far", "a simpler playground")
+            raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts", "a simpler playground")
     return found

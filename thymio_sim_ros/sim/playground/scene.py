@@ -1,4 +1,4 @@
-"""What there is to draw: the playground's primitives once, and an immutable snapshot whenever asked."""
+"""What viewers draw: the primitives of the playground, and snapshots of robots and objects."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Scene:
 
     @classmethod
     def of(cls, playground: Playground) -> Scene:
-        """The scene of a playground."""
+        """Return the scene of a playground."""
         return cls(playground.solids, playground.floors, playground.paints)
 
 
@@ -61,7 +61,7 @@ class RobotSnapshot:
 
 @dataclass(frozen=True, slots=True)
 class ObjectSnapshot:
-    """A movable thing or a door; what has fallen off an edge is out of sight."""
+    """A movable object or a door; an object that has fallen off an edge is not visible."""
 
     name: str
     pose: Pose

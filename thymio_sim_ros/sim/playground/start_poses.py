@@ -1,4 +1,4 @@
-"""Robots of other simulators that start inside something: set free at the nearest place that is free.
+"""Moves robots of other simulators that start inside something to the nearest free position.
 
 Playgrounds made for simulators that push robots out of things start some of them there. The search is deterministic:
 rings of growing radius around the place that was asked for, each begun in the direction of +x.
@@ -51,12 +51,12 @@ def set_free(
         freed[index] = moved
         occupied.add(footprint_of_robot(moved.name, moved.pose))
         place = f"{moved.x_m:.3f}, {moved.y_m:.3f} m"
-        notes.append(f"robots[{index}]: '{robot.name}' started inside '{blocker}', it was set free at {place}")
+        notes.append(f"robots[{index}]: '{robot.name}' starts inside '{blocker}', moved to {place}")
     return tuple(freed), tuple(notes)
 
 
 def _nearest(robot: RobotStart, occupied: Occupied, floors: Sequence[Floor]) -> RobotStart | None:
-    """The robot at the nearest free place on a floor; None if there is none near."""
+    """Return the robot at the nearest free position on a floor; None if there is none near."""
     for x_m, y_m in islice(_places((robot.x_m, robot.y_m)), MOST_PLACES):
         if floors and not any(floor.holds((x_m, y_m)) for floor in floors):
             continue
@@ -67,7 +67,7 @@ def _nearest(robot: RobotStart, occupied: Occupied, floors: Sequence[Floor]) -> 
 
 
 def _places(middle: Point) -> Iterator[Point]:
-    """Places around a point, the nearest first, in whole tenths of a millimeter."""
+    """Iterate over positions around a point, the nearest first, rounded to tenths of a millimeter."""
     ring = 0
     while True:
         ring += 1

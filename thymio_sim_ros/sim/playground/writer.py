@@ -1,4 +1,4 @@
-"""A playground as the text of our format: what a converter writes, and what a run log keeps."""
+"""Writes a playground as JSON, for converters and run logs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["dumps"]
 
 
 def dumps(playground: Playground) -> str:
-    """JSON that loads as the same playground by itself: pictures are in it, defaults are left out."""
+    """Return JSON that loads as the same playground: it contains the images, and omits defaults."""
     head: dict[str, object] = {"format": FORMAT, "title": playground.title, "description": playground.description}
     translations = {language: fields.write(text) for language, text in playground.translations}
     if translations:
@@ -25,7 +25,7 @@ def dumps(playground: Playground) -> str:
 
 
 def _list(items: list[dict[str, Any]]) -> str:
-    """One item a line."""
+    """Return a list with one item per line."""
     return "[\n    " + ",\n    ".join(map(_line, items)) + "\n  ]" if items else "[]"
 
 

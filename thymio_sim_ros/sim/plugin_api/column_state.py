@@ -33,7 +33,7 @@ class ColumnState:
         return self._memories
 
     def column(self, name: str, first: object) -> Column:
-        """The values of all robots by name, writable; `first` is the value of a robot that has none."""
+        """Return the writable values of all robots by name; `first` is the value of a robot without one."""
         found = self._columns.get(name)
         if found is None:
             found = self._columns[name] = np.array([memory.get(name, first) for memory in self._memories])

@@ -52,7 +52,7 @@ P = TypeVar("P", bound=CommandPlugin)
 
 
 def isolated(kind: str, plugin: P) -> P:
-    """The plug-in of another package with its functions guarded, so that its errors do not stop the world.
+    """Return a plug-in of another package with guarded functions, so that its errors do not stop the world.
 
     `kind` is the word for it in log messages.
     """

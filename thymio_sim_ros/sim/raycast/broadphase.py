@@ -40,6 +40,8 @@ class Mover(Protocol):
 class Broadphase:
     """A spatial index of obstacles.
 
+    Queries for fixed obstacles are cached by the cell of the point: robots stay in a cell for many ticks.
+
     Invariant: after `invalidate_movers` and before the next move, queries see every mover where it is.
     """
 
@@ -63,21 +65,24 @@ class Broadphase:
         self._cells = None
 
     def fixed(self, x_m: float, y_m: float, reach_m: float) -> tuple[Obstacle, ...]:
-        """Fixed obstacles that may be within `reach_m` of a point; a superset."""
+        """Return the fixed obstacles that may be within `reach_m` of a point; a superset."""
         cell = cell_of(x_m, y_m)
         found = self._found.get((cell, reach_m))
         if found is None:
+            # The answer holds for every point of the cell: the cell, enlarged by the reach on all sides.
             left, bottom = cell[0] * CELL_SIDE_M - reach_m, cell[1] * CELL_SIDE_M - reach_m
             wide = CELL_SIDE_M + 2 * reach_m
             found = self._found[cell, reach_m] = tuple(self._fixed.near((left, bottom, left + wide, bottom + wide)))
         return found
 
     def movers(self, x_m: float, y_m: float, reach_m: float) -> Iterator[Mover]:
-        """Moving bodies that may be within `reach_m` of a point; a superset."""
+        """Iterate over the moving bodies that may be within `reach_m` of a point; a superset."""
+        # A mover is in the cell of its origin only, so the search is widened by the largest reach of any mover.
         far = reach_m + self._max_reach_m
         left, bottom = cell_of(x_m - far, y_m - far)
         right, top = cell_of(x_m + far, y_m + far)
         found: Iterable[Mover] = self._movers
+        # With fewer movers than cells, testing all movers is faster than visiting the cells.
         if (right + 1 - left) * (top + 1 - bottom) <= len(self._movers):
             filed = self._file()
             squares = product(range(left, right + 1), range(bottom, top + 1))

@@ -27,7 +27,14 @@ _RIGHT_ANGLE = 1e-9
 
 
 class ObstacleTable:
-    """Rows: middle x, y; cosine and sine of the heading; half size along and across; height. `kinds` beside them."""
+    """Obstacles as arrays.
+
+    Attributes:
+        rows: shape (obstacles, 7): x and y of the middle, cosine and sine of the heading, half size along and across
+            the heading, height; m.
+        kinds: shape (obstacles,): DISC, BOX, or the index of the outline in `polygons`.
+        polygons: half planes n·p <= c of each polygon in its frame, shape (sides, 3): nx, ny, c.
+    """
 
     __slots__ = ("kinds", "polygons", "rows")
 
@@ -35,12 +42,11 @@ class ObstacleTable:
         self.rows = np.zeros((len(obstacles), 7))
         self.kinds = np.full(len(obstacles), BOX, dtype=np.intp)
         self.polygons: list[Values] = []
-        """Half planes n·p <= c of each polygon in its frame: a row of nx, ny, c for each side."""
         for row, obstacle in enumerate(obstacles):
             self.put(row, obstacle)
 
     def put(self, row: int, obstacle: Obstacle | None) -> None:
-        """Write an obstacle to a row; None for a missing one."""
+        """Write an obstacle to a row; None for a missing one, which is lower than all rays."""
         if obstacle is None:
             self.rows[row, HEIGHT] = NOWHERE_M
             return
@@ -63,7 +69,11 @@ class ObstacleTable:
 def polygon_in_frame(
     vertices: Sequence[tuple[float, float]],
 ) -> tuple[tuple[float, float, float, float, float, float], Values | None]:
-    """The frame along the first side of a convex polygon: middle, heading, half size; its planes unless it's a box."""
+    """Return the frame of a convex polygon, and its half planes in this frame; None for them if it is a rectangle.
+
+    The frame lies along the first side: x and y of the middle of the bounding box, cosine and sine of the heading, half
+    size along and across. A polygon that moves keeps its half planes, and a rectangle is its own bounding box.
+    """
     (ax, ay), (bx, by) = vertices[0], vertices[1]
     length = math.hypot(bx - ax, by - ay)
     cos, sin = (bx - ax) / length, (by - ay) / length

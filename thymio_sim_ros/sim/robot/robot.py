@@ -45,12 +45,12 @@ class SharedState:
         self._sounds_ns = -1
 
     def forget(self, robot: Robot) -> None:
-        """A robot has left the world."""
+        """Forget a robot that has left the world."""
         self.busy.pop(robot, None)
         self.woken.pop(robot, None)
 
     def sounds(self) -> list[Sound]:
-        """All sounds now; computed once per tick."""
+        """Return all sounds now; they are computed once per tick."""
         now_ns = self.clock.now_ns
         if self._sounds_ns != now_ns:
             self._sounds_ns = now_ns
@@ -219,12 +219,12 @@ class Robot:
         return self.body.is_fallen
 
     def sound_levels(self, now_ns: int) -> list[float]:
-        """Levels of the sounds that it makes now."""
+        """Return the levels of the sounds that it makes now."""
         levels = (source.sound_level(now_ns) for source in self._sound_sources)
         return [level for level in levels if level]
 
     def accepts(self, command: object) -> bool:
-        """Whether an actuator or stimulus accepts this type of command."""
+        """Return whether an actuator or stimulus accepts this type of command."""
         return type(command) in self._accepting
 
     def apply(self, command: object) -> None:
@@ -276,7 +276,7 @@ class Robot:
         return [number for number in woken if self.sensors[number][0].on_wake is None]
 
     def measure_one(self, number: int) -> Reading | None:
-        """The reading of the sensor with this number now."""
+        """Return the reading of the sensor with this number now."""
         sensor, view = self.sensors[number]
         return sensor.measure(view)
 
@@ -286,7 +286,7 @@ class Robot:
         self.edge_fall.clear()
 
     def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
-        """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
+        """Return the readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
         woken = self.pop_woken() if self._woken else ()
         readings = []
         for number in sorted({*woken, *due}) if woken else due:
@@ -297,12 +297,12 @@ class Robot:
         return readings
 
     def state(self, kind: type[S]) -> S:
-        """The state of type `kind` of an actuator or stimulus; raises KeyError if there is none."""
+        """Return the state of type `kind` of an actuator or stimulus. Raises KeyError if there is none."""
         state: S = self.states[kind]
         return state
 
     def snapshot(self) -> RobotSnapshot:
-        """The visible state now."""
+        """Return the visible state now."""
         return RobotSnapshot(
             name=self.name,
             pose=self.body.pose,

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.model.clock import NEVER_NS
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import NO_SENSOR_FACE, AsebaFace
+from thymio_sim_ros.sim.plugin_api.display import DisplayedValue, Label
 from thymio_sim_ros.sim.plugin_api.plugin_isolation import guarded_sensor
 from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 
@@ -36,6 +37,11 @@ class Sensor:
             when a contact begins. A woken sensor measures in that tick, unless it has `on_wake`.
         measure_all: Returns for all robots of a batch, in order, what `measure` returns for one.
         on_wake: Called instead of `measure` when the sensor is woken; it usually writes to `view.memory`.
+        label: Heading of its values in viewers; its name if empty.
+        values: The rows that viewers show, for the words of a reading in order; None for a row for each variable,
+            empty for none, as for sensors whose rows the page arranges itself.
+
+    Raises ValueError if `values` show more words than a reading has.
     """
 
     name: str
@@ -46,18 +52,32 @@ class Sensor:
     wakes_on: tuple[type[Any], ...] = ()
     measure_all: Callable[[BatchSensorView], Sequence[Reading | None]] | None = None
     on_wake: Callable[[SensorView], None] | None = None
+    label: Label = field(default="", hash=False)
+    values: tuple[DisplayedValue, ...] | None = field(default=None, hash=False)
+
+    def __post_init__(self) -> None:
+        shown = sum(value.words for value in self.displayed)
+        if shown > self.aseba.size:
+            raise ValueError(f"sensor {self.name}: values show {shown} words, expected at most {self.aseba.size}")
+
+    @property
+    def displayed(self) -> tuple[DisplayedValue, ...]:
+        """The rows that viewers show."""
+        if self.values is not None:
+            return self.values
+        return tuple(DisplayedValue(name, words=size) for name, size in self.aseba.variables)
 
     def with_period(self, period_ns: int) -> Sensor:
-        """This sensor with another period; with a period other than its own its phase is 0."""
+        """Return this sensor with another period in ns; its phase is 0 unless the period is its own."""
         return self if period_ns == self.period_ns else replace(self, period_ns=period_ns, phase_ns=0)
 
 
 def all_sensors() -> tuple[Sensor, ...]:
-    """All sensors of this folder and of other packages, in name order."""
+    """Return all sensors, of this package and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "SENSOR", Sensor, guard=_guarded)
 
 
 def _guarded(sensor: Sensor) -> Sensor:
-    """The sensor of another package, guarded so that its errors do not stop the world."""
+    """Return a sensor of another package, guarded so that its errors do not stop the world."""
     on_wake = None if sensor.on_wake is None else guarded_sensor(sensor.name, sensor.on_wake)
     return replace(sensor, measure=guarded_sensor(sensor.name, sensor.measure), measure_all=None, on_wake=on_wake)

@@ -19,7 +19,10 @@ Counts = npt.NDArray[np.int32]
 
 
 class ProximityCounts:
-    """So many sensors of one model whose rays have these cosines to the axis."""
+    """The arrays of the kernel for a fixed number of sensors of one model.
+
+    `cosines` are of the angles between the rays of a sensor and its axis.
+    """
 
     def __init__(self, sensors: int, model: str, cosines: Sequence[float]) -> None:
         rays = len(cosines)
@@ -42,7 +45,13 @@ class ProximityCounts:
         )
 
     def count(self, numbers: Indices, distances: Values, noise: Values) -> Counts:
-        """What all sensors count, of which those with these numbers see anything."""
+        """Return the counts of all sensors, shape (sensors,).
+
+        Args:
+            numbers: numbers of the sensors that detect something, shape (seen,).
+            distances: distances of their rays in m, shape (seen, rays).
+            noise: noise in counts, shape (seen,).
+        """
         seen = len(numbers)
         self._counts[-1] = seen
         self._numbers[:seen], self._distances[:seen], self._noise[:seen] = numbers, distances, noise

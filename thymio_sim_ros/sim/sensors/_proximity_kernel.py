@@ -1,4 +1,4 @@
-"""Kernel: counts of many proximity sensors. The sums of `sensors/proximity.py` on arrays, operation by operation."""
+"""Kernel: counts of many proximity sensors, computed as in `sensors/proximity.py`, operation by operation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ __all__ = ["COS_CONE", "COUNTS", "proximity", "proximity_response"]
 
 COUNTS = ("sensors", "rays", "model", "seen")
 _SENSORS, _RAYS, _MODEL, _SEEN = range(len(COUNTS))
-"""`model` is its number among `PROXIMITY_MODELS`."""
+"""Meaning of each element of `counts`: `model` is an index in `PROXIMITY_MODELS`, `seen` the number of sensors that
+detect something."""
 _DEFAULT, _CONE = map(robot_constants.PROXIMITY_MODELS.index, ("default", "cone"))
 
 _FULL = float(units.PROXIMITY_FULL)
@@ -22,7 +23,12 @@ COS_CONE = math.cos(robot_constants.PROXIMITY_HALF_CONE_RAD)
 
 @kernel
 def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, noise: Floats, found: Ints) -> None:
-    """What every sensor counts: of those that see anything the `numbers`, distances of their rays and noise."""
+    """Write the counts of all sensors to `found`.
+
+    Sensors that detect something have their numbers in `numbers`, shape (seen,), the distances of their rays in
+    `distances`, shape (seen, rays), and noise in `noise`, shape (seen,). `cosines` are those of the angles between rays
+    and axis.
+    """
     for sensor in range(counts[_SENSORS]):
         found[sensor] = 0
     rays = counts[_RAYS]

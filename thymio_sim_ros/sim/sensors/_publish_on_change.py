@@ -13,7 +13,7 @@ REFRESH_NS = 1_000_000_000
 
 
 def should_publish(view: SensorView, value: object) -> bool:
-    """Whether a value differs from the one reported last, or that was a second ago; if so, it is stored as reported.
+    """Return whether a value differs from the last one published, or that was a second ago; then store it as published.
 
     `memory["refresh_ns"]` is when it is reported again without a change.
     """

@@ -19,10 +19,11 @@ import numpy as np
 from thymio_sim_ros.sim.mechanics.fall import FALL_NS
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.model.readings import AccelerometerReading
-from thymio_sim_ros.sim.model.robot_constants import ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
+from thymio_sim_ros.sim.model.robot_constants import ACC_LIMIT, ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
 from thymio_sim_ros.sim.model.units import acceleration_to_units, accelerations_to_units
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.display import DisplayedValue
 from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
 from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
@@ -35,7 +36,7 @@ _NOISE_M_S2 = ACC_NOISE * GRAVITY_M_S2 / ACC_PER_G
 
 
 def gravity(tilt: Tilt) -> tuple[float, float, float]:
-    """What a robot at rest at an angle measures in m/s²: forward, left, up."""
+    """Return what a robot at rest at an angle measures in m/s²: forward, left, up."""
     if tilt == LEVEL:
         return (0.0, 0.0, GRAVITY_M_S2)
     level = GRAVITY_M_S2 * math.cos(tilt.pitch_rad)
@@ -43,7 +44,7 @@ def gravity(tilt: Tilt) -> tuple[float, float, float]:
 
 
 def sideways(pose: Pose, contact: Contact) -> float:
-    """Speed in m/s, to the left, that a contact's beginning takes from what it stops: away from the point touched."""
+    """Return the speed in m/s to the left that a robot gains when a contact begins, away from the point of contact."""
     dx, dy = pose.x_m - contact.x_m, pose.y_m - contact.y_m
     distance = math.hypot(dx, dy)
     if distance == 0.0:
@@ -109,4 +110,8 @@ SENSOR = Sensor(
     wakes_on=(Contact,),
     on_wake=_feel,
     aseba=AsebaFace(variables=(("acc", 3),), event="acc"),
+    label="acceleration",
+    values=tuple(
+        DisplayedValue(axis, "m/s²", GRAVITY_M_S2 / ACC_PER_G, digits=1, full_scale=ACC_LIMIT) for axis in "xyz"
+    ),
 )

@@ -10,6 +10,7 @@ from thymio_sim_ros.sim.commands import ConnectCharger, SetBattery
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import BatteryReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.display import DisplayedValue
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.stimuli.battery import BatteryState
@@ -17,6 +18,8 @@ from thymio_sim_ros.sim.stimuli.battery import BatteryState
 __all__ = ["SENSOR"]
 
 _EMPTY_V, _FULL_V = 3.4, 4.1
+_UNITS_PER_V = 198.9
+_FULL_SCALE_V = 4.2
 
 
 def _measure(view: SensorView) -> BatteryReading:
@@ -35,4 +38,5 @@ SENSOR = Sensor(
     measure=_measure,
     wakes_on=(SetBattery, ConnectCharger),
     aseba=AsebaFace(variables=(("_vbat", 2),), unseen=("1 while charging",)),
+    values=(DisplayedValue("", "V", 1 / _UNITS_PER_V, digits=2, full_scale=_FULL_SCALE_V * _UNITS_PER_V),),
 )

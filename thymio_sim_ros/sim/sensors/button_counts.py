@@ -26,7 +26,7 @@ _LEAST_NOISE, _MARGIN = 130, 20
 
 
 def is_touched(count: int, mean: int, noise: int) -> bool:
-    """The firmware's rule."""
+    """Return whether a button counts as touched, by the rule of the firmware."""
     return count < mean - max(noise, _LEAST_NOISE) - _MARGIN
 
 
@@ -47,4 +47,5 @@ SENSOR = Sensor(
     measure=_measure,
     wakes_on=(PressButton,),
     aseba=AsebaFace(variables=(("buttons._raw", 5), ("buttons._mean", 5), ("buttons._noise", 5))),
+    values=(),
 )

@@ -28,4 +28,5 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=tuple((f"button.{button}", 1) for button in BUTTONS), event="buttons", edge_events=True),
+    values=(),
 )

@@ -46,7 +46,7 @@ _Mount = tuple[float, float, float, float]
 
 
 def strength(distance_m: float, cos_emitter: float, cos_receiver: float) -> float:
-    """What one emitter adds to S; the cosines are those of the angles off the two axes. 0 where it is not seen."""
+    """Return what one emitter adds to S, given the cosines of the angles off both axes; 0 if it is not seen."""
     if distance_m > RANGE_M or cos_emitter <= 0.0 or cos_receiver < _COS_VIEW:
         return 0.0
     weight = cos_emitter**_EMITTER_POWER * cos_receiver**_RECEIVER_POWER
@@ -56,12 +56,12 @@ def strength(distance_m: float, cos_emitter: float, cos_receiver: float) -> floa
 
 
 def intensity(total: float) -> float:
-    """Intensity of a robot for the sum S of its emitters."""
+    """Return the intensity of a robot for the sum S of its emitters."""
     return _FULL / (1.0 + 1.0 / total) if total > 0.0 else 0.0
 
 
 def _mounts(pose: Pose) -> list[_Mount]:
-    """The proximity sensors of a robot that is here."""
+    """Return the proximity sensors of a robot at a pose."""
     return [
         (*pose.place((x, y)), math.cos(pose.yaw_rad + yaw), math.sin(pose.yaw_rad + yaw))
         for x, y, yaw in PROXIMITY_POSES
@@ -69,7 +69,7 @@ def _mounts(pose: Pose) -> list[_Mount]:
 
 
 def _ahead(receiver: _Mount, emitters: list[_Mount]) -> list[tuple[float, float, float, float]]:
-    """Emitters that a receiver sees if nothing is in between: what each adds to S, its direction, its distance."""
+    """Return the emitters that a receiver sees if nothing is in between: what each adds to S, direction, distance."""
     x, y, axis_x, axis_y = receiver
     found = []
     for emitter_x, emitter_y, emitter_axis_x, emitter_axis_y in emitters:
@@ -85,7 +85,7 @@ def _ahead(receiver: _Mount, emitters: list[_Mount]) -> list[tuple[float, float,
 
 
 def _received(receiver: _Mount, emitters: list[_Mount], around: Surroundings) -> float:
-    """Intensity of the robot with these emitters at a receiver; 0 where it cannot be understood."""
+    """Return the intensity of the robot with these emitters at a receiver; 0 if it is too low to be understood."""
     ahead = _ahead(receiver, emitters)
     if intensity(sum(part for part, *_ in ahead)) < _LEAST:
         return 0.0
@@ -133,4 +133,5 @@ SENSOR = Sensor(
         variables=(("prox.comm.rx", 1), ("prox.comm.rx._payloads", 7), ("prox.comm.rx._intensities", 7)),
         event="prox.comm",
     ),
+    values=(),
 )

@@ -55,13 +55,13 @@ def _measure(view: SensorView) -> CurrentReading | None:
 
 
 def _filtered(current: float, load: float) -> float:
-    """The next value of a current; one that fades away ends."""
+    """Return the next value of a filtered current; one that decays below _NOTHING becomes 0."""
     current += (load - current) / _FILTER_TICKS
     return current if current >= _NOTHING or load >= _NOTHING else 0.0
 
 
 def _integral(speed_m_s: float) -> int:
-    """What the loop has gathered that keeps a wheel at a speed."""
+    """Return the integral of the control loop in its steady state at a speed."""
     pwm = units.units_to_pwm(units.speed_to_units(speed_m_s))
     return max(-INTEGRATOR_LIMIT, min(INTEGRATOR_LIMIT, _INTEGRAL_PER_PWM * pwm))
 
@@ -98,4 +98,5 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=(("_imot", 2), ("_integrator", 2))),
+    values=(),
 )

@@ -29,7 +29,7 @@ _PLACES = np.array(GROUND_SENSORS)
 
 
 def response(sample: GroundSample) -> float:
-    """Count without noise over what a footprint sees."""
+    """Return the count without noise for what a footprint sees."""
     return sample.floor * units.ground_response(sample.reflectance)
 
 
@@ -90,4 +90,5 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=(("prox.ground.ambiant", 2), ("prox.ground.reflected", 2), ("prox.ground.delta", 2))),
+    values=(),
 )

@@ -26,7 +26,7 @@ def _measure_all(batch: BatchSensorView) -> Sequence[LedReading | None]:
 
 
 def _changed(state: LedState, memory: dict[str, Any], now_ns: int) -> LedReading | None:
-    """A reading; None if the levels are again those reported last."""
+    """Return a reading; None if the levels are those published last."""
     memory["changes"], groups = state.changes, tuple(state.levels.items())
     if groups == memory.get("groups"):
         return None

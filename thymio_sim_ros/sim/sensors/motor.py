@@ -30,7 +30,7 @@ def _measure(view: SensorView) -> MotorReading:
 
 
 def _faces(left_m_s: float, right_m_s: float) -> tuple[tuple[int, int, int, int], tuple[float, float]]:
-    """Words, and velocities in rad/s, of wheels at these speeds."""
+    """Return the words and the angular velocities in rad/s of wheels at these speeds."""
     left, right = units.speed_to_units(left_m_s), units.speed_to_units(right_m_s)
     words = (left, right, units.units_to_pwm(left), units.units_to_pwm(right))
     return words, (left_m_s / WHEEL_RADIUS_M, right_m_s / WHEEL_RADIUS_M)
@@ -61,4 +61,5 @@ SENSOR = Sensor(
         ),
         event="motor",
     ),
+    values=(),
 )

@@ -65,12 +65,17 @@ _NOTHING = ((0,) * _COUNT, (math.inf,) * _COUNT)
 
 
 def response(distances_m: Sequence[float], model: str) -> float:
-    """Count without noise of one sensor whose rays, right to left, met things this far away, inf for nothing."""
+    """Return the count without noise of one sensor.
+
+    `distances_m` are those of its rays, from right to left, inf for a ray that meets nothing.
+    """
     if model == "cone":
+        # The distance along the axis is d cos a, the range limits d itself.
         straight = map(float.__mul__, distances_m, _COSINES[model])
         return math.fsum(map(_within_range, distances_m, straight)) / len(distances_m)
     right, center, left = distances_m
     if model == "default":
+        # F falls with the distance, so the largest response is that of the smallest distance.
         return units.proximity_response(min(right * COS_CONE, center, left * COS_CONE))
     slanted = center / COS_CONE
     total = units.proximity_response(right) + units.proximity_response(center) + units.proximity_response(left)
@@ -78,7 +83,7 @@ def response(distances_m: Sequence[float], model: str) -> float:
 
 
 def responses(distances_m: Values, model: str) -> Values:
-    """`response` of many sensors, one in each row."""
+    """Return `response` of many sensors, shape (sensors,), for distances of shape (sensors, rays)."""
     if model == "cone":
         found = units.proximity_responses(distances_m * _COSINES[model])
         found[distances_m > PROXIMITY_RANGE_M] = 0.0
@@ -108,6 +113,7 @@ def _measure(view: SensorView) -> ProximityReading:
     counts = []
     for (mount_x, mount_y), rays in zip(_PLACES, _DIRECTIONS[model], strict=True):
         origin_x, origin_y = x + cos * mount_x - sin * mount_y, y + sin * mount_x + cos * mount_y
+        # Noise is drawn only for sensors that detect something, in their order; the batch does the same.
         near = around.near(origin_x, origin_y, PROXIMITY_RANGE_M)
         count = 0
         if not near.is_empty:
@@ -122,7 +128,7 @@ def _measure(view: SensorView) -> ProximityReading:
 
 
 def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
-    """Distances in m for counts; inf for 0."""
+    """Return the distances in m for counts; inf for 0."""
     return tuple([units.proximity_distance(count) if count else math.inf for count in counts])
 
 
@@ -154,4 +160,5 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=(("prox.horizontal", _COUNT),), event="prox"),
+    values=(),
 )

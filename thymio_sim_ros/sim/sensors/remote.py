@@ -29,4 +29,5 @@ SENSOR = Sensor(
     measure=_measure,
     wakes_on=(RemoteKey,),
     aseba=AsebaFace(variables=(("rc5.address", 1), ("rc5.command", 1)), event="rc5"),
+    values=(),
 )

@@ -17,6 +17,7 @@ from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
 from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, level_at
 from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.display import DisplayedValue
 from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sensors._publish_on_change import should_publish, should_publish_all
@@ -67,4 +68,6 @@ SENSOR = Sensor(
     measure=_measure,
     measure_all=_measure_all,
     aseba=AsebaFace(variables=(("mic.intensity", 1), ("mic._mean", 1)), event="mic", above="mic.threshold"),
+    label="microphone",
+    values=(DisplayedValue("", "%", 100 / FULL_LEVEL, full_scale=FULL_LEVEL),),
 )

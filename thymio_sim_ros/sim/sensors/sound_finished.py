@@ -1,4 +1,4 @@
-"""Tells that a sound came to its natural end, not that it was stopped or replaced.
+"""Reports that a sound came to its natural end; not that it was stopped or replaced.
 
 Source: docs/spec/thymio-robot.md section 5.
 """

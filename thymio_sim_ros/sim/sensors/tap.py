@@ -57,4 +57,5 @@ SENSOR = Sensor(
     measure_all=_measure_all,
     wakes_on=(Tap, Contact),
     aseba=AsebaFace(variables=(("acc._tap", 1),), event="tap"),
+    values=(),
 )

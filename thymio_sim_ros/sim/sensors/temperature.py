@@ -8,6 +8,7 @@ from __future__ import annotations
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import TemperatureReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.display import DisplayedValue
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
@@ -26,4 +27,5 @@ SENSOR = Sensor(
     phase_ns=10_000_000,
     measure=_measure,
     aseba=AsebaFace(variables=(("temperature", 1),), event="temperature"),
+    values=(DisplayedValue("", "°C", 0.1, digits=1, full_scale=500),),
 )

@@ -35,4 +35,12 @@ class Activation:
         )
 
 
-SHAPE = ShapeKind("activation", Activation)
+SHAPE = ShapeKind(
+    "activation",
+    Activation,
+    sample={
+        "size_x_m": 0.06,
+        "size_y_m": 0.03,
+        "area_m": ((-0.1, -0.02), (0.1, -0.02), (0.1, 0.18), (-0.1, 0.18)),
+    },
+)

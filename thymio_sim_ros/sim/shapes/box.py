@@ -47,4 +47,4 @@ class Box:
         return (Solid(name, pose, outline, self.height_m, as_color(self.color), load),)
 
 
-SHAPE = ShapeKind("box", Box)
+SHAPE = ShapeKind("box", Box, sample={"size_x_m": 0.1, "size_y_m": 0.1, "height_m": 0.1, "color": "#e08a2e"})

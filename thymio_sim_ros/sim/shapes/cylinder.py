@@ -42,4 +42,4 @@ class Cylinder:
         return (Solid(name, pose, outline, self.height_m, as_color(self.color), load),)
 
 
-SHAPE = ShapeKind("cylinder", Cylinder)
+SHAPE = ShapeKind("cylinder", Cylinder, sample={"radius_m": 0.04, "height_m": 0.12, "color": "#3f88c5"})

@@ -37,4 +37,15 @@ class Door:
         return (Solid(name, closed, outline, self.height_m, as_color(self.color), slide=slide),)
 
 
-SHAPE = ShapeKind("door", Door)
+SHAPE = ShapeKind(
+    "door",
+    Door,
+    sample={
+        "opened_x_m": 0.2,
+        "size_x_m": 0.2,
+        "size_y_m": 0.02,
+        "height_m": 0.1,
+        "move_s": 2.0,
+        "color": "#3f88c5",
+    },
+)

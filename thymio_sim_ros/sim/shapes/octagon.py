@@ -55,4 +55,4 @@ def _polar(radius: float, angle: float) -> Point:
     return (radius * math.cos(angle), radius * math.sin(angle))
 
 
-SHAPE = ShapeKind("octagon", Octagon)
+SHAPE = ShapeKind("octagon", Octagon, sample={"side_m": 0.2, "color": "#ffffff"})

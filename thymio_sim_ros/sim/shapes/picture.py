@@ -34,4 +34,4 @@ class Picture:
         return (primitives.Print(name, pose, self.size_x_m, size_y_m, pixels.columns, pixels.rows, pixels.rgba),)
 
 
-SHAPE = ShapeKind("picture", Picture)
+SHAPE = ShapeKind("picture", Picture, sample={"size_x_m": 0.4})

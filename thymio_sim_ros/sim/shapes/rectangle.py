@@ -51,4 +51,4 @@ class Rectangle:
         )
 
 
-SHAPE = ShapeKind("rectangle", Rectangle)
+SHAPE = ShapeKind("rectangle", Rectangle, sample={"size_x_m": 0.4, "size_y_m": 0.3, "color": "#ffffff"})

@@ -93,4 +93,4 @@ class Track:
         return [(center_x + radius * math.sin(a), center_y - radius * math.cos(a), a) for a in angles]
 
 
-SHAPE = ShapeKind("track", Track)
+SHAPE = ShapeKind("track", Track, sample={"width_m": 0.03, "color": "#1a1a1a"})

@@ -44,4 +44,4 @@ class UFigure:
         )
 
 
-SHAPE = ShapeKind("u_figure", UFigure)
+SHAPE = ShapeKind("u_figure", UFigure, sample={"unit_m": 0.03, "height_m": 0.12, "color": "#9fa3bd"})

@@ -31,4 +31,4 @@ class Wall:
         return (Solid(name, pose, outline, self.height_m, as_color(self.color)),)
 
 
-SHAPE = ShapeKind("wall", Wall)
+SHAPE = ShapeKind("wall", Wall, sample={"color": "#8a97a5"})

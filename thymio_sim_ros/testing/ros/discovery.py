@@ -51,16 +51,17 @@ def _fit(published: QoSProfile, wanted: QoSProfile) -> bool:
     return bool(compatibility == QoSCompatibility.OK)
 
 
-def as_published(node: Node, topic: str, depth: int, *, latched: bool | None) -> QoSProfile:
+def as_published(node: Node, topic: str, depth: int, *, transient_local: bool | None) -> QoSProfile:
     """A profile compatible with all publishers of a topic: the weakest reliability and durability among them."""
     profiles = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     reliable = all(profile.reliability == ReliabilityPolicy.RELIABLE for profile in profiles)
-    if latched is None:
-        latched = bool(profiles) and all(profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for profile in profiles)
+    if transient_local is None:
+        durabilities = {profile.durability for profile in profiles}
+        transient_local = durabilities == {DurabilityPolicy.TRANSIENT_LOCAL}
     return QoSProfile(
         depth=depth,
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if transient_local else DurabilityPolicy.VOLATILE,
     )
 
 

@@ -1,4 +1,4 @@
-"""A ROS domain that nobody else on this machine uses, for as long as a test lasts."""
+"""Reserves an unused ROS domain for the time of a test."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Source: docs/spec/ros-packaging.md section 4.
 """
 
 DOMAIN_PORT = 17400
-"""Loopback port of domain 0; who holds port + id has the domain."""
+"""Loopback TCP port of domain 0. A process that listens at this port plus the id has reserved the domain."""
 
 DISCOVERY_PORT = 7400
 PORTS_PER_DOMAIN = 250
@@ -39,9 +39,9 @@ class NoDomainError(ThymioSimError):
 
 @contextlib.contextmanager
 def reserved() -> Iterator[int]:
-    """Hold a domain; children inherit it, and messages stay on this machine. Each turn takes another one.
+    """Reserve a domain, another one each time. Child processes inherit it, and messages stay on this machine.
 
-    The domain of the user's own environment is left alone.
+    The domain of the user's own environment is not used. Raises NoDomainError if all domains are in use.
     """
     own = os.environ.get("ROS_DOMAIN_ID", "0")
     free = [domain for domain in DOMAINS if str(domain) != own]
@@ -53,7 +53,7 @@ def reserved() -> Iterator[int]:
                 held.bind(("127.0.0.1", DOMAIN_PORT + domain))
             except OSError:
                 continue
-            if _is_spoken_in(domain):
+            if _has_participants(domain):
                 continue
             remove_incomplete_ports()
             with _environment(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST"):
@@ -62,8 +62,8 @@ def reserved() -> Iterator[int]:
     raise NoDomainError(f"no free ROS domain on this machine: {len(free)} are in use")
 
 
-def _is_spoken_in(domain: int) -> bool:
-    """Whether somebody who holds nothing uses the domain."""
+def _has_participants(domain: int) -> bool:
+    """Whether a process uses the domain without a reservation."""
     first = DISCOVERY_PORT + PORTS_PER_DOMAIN * domain
     return not all(_is_free(first + port) for port in PARTICIPANT_PORTS)
 

@@ -1,4 +1,4 @@
-"""A private ROS graph for one test: a context, executors, nodes under test, waiting that tells what went wrong."""
+"""A private ROS graph for one test: context, executors, nodes under test, waits that report the state on failure."""
 
 from __future__ import annotations
 
@@ -31,64 +31,64 @@ __all__ = ["DEADLINE_S", "Ros"]
 
 DEADLINE_S = 20.0
 SLICE_S = 0.005
-"""Real seconds that nodes under test wait at most while nothing comes for all others."""
+"""Longest wait of the executors in one turn, in s of real time."""
 
 DEPTH = 1000
-"""Messages that a recorder may be behind."""
+"""Queue depth of a recorder's subscription."""
 
 NOTICE = 2
-"""Deliveries until a publisher knows of a subscription: the event, then the task that it makes."""
+"""Deliveries until a publisher knows a subscription: the event, then the task that the event creates."""
 
 THREADS_S = 2.0
-"""Real seconds for threads of nodes under test to see that ROS is shut down, and to end."""
+"""Time for threads of nodes under test to notice that ROS is shut down and to end, in s of real time."""
 
 TEST_NODE = "test"
 
 
 class Stepped(Protocol):
-    """What lets simulated time pass in a test."""
+    """The owner of simulated time in a test."""
 
     @property
     def now(self) -> float:
         """Simulated time in s."""
 
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
-        """Let time pass until a condition is true."""
+        """Advance simulated time until a condition is true."""
 
     def lines(self) -> list[str]:
-        """How time and the robots are, for a person."""
+        """Describe time and robots, one line each."""
 
 
 class Ros:
-    """A private context, one executor for what is ours and one for each node under test; `until` spins them."""
+    """A private context, one executor for the nodes of this package and one per node under test; `until` spins all."""
 
     def __init__(self, domain: int, *, folder: Path | None = None) -> None:
-        """Files of nodes under test are looked for in `folder` first."""
+        """`folder`: where files of nodes under test are searched first."""
         self.domain = domain
         self.simulation: Stepped | None = None
-        """The simulation of this test, once there is one: it alone lets simulated time pass."""
+        """The simulation of this test, if there is one; it owns simulated time."""
         self._folder = folder
         self._threads = set(threading.enumerate())
-        # Code under test may ask for the default context (`rclpy.ok()`); somebody else's is not touched.
+        # Code under test may use the default context (`rclpy.ok()`). If it is in use already, it is left alone.
         self.context = get_default_context()
         if self.context.ok():
             self.context = Context()
         log_directory.ensure()
         rclpy.init(args=[], context=self.context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-        # The events executor has crashes written to a file behind stderr: what `--capture=sys` gives has none.
+        # The events executor writes crash reports to the file behind stderr, which `--capture=sys` does not provide.
         with contextlib.redirect_stderr(sys.__stderr__):
             self._executor = make_executor(self.context)
         self._lives: list[Any] = []
         self._nodes: list[Node] = []
         self._turns: dict[Node, ExecutorTurns] = {}
-        """Of the nodes under test, in the order in which they were started."""
+        """Executors of the nodes under test, in the order in which these were started."""
         self._recorders: list[Recorder] = []
         self.node = self.make_node(TEST_NODE)
 
     # --- nodes ---
 
     def make_node(self, name: str, namespace: str = "") -> Node:
-        """A plain node on the test's executor."""
+        """Create a plain node on the test's executor."""
         node = Node(
             name, context=self.context, namespace=namespace, start_parameter_services=False, enable_rosout=False
         )
@@ -97,14 +97,14 @@ class Ros:
         return node
 
     def add(self, node: Node) -> Node:
-        """Give a node under test its turns; it is destroyed with the test."""
+        """Add a node under test; it gets an executor of its own and is destroyed when the test ends."""
         self._nodes.append(node)
         with self._alive():
             self._turns[node] = ExecutorTurns(node, self.context)
         return node
 
     def live(self, life: Any) -> Any:
-        """Put a `Life` on the executor; it is closed with the test."""
+        """Add a node of this package (`RunnableNode`) to the test's executor; it is closed when the test ends."""
         self._executor.add_node(life.node)
         self._lives.append(life)
         return life
@@ -123,8 +123,19 @@ class Ros:
     ) -> Node:
         """Start a node under test, and wait until it has found its peers.
 
-        `source` is its class, its file or its module; `arguments` are those of its constructor. It uses simulated time
-        where the test has a simulation. What its constructor raises is raised here.
+        Args:
+            source: Its class, its file or its module.
+            class_name: Name of its class if a file or module has several.
+            name: Name of the node, if not its own.
+            namespace: Namespace of the node.
+            parameters: Values of parameters.
+            remappings: Names and what they are remapped to.
+            use_sim_time: Whether it uses simulated time; None: if the test has a simulation.
+            arguments: Arguments of its constructor.
+
+        Raises:
+            StudentError: The source has no node class, or several, or does not call `super().__init__`.
+            Exception: Whatever the constructor raises.
         """
         __tracebackhide__ = True
         kind = source if isinstance(source, type) else student.load_class(beside(source, self._folder), class_name)
@@ -137,19 +148,19 @@ class Ros:
         return node
 
     def stop(self, node: Node) -> None:
-        """End a node of this test before the test ends."""
+        """Destroy a node before the test ends."""
         self._nodes.remove(node)
         self._forget(node)
         node.destroy_node()
 
     def end(self, life: Any) -> None:
-        """Close a `Life` before the test ends."""
+        """Close a node added by `live` before the test ends."""
         self._lives.remove(life)
         self._forget(life.node)
         life.close()
 
     def _forget(self, node: Node) -> None:
-        """Let its executor do all that waits for a node, and then take its leave of it."""
+        """Handle all pending work of a node, then remove it from its executor."""
         if node in self._turns:
             self._turns.pop(node).shutdown()
         else:
@@ -159,13 +170,13 @@ class Ros:
     # --- time ---
 
     def deliver(self) -> None:
-        """Handle the messages that are there, waiting for none: first a turn of each node under test."""
+        """Handle all pending messages without waiting, those of nodes under test first."""
         with self._alive():
             self._run_turns()
             deliver(self._executor)
 
     def spin(self) -> None:
-        """One short turn of all executors."""
+        """Spin all executors once, for `SLICE_S` at most."""
         with self._alive():
             self._run_turns()
             self._executor.spin_once(timeout_sec=SLICE_S)
@@ -182,10 +193,11 @@ class Ros:
         sim_time: float | None = None,
         what: str = "",
     ) -> Any:
-        """Spin until the condition is true; returns its value, or fails the test and tells how everything is.
+        """Spin until the condition is true and return its value; fails the test with a report otherwise.
 
-        With `sim_time` the simulation is stepped, at most so many simulated seconds, however long that takes. Without,
-        it waits at most `timeout` seconds of real time, and simulated time stands still.
+        With `sim_time`, the simulation is stepped by at most that many simulated seconds, however long that takes.
+        Without it, the wait lasts at most `timeout` seconds of real time, and simulated time does not pass. Raises
+        LookupError for `sim_time` without a simulation.
         """
         __tracebackhide__ = True
         if sim_time is not None:
@@ -196,7 +208,7 @@ class Ros:
         )
 
     def spin_until(self, condition: Callable[[], Any], timeout: float, head: Callable[[], str]) -> Any:
-        """Spin until the condition is true, at most so many seconds of real time; the failure begins with `head()`."""
+        """Spin until the condition is true, for at most `timeout` s of real time; `head()` begins a failure report."""
         __tracebackhide__ = True
         deadline = time.monotonic() + timeout
         while not (value := condition()):
@@ -206,9 +218,9 @@ class Ros:
         return value
 
     def settle(self) -> None:
-        """Wait until all nodes of this test have found each other, and know it.
+        """Wait until all nodes of this test are matched with each other.
 
-        From then on no message between them is lost.
+        No message between them is lost from then on.
         """
         __tracebackhide__ = True
         nodes = [*self._nodes, *(life.node for life in self._lives)]
@@ -223,21 +235,21 @@ class Ros:
         kind: Any,
         topic: str,
         *,
-        latched: bool | None = None,
+        transient_local: bool | None = None,
         where: Callable[[Any], Any] | None = None,
         qos: QoSProfile | None = None,
     ) -> Recorder:
-        """A list that fills with the topic's messages, those that satisfy `where` if given.
+        """Return a list that is filled with the messages of a topic, or with those that satisfy `where`.
 
-        It waits for a publisher and listens as that publishes; earlier messages of a latched topic arrive too, unless
-        `latched` is false. With a `qos` of its own it waits for nobody.
+        Waits for a publisher and uses its QoS. With durability transient local, earlier messages arrive too, unless
+        `transient_local` is false. With `qos`, it does not wait.
         """
         __tracebackhide__ = True
         name = self.node.resolve_topic_name(topic)
         recorder = Recorder(kind, name, self.until, self.now, where)
         if qos is None:
             self.until(lambda: self.node.count_publishers(name), what=f"a publisher of {name}")
-            qos = discovery.as_published(self.node, name, DEPTH, latched=latched)
+            qos = discovery.as_published(self.node, name, DEPTH, transient_local=transient_local)
         subscription = self.node.create_subscription(kind, name, recorder.add, qos)
         self._recorders.append(recorder)
         self.until(lambda: discovery.is_matched(self.node, subscription), what=f"the publishers of {name}")
@@ -245,7 +257,7 @@ class Ros:
         return recorder
 
     def publisher(self, kind: Any, topic: str, *, depth: int = 10) -> Any:
-        """A publisher that already has a subscriber."""
+        """Create a publisher, and wait until it has a subscriber."""
         __tracebackhide__ = True
         publisher = self.node.create_publisher(kind, topic, depth)
         self.until(publisher.get_subscription_count, what=f"a subscriber of {publisher.topic_name}")
@@ -253,7 +265,7 @@ class Ros:
         return publisher
 
     def call(self, kind: Any, name: str, request: Any = None) -> Any:
-        """The answer of a service."""
+        """Call a service and return its response."""
         __tracebackhide__ = True
         client = self.node.create_client(kind, name)
         self.until(client.service_is_ready, what=f"service {name}")
@@ -264,11 +276,11 @@ class Ros:
     # --- reports and the end ---
 
     def now(self) -> str:
-        """Simulated time for a person, or nothing without a simulation."""
+        """Describe simulated time; empty without a simulation."""
         return "" if self.simulation is None else f"at {self.simulation.now:.2f} s"
 
     def fail(self, head: str) -> None:
-        """Fail the test, and tell how robots, programs, records and topics are."""
+        """Fail the test with a report on robots, programs, recorded messages and topics."""
         __tracebackhide__ = True
         lines = [head]
         if self.simulation is not None:
@@ -278,7 +290,7 @@ class Ros:
         pytest.fail("\n".join([*lines, *discovery.topic_lines(self.node, ours)]))
 
     def close(self) -> None:
-        """End lives, nodes, executor and context; nothing of them is left."""
+        """Close all nodes, executors and the context."""
         with contextlib.ExitStack() as end:  # each step is done even when another fails
             end.callback(self._close_context)
             end.callback(self._executor.shutdown)
@@ -294,7 +306,7 @@ class Ros:
                 end.callback(self._executor.remove_node, life.node)
 
     def _end_threads(self) -> None:
-        """Shut ROS down before the nodes go, where threads of theirs run: what these ask is `rclpy.ok()`."""
+        """Shut ROS down before the nodes are destroyed if they run threads, whose loops check `rclpy.ok()`."""
         running = set(threading.enumerate()) - self._threads
         if running:
             self._close_context()
@@ -310,7 +322,7 @@ class Ros:
 
     @contextlib.contextmanager
     def _alive(self) -> Iterator[None]:
-        """Tell what it means when the context ends in the middle of a test."""
+        """Fail the test with an explanation if the context is shut down in the middle of it."""
         try:
             if not self.context.ok():
                 raise ExternalShutdownException

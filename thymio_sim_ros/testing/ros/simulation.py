@@ -1,4 +1,4 @@
-"""The simulator node in a test: it is stepped, so that a test counts simulated time, not wall time."""
+"""The simulator node in a test. The test steps it, so that only simulated time counts, not wall time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ HOPS = 2
 """Deliveries per tick: a reading reaches a node under test, and its command comes back."""
 
 ANSWER_S = 2.0
-"""Real seconds for what is still under way when simulated time has ended, such as the answer of a service."""
+"""Time for pending messages after a wait in simulated time, in s of real time."""
 
 _NO_MACHINE = "no Aseba machine runs for {}: start one with the fixture `runtime`"
 
@@ -39,20 +39,20 @@ class Simulation:
     """A simulator node and its robots. Invariant: simulated time passes only in `tick`, `step` and `until`."""
 
     def __init__(self, ros: Ros, simulator: Simulator, *, folder: Path | None = None) -> None:
-        """Relative paths of programs begin in `folder`."""
+        """`folder`: where relative paths of programs start."""
         self.ros = ros
         self.simulator = simulator
         self._folder = folder
         self._runtimes: list[AsebaRuntime] = []
         self._event_subscriptions: dict[str, Any] = {}
-        """Subscriptions to what the program of each robot emits."""
+        """Subscriptions to the events of each robot's program."""
         self._robots = {name: Thymio(name, self) for name in self.world.robots}
         ros.simulation = self
 
     @property
     def world(self) -> World:
-        """The world itself, for the truth."""
-        return self.simulator.world
+        """The world itself (ground truth)."""
+        return self.simulator.runner.world
 
     @property
     def now(self) -> float:
@@ -63,7 +63,7 @@ class Simulation:
 
     @property
     def robots(self) -> Mapping[str, Thymio]:
-        """The robots by name, those that came later too."""
+        """All present robots by name."""
         for name in self.world.robots:
             if name not in self._robots:
                 self._robots[name] = Thymio(name, self)
@@ -78,18 +78,18 @@ class Simulation:
 
     @property
     def thymio(self) -> Thymio:
-        """The only robot; LookupError where there are several."""
+        """The only robot; raises LookupError if there are several."""
         if len(self.robots) != 1:
             raise LookupError(f"{len(self.robots)} robots: take one by its name: {', '.join(self.robots)}")
         return next(iter(self))
 
     def run_program(self, runtime: AsebaRuntime) -> None:
-        """An Aseba runtime node of this test: its machines work with every tick, and what they emit is noted.
+        """Add an Aseba runtime node: its machines run in every tick, and their events are recorded.
 
-        It waits until the node knows the robots: a latched message takes its time.
+        Waits until the node knows the robots of the simulator.
         """
-        if runtime.params.follow_simulator:
-            wanted = [names.name for names in self.simulator.names.values()]
+        if runtime.values.params.follow_simulator:
+            wanted = [names.name for names in self.simulator.endpoints.robots.names.values()]
             self.ros.until(
                 lambda: [ports.names.name for ports in runtime.robots] == wanted, what="the runtime knows the robots"
             )
@@ -104,12 +104,12 @@ class Simulation:
             self.tick()
 
     def run(self, seconds: float) -> None:
-        """The same as `step`."""
+        """Advance simulated time by `seconds`; the same as `step`."""
         self.step(seconds)
 
     def tick(self) -> None:
-        """One tick of 10 ms, then whatever messages are there; long handlers of programs go on."""
-        self.simulator.advance(1)
+        """Advance by one tick of 10 ms, handle all pending messages, and continue long handlers of programs."""
+        self.simulator.runner.advance(1)
         self._subscribe_to_events()
         for _ in range(HOPS):
             self.ros.deliver()
@@ -123,9 +123,9 @@ class Simulation:
                 thymio.record.add_tick(robot, self.world.now_ns)
 
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
-        """Step until the condition is true, at most so many simulated seconds; returns its value.
+        """Step until the condition is true, for at most `seconds` of simulated time; returns its value.
 
-        Fails the test otherwise, and tells how robots, programs, records and topics are.
+        Fails the test otherwise, with a report on robots, programs, recorded messages and topics.
         """
         __tracebackhide__ = True
         for _ in range(round(seconds * SECOND_NS / TICK_NS)):
@@ -137,27 +137,30 @@ class Simulation:
         )
 
     def lines(self) -> list[str]:
-        """How simulated time and the robots are, for a person."""
+        """Describe simulated time and robots, one line each."""
         return [f"simulated time: {self.now:.2f} s", *robot_lines(self)]
 
     # --- programs ---
 
     def machine(self, robot: str) -> DeviceEndpoints | None:
-        """The machine of a robot, if a runtime node of this test has one for it."""
-        names = self.simulator.names
+        """Return the machine of a robot if a runtime node of this test has one, otherwise None."""
+        names = self.simulator.endpoints.robots.names
         wanted = names[robot].name if robot in names else robot
         found = (ports for runtime in self._runtimes for ports in runtime.robots if ports.names.name == wanted)
         return next(found, None)
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
-        """Give a robot that has a machine a program."""
+        """Load a program into the machine of a robot. Raises LookupError if it has no machine."""
         ports = self.machine(robot)
         if ports is None:
             raise LookupError(_NO_MACHINE.format(robot))
         ports.load(program_of(program, self._folder))
 
     def emit(self, event: str, args: Sequence[int]) -> None:
-        """Let every robot that knows an event hear it, by the topic _aseba/emit of the first that has a machine."""
+        """Send an event to all robots that know it, by `_aseba/emit` of the first machine.
+
+        Raises LookupError if there is no machine.
+        """
         found = ((runtime, ports) for runtime in self._runtimes for ports in runtime.robots)
         runtime, ports = next(found, (None, None))
         if runtime is None or ports is None:
@@ -167,16 +170,16 @@ class Simulation:
         publisher.publish(Int16MultiArray(layout=layout, data=list(args)))
 
     def _subscribe_to_events(self) -> None:
-        """Hear what the programs of all robots emit, of those too that have just come."""
+        """Subscribe to the events of all programs, including those of new robots."""
         if not self._runtimes or len(self._event_subscriptions) == len(self.world.robots):
             return
-        for name, names in self.simulator.names.items():
+        for name, names in self.simulator.endpoints.robots.names.items():
             if name not in self._event_subscriptions:
                 topic = full_name(self.simulator.node, names.topic("_aseba/events"))
                 self._event_subscriptions[name] = self.ros.node.create_subscription(
                     Int16MultiArray, topic, partial(self._record_event, name), qos.EVENTS
                 )
-        for name in self._event_subscriptions.keys() - self.simulator.names.keys():
+        for name in self._event_subscriptions.keys() - self.simulator.endpoints.robots.names.keys():
             self.ros.node.destroy_subscription(self._event_subscriptions.pop(name))
 
     def _record_event(self, robot: str, message: Int16MultiArray) -> None:

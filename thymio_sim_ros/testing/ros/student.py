@@ -1,7 +1,7 @@
-"""A node class that somebody else wrote, started in the test: from a file, a module or as it is.
+"""Starts a node class under test, given as a file, as a module or directly.
 
-Such a class calls `super().__init__("name")` and knows nothing of tests. Its node still gets the test's context,
-parameters, remappings and namespace: a class of ours stands behind it in the order of its bases and adds them.
+Such a class calls `super().__init__("name")` and contains nothing for tests. Its node still gets the test's context,
+parameters, remappings and namespace: a class inserted between it and `Node` in the method resolution order adds them.
 """
 
 from __future__ import annotations
@@ -36,14 +36,19 @@ _TURNS = (*_SPINS, "spin_once_until_future_complete")
 
 
 class StudentError(ThymioSimError):
-    """What was handed in is no node that can be started; the text says what is missing."""
+    """A file, module or class has no node that can be started; the text says what is missing."""
 
 
 def load_class(source: str | Path, class_name: str = "") -> type[Node]:
-    """The node class of a file (*.py) or of a module by its dotted name; its only one, unless named.
+    """Return the node class of a file (*.py), or of a module given by its dotted name.
 
-    Raises StudentError where there is none or more than one, ImportError for a module that is not there, and what the
-    file itself raises. A file whose last lines start the node is understood: nothing spins while it is loaded.
+    The only node class is taken, unless `class_name` names one. A file may start its node in its last lines: functions
+    that spin do nothing while it is loaded.
+
+    Raises:
+        StudentError: There is no such class, or more than one.
+        ImportError: The module does not exist.
+        Exception: Whatever the file raises.
     """
     path = Path(source)
     with _spinning_disabled():
@@ -62,7 +67,7 @@ def load_class(source: str | Path, class_name: str = "") -> type[Node]:
 
 
 def remap_arguments(name: str, namespace: str, remappings: Mapping[str, str]) -> list[str]:
-    """What `ros2 run` would say: a node's name, its namespace, and names that it shall use instead of its own."""
+    """Return the command line arguments of `ros2 run` that set name, namespace and remappings of a node."""
     rules = dict(remappings)
     if namespace:
         rules["__ns"] = "/" + namespace.strip("/")
@@ -79,15 +84,15 @@ def start(
     parameters: Mapping[str, Any],
     arguments: Mapping[str, Any],
 ) -> Node:
-    """A node of this class in a context, with `arguments` for its own constructor.
+    """Create a node of this class in a context; `arguments` are those of its own constructor.
 
-    StudentError: the class does not call `super().__init__`, so that nothing can be given to it.
+    Raises StudentError if the class does not call `super().__init__`: its context cannot be set then.
     """
     reached: list[bool] = []
     overrides = [Parameter(name, value=value) for name, value in parameters.items()]
 
-    class Placed(Node):
-        """Adds what the test wants to what the class itself says."""
+    class WithTestContext(Node):
+        """Adds context, remappings and parameters of the test to the arguments of `Node`."""
 
         def __init__(self, *args: Any, **kwargs: Any) -> None:
             reached.append(True)
@@ -96,9 +101,9 @@ def start(
             kwargs["parameter_overrides"] = [*(kwargs.get("parameter_overrides") or []), *overrides]
             super().__init__(*args, **kwargs)
 
-    placed = type(kind.__name__, (kind, Placed), {"__module__": kind.__module__, "__doc__": kind.__doc__})
+    derived = type(kind.__name__, (kind, WithTestContext), {"__module__": kind.__module__, "__doc__": kind.__doc__})
     with spinning_forbidden():
-        node: Node = placed(**arguments)
+        node: Node = derived(**arguments)
     if not reached:
         node.destroy_node()
         raise StudentError(f"{kind.__name__} calls Node.__init__ itself: expected super().__init__(…)")
@@ -113,7 +118,7 @@ def _run_file(path: Path) -> ModuleType:
     if spec is None or spec.loader is None:
         raise StudentError(f"{path}: not a Python file")
     module = importlib.util.module_from_spec(spec)
-    with _neighbours(path.parent.absolute()):
+    with _folder_modules(path.parent.absolute()):
         sys.modules[name] = module
         try:
             spec.loader.exec_module(module)
@@ -138,10 +143,10 @@ def _classes(module: ModuleType) -> dict[str, type[Node]]:
 
 
 @contextlib.contextmanager
-def _neighbours(folder: Path) -> Iterator[None]:
-    """What lies in the folder can be imported, whatever has been imported by such a name, and is forgotten afterwards.
+def _folder_modules(folder: Path) -> Iterator[None]:
+    """Make the modules of a folder importable, even if modules of the same names are loaded; unload them afterwards.
 
-    Each student may have a `helpers.py`; nobody is to get another's.
+    Each submission may have a `helpers.py` of its own.
     """
     names = {path.stem for path in folder.glob("*.py")} | {path.parent.name for path in folder.glob("*/__init__.py")}
     aside = {
@@ -170,12 +175,12 @@ def _lies_in(module: ModuleType, folder: Path) -> bool:
 
 @contextlib.contextmanager
 def _spinning_disabled() -> Iterator[None]:
-    """Lines such as `rclpy.init(); rclpy.spin(Wanderer())` do nothing while a file is loaded."""
+    """Make lines such as `rclpy.init(); rclpy.spin(Wanderer())` do nothing while a file is loaded."""
 
     loading = True
 
     def spin(node: Node, *_args: Any, **_kwargs: Any) -> None:
-        if not loading:  # by `from rclpy import spin` it stays what it is now
+        if not loading:  # `from rclpy import spin` keeps this function after loading
             raise StudentError(_SPUN.format("spin"))
         node.destroy_node()
 
@@ -204,10 +209,10 @@ def _spinning_disabled() -> Iterator[None]:
 
 @contextlib.contextmanager
 def spinning_forbidden() -> Iterator[None]:
-    """Who spins in this thread without a time limit is told so: the middleware would wait out of reach of signals."""
+    """Raise StudentError if this thread spins without a time limit: the middleware would then wait, deaf to signals."""
     here = threading.get_ident()
 
-    def told(name: str, spin: Callable[..., Any]) -> Callable[..., Any]:
+    def limited(name: str, spin: Callable[..., Any]) -> Callable[..., Any]:
         def checked(*args: Any, **kwargs: Any) -> Any:
             limit = inspect.signature(spin).bind(*args, **kwargs).arguments.get("timeout_sec")
             if threading.get_ident() == here and limit is None:
@@ -218,7 +223,7 @@ def spinning_forbidden() -> Iterator[None]:
 
     before = {name: getattr(rclpy, name) for name in _SPINS}
     for name, spin in before.items():
-        setattr(rclpy, name, told(name, spin))
+        setattr(rclpy, name, limited(name, spin))
     try:
         yield
     finally:
@@ -227,5 +232,5 @@ def spinning_forbidden() -> Iterator[None]:
 
 
 def _nothing(*_args: Any, **_kwargs: Any) -> contextlib.AbstractContextManager[None]:
-    """In place of a function that is not to do anything now; `with rclpy.init():` is one, too."""
+    """Replaces a function that must do nothing now; also works as `with rclpy.init():`."""
     return contextlib.nullcontext()

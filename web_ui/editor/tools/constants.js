@@ -8,17 +8,17 @@ import { entryForm } from "./entry_form.js";
 /** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
 export function constantsTool({ t, define }) {
   const body = h("tbody");
-  const trouble = h("p", { class: "fault", role: "alert", hidden: true });
+  const errorText = h("p", { class: "fault", role: "alert", hidden: true });
   let listed = "";
 
   /** @param {string} name @param {number} value */
   const rowOf = (name, value) => {
     const input = h("input", { type: "text", inputmode: "numeric", value, "aria-label": name, "data-constant": name });
     input.addEventListener("change", () => {
-      const { values, trouble: wrong } = parseNumbers(input.value, 1);
-      trouble.hidden = values !== null;
+      const { values, problem } = parseNumbers(input.value, 1);
+      errorText.hidden = values !== null;
       if (values !== null) return define("constant", name, values[0]);
-      setText(trouble, `${name}: ${t(wrong.key, wrong.values)}`);
+      setText(errorText, `${name}: ${t(problem.key, problem.values)}`);
       input.value = String(value);
     });
     return h(
@@ -53,7 +53,7 @@ export function constantsTool({ t, define }) {
   });
   return {
     name: "constants",
-    element: h("div", { class: "constants" }, h("table", {}, body), trouble, form),
+    element: h("div", { class: "constants" }, h("table", {}, body), errorText, form),
     render({ file }) {
       const signature = JSON.stringify(file.constants.map(({ name, value }) => [name, value]));
       if (signature === listed) return;

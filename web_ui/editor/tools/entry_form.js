@@ -27,20 +27,20 @@ export function entryForm({ t, kind, least, greatest, label, add }) {
     placeholder: label,
     class: "number",
   });
-  const trouble = h("p", { class: "fault", role: "alert", hidden: true });
-  const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit" }, t("add")), trouble);
+  const errorText = h("p", { class: "fault", role: "alert", hidden: true });
+  const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit" }, t("add")), errorText);
   /** @param {string} text */
   const showError = (text) => {
-    trouble.hidden = text === "";
-    setText(trouble, text);
+    errorText.hidden = text === "";
+    setText(errorText, text);
   };
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const word = name.value.trim();
     if (new RegExp(`^${WORD.source}$`, "u").exec(word) === null || /^[0-9]/.test(word))
       return showError(t("name.bad", { name: word }));
-    const { values, trouble: wrong } = parseNumbers(value.value || "0", 1, least, greatest);
-    if (values === null) return showError(t(wrong.key, wrong.values));
+    const { values, problem } = parseNumbers(value.value || "0", 1, least, greatest);
+    if (values === null) return showError(t(problem.key, problem.values));
     showError("");
     add(word, values[0]);
     name.value = value.value = "";

@@ -15,7 +15,7 @@ const seconds = (timeNs) => (Number(timeNs / 1_000_000n) / 1000).toFixed(3);
 /** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
 export function eventsTool({ t, session, emit, define, announce, redraw }) {
   const body = h("tbody");
-  const trouble = h("p", { class: "fault", role: "alert", hidden: true });
+  const errorText = h("p", { class: "fault", role: "alert", hidden: true });
   const log = h("div", { class: "log", role: "log", tabindex: "0", "aria-label": t("events.log") });
   /** @type {import("./index.js").View | null} */ let shown = null;
   let listed = "";
@@ -40,9 +40,9 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
       "aria-label": t("events.values", { name, size }),
     });
     const send = () => {
-      const { values, trouble: wrong } = parseNumbers(input.value, size);
-      trouble.hidden = values !== null;
-      if (values === null) return setText(trouble, `${name}: ${t(wrong.key, wrong.values)}`);
+      const { values, problem } = parseNumbers(input.value, size);
+      errorText.hidden = values !== null;
+      if (values === null) return setText(errorText, `${name}: ${t(problem.key, problem.values)}`);
       emit(name, values);
       announce(t("events.sent", { name }));
     };
@@ -90,7 +90,7 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
     "div",
     { class: "events" },
     h("table", {}, body),
-    trouble,
+    errorText,
     form,
     h(
       "div",
@@ -130,7 +130,7 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
         renew(body, [...rows.values()]);
       }
       for (const button of body.querySelectorAll("[data-send]")) {
-        lock(/** @type {HTMLButtonElement} */ (button), view.offline);
+        lock(/** @type {HTMLButtonElement} */ (button), view.disabledReason);
       }
       for (const star of body.querySelectorAll("[data-watch]")) {
         const watched = session.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));

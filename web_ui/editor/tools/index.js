@@ -14,7 +14,7 @@ import { variablesTool } from "./variables.js";
  * @property {import("../state.js").Variables | null} variables
  * @property {readonly import("../state.js").LoggedEvent[]} log
  * @property {import("../aesl.js").Aesl} file
- * @property {string} offline   why the robots cannot be reached; empty if they can
+ * @property {string} disabledReason   why robots cannot be controlled; empty if they can
  */
 /**
  * @typedef {object} ToolContext

@@ -9,7 +9,7 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
   const filter = h("input", { type: "search", placeholder: t("filter"), "aria-label": t("filter"), oninput: redraw });
   const hidden = h("input", { type: "checkbox", onchange: redraw });
   const body = h("tbody");
-  const trouble = h("p", { class: "fault", role: "alert", hidden: true });
+  const errorText = h("p", { class: "fault", role: "alert", hidden: true });
   const nothing = h("p", { class: "nothing" }, t("variables.none"));
   /** @type {Map<string, { star: HTMLElement, value: HTMLElement, row: HTMLElement }>} */ const rows = new Map();
   /** @type {import("./index.js").View | null} */ let shown = null;
@@ -37,20 +37,20 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
     const close = (/** @type {boolean} */ focus) => {
       if (!open) return;
       open = false; // removing the element blurs it, which calls this function again
-      trouble.hidden = true;
+      errorText.hidden = true;
       input.replaceWith(cell);
       if (focus) cell.focus();
     };
     const showError = (/** @type {string} */ text) => {
-      trouble.hidden = false;
-      setText(trouble, `${name}: ${text}`);
+      errorText.hidden = false;
+      setText(errorText, `${name}: ${text}`);
       input.setAttribute("aria-invalid", "true");
     };
     input.addEventListener("keydown", async ({ key }) => {
       if (key === "Escape") close(true);
       if (key !== "Enter") return;
-      const { values, trouble: wrong } = parseNumbers(input.value, before.length);
-      if (values === null) return showError(t(wrong.key, wrong.values));
+      const { values, problem } = parseNumbers(input.value, before.length);
+      if (values === null) return showError(t(problem.key, problem.values));
       const { ok, message } = await setVariable(name, values);
       if (!ok) return showError(message);
       close(true);
@@ -90,7 +90,7 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
     "div",
     { class: "variables" },
     h("div", { class: "row" }, filter, h("label", {}, hidden, " ", t("variables.hidden")), save),
-    trouble,
+    errorText,
     nothing,
     h("div", { class: "scroll" }, h("table", {}, body)),
   );

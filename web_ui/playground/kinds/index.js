@@ -1,47 +1,109 @@
-// The kinds of items in a playground. To add one: a file, and a line here.
+// The kinds of items in a playground: what is declared of them in Python, and how the page draws and places them.
+// A kind without a function here is drawn by its declaration (`generic.js`).
 
+import { BUILT_IN } from "../declarations.js";
 import { activation } from "./activation.js";
 import { box } from "./box.js";
 import { cylinder } from "./cylinder.js";
 import { door } from "./door.js";
+import { GenericShape } from "./generic.js";
 import { octagon } from "./octagon.js";
 import { picture } from "./picture.js";
 import { rectangle } from "./rectangle.js";
-import { robot } from "./robot.js";
 import { track } from "./track.js";
 import { uFigure } from "./u_figure.js";
 import { wall } from "./wall.js";
 
+/** @typedef {import("../declarations.js").DeclaredShape} DeclaredShape */
+/** @typedef {(values: Record<string, any>) => import("../primitives.js").Primitive[]} Draw  from all values */
+/**
+ * How an item is placed: by one point, by its two ends, or by any number of points.
+ *
+ * @typedef {"center" | "ends" | "path"} Placement
+ */
 /**
  * @typedef {object} Kind
  * @property {string} name
  * @property {"ground" | "paint" | "object" | "robot"} group
  * @property {import("../rules.js").Fields} fields   besides `kind`, and for shapes `name`
+ * @property {Record<string, any>} sample            values of a new item
+ * @property {Record<string, string>} labels         name of the kind by language; empty: the page's texts have it
+ * @property {Record<string, Record<string, string>>} fieldLabels   name of each field by language
  * @property {[string, string][]} points   keys of the coordinates that position it; the first pair is its center
- * @property {string} [path]        key of a list of points
- * @property {boolean} [relative]   whether the path is in the frame of the item
- * @property {number} [clicks]      number of points to click; default 1
- * @property {Record<string, any>} fresh   values of a new item
- * @property {(values: Record<string, any>) => import("../primitives.js").Primitive[]} primitives  from all values
+ * @property {string | undefined} path     key of a list of points
+ * @property {boolean} isRelative          whether the path is in the frame of the item
+ * @property {Placement} placement
+ * @property {Draw} draw                   its primitives
+ * @property {(values: Record<string, any>) => boolean} isExact   whether they are those of the simulator
  */
 
-/** Kinds of shapes. */
-export const SHAPES = /** @type {Kind[]} */ ([
-  rectangle,
-  octagon,
-  picture,
-  track,
-  box,
-  cylinder,
-  wall,
-  uFigure,
-  door,
-  activation,
-]);
-export const ROBOT = robot;
-const BY_NAME = new Map([...SHAPES, robot].map((kind) => [kind.name, kind]));
+/** @type {Record<string, Draw>} */
+const DRAWN = { activation, box, cylinder, door, octagon, picture, rectangle, track, u_figure: uFigure, wall };
+const ENDS = ["start_x_m", "start_y_m", "end_x_m", "end_y_m"];
 
-/** The kind of a name; undefined for one of a plug-in. @param {string} name */
+export const ROBOT = kindOf("robot", "robot", {
+  group: "object",
+  fields: BUILT_IN.robot,
+  sample: {},
+  primitives: [],
+  labels: {},
+  field_labels: {},
+});
+
+/** @type {Map<string, Kind>} */
+const SHAPES = new Map();
+registerShapes(BUILT_IN.shapes);
+
+/** Add kinds of shapes, or replace those of the same names. @param {Record<string, DeclaredShape>} declared */
+export function registerShapes(declared) {
+  for (const [name, shape] of Object.entries(declared)) {
+    if (name !== ROBOT.name) SHAPES.set(name, kindOf(name, shape.group, shape));
+  }
+}
+
+/** Kinds of shapes: those of the simulator first, then those of plug-ins. */
+export function shapeKinds() {
+  return [...SHAPES.values()];
+}
+
+/** The kind of a name; undefined for one of a plug-in that is not installed here. @param {string} name */
 export function kindNamed(name) {
-  return BY_NAME.get(name);
+  return name === ROBOT.name ? ROBOT : SHAPES.get(name);
+}
+
+/**
+ * The names of fields say how a shape is placed: `x_m`, `y_m` are its center, `start_…` and `end_…` its two ends, and a
+ * list of points is its path, relative to the center if there is one.
+ *
+ * @param {string} name
+ * @param {Kind["group"]} group
+ * @param {DeclaredShape} declared
+ * @returns {Kind}
+ */
+function kindOf(name, group, declared) {
+  const { fields, sample, labels, field_labels: fieldLabels } = declared;
+  const points = Object.keys(fields).flatMap((key) => {
+    const other = key.replace(/x_m$/, "y_m");
+    return key !== other && isCoordinate(fields[key]) && isCoordinate(fields[other])
+      ? [/** @type {[string, string]} */ ([key, other])]
+      : [];
+  });
+  const path = Object.keys(fields).find((key) => fields[key].type === "points");
+  const isRelative = points.length > 0;
+  const hasEnds = ENDS.every((key) => points.flat().includes(key));
+  /** @type {Placement} */ const placement = hasEnds ? "ends" : path !== undefined && !isRelative ? "path" : "center";
+  const kind = { name, group, fields, sample, labels, fieldLabels, points, path, isRelative, placement };
+  const draw = group === "robot" ? () => [] : DRAWN[name];
+  if (draw !== undefined) return { ...kind, draw, isExact: () => true };
+  const shape = new GenericShape(kind, declared.primitives);
+  return { ...kind, draw: (values) => shape.draw(values), isExact: (values) => shape.isSample(values) };
+}
+
+/**
+ * Whether a field is a coordinate: a length that may be negative.
+ *
+ * @param {import("../rules.js").Fields[string] | undefined} field
+ */
+function isCoordinate(field) {
+  return field?.type === "number" && field.unit === "m" && (field.low ?? 0) < 0;
 }

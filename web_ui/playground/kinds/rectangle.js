@@ -2,33 +2,24 @@
 
 import { placed, rectangle as corners } from "../geometry.js";
 import { boxSolid, poseOf } from "../primitives.js";
-import { needed, RULES } from "../rules.js";
-import { groundFields } from "./_walls.js";
 
-/** @type {import("./index.js").Kind} */
-export const rectangle = {
-  name: "rectangle",
-  group: "ground",
-  fields: groundFields({ size_x_m: needed(RULES.extent), size_y_m: needed(RULES.extent) }),
-  points: [["x_m", "y_m"]],
-  fresh: { size_x_m: 0.4, size_y_m: 0.3, color: "#ffffff" },
-  primitives(values) {
-    const { size_x_m: sizeX, size_y_m: sizeY, color, walls } = values;
-    const pose = poseOf(values);
-    /** @type {import("../primitives.js").Primitive[]} */
-    const found = [{ type: "floor", vertices: placed(pose, corners(sizeX, sizeY)), color }];
-    if (walls === null) return found;
-    const { thickness_m: thick, height_m: height } = walls;
-    const [x, y] = [sizeX / 2, sizeY / 2];
-    for (const [middle, wallX, wallY] of /** @type {const} */ ([
-      [[x, 0], thick, sizeY + thick],
-      [[0, y], sizeX + thick, thick],
-      [[-x, 0], thick, sizeY + thick],
-      [[0, -y], sizeX + thick, thick],
-    ])) {
-      const [[wx, wy]] = placed(pose, [middle]);
-      found.push(boxSolid({ x: wx, y: wy, yaw: pose.yaw }, wallX, wallY, height, walls.color ?? color));
-    }
-    return found;
-  },
-};
+/** @type {import("./index.js").Draw} */
+export function rectangle(values) {
+  const { size_x_m: sizeX, size_y_m: sizeY, color, walls } = values;
+  const pose = poseOf(values);
+  /** @type {import("../primitives.js").Primitive[]} */
+  const found = [{ type: "floor", vertices: placed(pose, corners(sizeX, sizeY)), color }];
+  if (walls === null) return found;
+  const { thickness_m: thick, height_m: height } = walls;
+  const [x, y] = [sizeX / 2, sizeY / 2];
+  for (const [middle, wallX, wallY] of /** @type {const} */ ([
+    [[x, 0], thick, sizeY + thick],
+    [[0, y], sizeX + thick, thick],
+    [[-x, 0], thick, sizeY + thick],
+    [[0, -y], sizeX + thick, thick],
+  ])) {
+    const [[wx, wy]] = placed(pose, [middle]);
+    found.push(boxSolid({ x: wx, y: wy, yaw: pose.yaw }, wallX, wallY, height, walls.color ?? color));
+  }
+  return found;
+}

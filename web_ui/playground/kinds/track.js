@@ -2,7 +2,7 @@
 // Computes the same stations as thymio_sim_ros/sim/shapes/track.py.
 
 import { distance, wrapped } from "../geometry.js";
-import { Fault, needed, optional, RULES } from "../rules.js";
+import { Fault } from "../rules.js";
 
 /** @typedef {import("../geometry.js").Point} Point */
 /** @typedef {[number, number, number]} Station  a point of the center line: x, y, direction */
@@ -10,41 +10,26 @@ import { Fault, needed, optional, RULES } from "../rules.js";
 const ARC_STEP = (5 * Math.PI) / 180;
 const SAME_PLACE_M = 1e-9;
 
-/** @type {import("./index.js").Kind} */
-export const track = {
-  name: "track",
-  group: "paint",
-  fields: {
-    points_m: needed(RULES.points),
-    width_m: needed(RULES.extent),
-    color: needed(RULES.shade),
-    closed: optional(RULES.flag, false),
-    corner_radius_m: optional(RULES.radius, 0),
-  },
-  points: [],
-  path: "points_m",
-  clicks: Infinity,
-  fresh: { width_m: 0.03, color: "#1a1a1a", corner_radius_m: 0 },
-  primitives(values) {
-    const { width_m: width, color } = values;
-    const stations = stationsOf(values);
-    /** @type {import("../primitives.js").Primitive[]} */ const found = [];
-    for (let at = 1; at < stations.length; at++) {
-      const [[ax, ay, a], [bx, by, b]] = [stations[at - 1], stations[at]];
-      if (distance([ax, ay], [bx, by]) < SAME_PLACE_M) continue;
-      const half = width / 2;
-      const [ux, uy, vx, vy] = [-Math.sin(a) * half, Math.cos(a) * half, -Math.sin(b) * half, Math.cos(b) * half];
-      const vertices = /** @type {Point[]} */ ([
-        [ax - ux, ay - uy],
-        [bx - vx, by - vy],
-        [bx + vx, by + vy],
-        [ax + ux, ay + uy],
-      ]);
-      found.push({ type: "paint", vertices, color });
-    }
-    return found;
-  },
-};
+/** @type {import("./index.js").Draw} */
+export function track(values) {
+  const { width_m: width, color } = values;
+  const stations = stationsOf(values);
+  /** @type {import("../primitives.js").Primitive[]} */ const found = [];
+  for (let at = 1; at < stations.length; at++) {
+    const [[ax, ay, a], [bx, by, b]] = [stations[at - 1], stations[at]];
+    if (distance([ax, ay], [bx, by]) < SAME_PLACE_M) continue;
+    const half = width / 2;
+    const [ux, uy, vx, vy] = [-Math.sin(a) * half, Math.cos(a) * half, -Math.sin(b) * half, Math.cos(b) * half];
+    const vertices = /** @type {Point[]} */ ([
+      [ax - ux, ay - uy],
+      [bx - vx, by - vy],
+      [bx + vx, by + vy],
+      [ax + ux, ay + uy],
+    ]);
+    found.push({ type: "paint", vertices, color });
+  }
+  return found;
+}
 
 /**
  * The center line. Throws a Fault if all points coincide or if there is no room for the arcs.

@@ -40,7 +40,7 @@ class Served:
     def __init__(self, sim):
         self.simulator = sim.simulator
         self._answers = {}
-        SimInterfaces(self, sim.simulator, TYPES)
+        SimInterfaces(self, sim.simulator.runner, sim.simulator.params, sim.simulator.parameter_callbacks, TYPES)
 
     def create_service(self, kind, name, answer):
         """What a node does."""
@@ -50,7 +50,7 @@ class Served:
         kind, answer = self._answers[f"~/{name}"]
         return answer(kind.Request(**fields), kind.Response())
 
-    def told(self, name, /, **fields):
+    def reported(self, name, /, **fields):
         """Code and reason of the answer."""
         result = self(name, **fields).result
         return result.result, result.error_message
@@ -111,38 +111,38 @@ def test_features_are_those_that_are_offered(room):
 
 def test_the_simulation_is_stopped_played_paused_and_stopped(room):
     assert room.state == STOPPED
-    assert room.told("set_simulation_state", state=target(PLAYING)) == (OK, "")
+    assert room.reported("set_simulation_state", state=target(PLAYING)) == (OK, "")
     assert room.state == PLAYING
-    assert room.told("set_simulation_state", state=target(PLAYING)) == (101, "the simulation is playing already")
-    room.simulator.advance(3)
-    assert room.told("set_simulation_state", state=target(PAUSED)) == (OK, "")
+    assert room.reported("set_simulation_state", state=target(PLAYING)) == (101, "the simulation is playing already")
+    room.simulator.runner.advance(3)
+    assert room.reported("set_simulation_state", state=target(PAUSED)) == (OK, "")
     assert room.state == PAUSED
-    assert room.told("set_simulation_state", state=target(STOPPED)) == (OK, "")
-    assert (room.state, room.simulator.world.now_ns) == (STOPPED, 0)
+    assert room.reported("set_simulation_state", state=target(STOPPED)) == (OK, "")
+    assert (room.state, room.simulator.runner.world.now_ns) == (STOPPED, 0)
 
 
-def test_what_cannot_follow_a_state_is_refused(room):
-    code, reason = room.told("set_simulation_state", state=target(PAUSED))
+def test_an_invalid_transition_is_rejected(room):
+    code, reason = room.reported("set_simulation_state", state=target(PAUSED))
     assert (code, reason) == (103, "the simulation is stopped, which is paused at time 0: step or play it")
-    assert room.told("set_simulation_state", state=target(3))[0] == UNSUPPORTED
+    assert room.reported("set_simulation_state", state=target(3))[0] == UNSUPPORTED
 
 
 def test_steps_are_done_while_the_world_is_paused(room):
-    assert room.told("step_simulation") == (OK, "")
-    assert room.told("step_simulation", steps=5) == (OK, "")
-    assert room.simulator.world.now_ns == 60_000_000
-    room.simulator.pause(False)
-    assert room.told("step_simulation") == (FAILED, "the simulation is running: pause it first")
-    room.simulator.pause(True)
-    assert room.told("step_simulation", steps=100_001)[0] == FAILED
-    assert room.simulator.world.now_ns == 60_000_000
+    assert room.reported("step_simulation") == (OK, "")
+    assert room.reported("step_simulation", steps=5) == (OK, "")
+    assert room.simulator.runner.world.now_ns == 60_000_000
+    room.simulator.runner.pause(False)
+    assert room.reported("step_simulation") == (FAILED, "the simulation is running: pause it first")
+    room.simulator.runner.pause(True)
+    assert room.reported("step_simulation", steps=100_001)[0] == FAILED
+    assert room.simulator.runner.world.now_ns == 60_000_000
 
 
 def test_a_reset_takes_spawned_robots_along(room):
     room("spawn_entity", name="anna", uri="thymio", initial_pose=place(-0.5, 0.0))
     room("step_simulation", steps=5)
-    assert room.told("reset_simulation", scope=1)[0] == UNSUPPORTED
-    assert room.told("reset_simulation") == (OK, "")
+    assert room.reported("reset_simulation", scope=1)[0] == UNSUPPORTED
+    assert room.reported("reset_simulation") == (OK, "")
     assert (room.state, named(room)) == (STOPPED, ["thymio", "crate"])
 
 
@@ -153,22 +153,25 @@ def test_entities_are_listed_by_name_and_category(room):
     assert named(room, "t", DYNAMIC_OBJECT) == ["crate"]
     filters = room._answers["~/get_entities"][0].Request().filters
     filters.filter = "("
-    assert room.told("get_entities", filters=filters)[0] == FAILED
+    assert room.reported("get_entities", filters=filters)[0] == FAILED
     filters.filter, filters.bounds.type = "", 3
-    assert room.told("get_entities", filters=filters)[0] == UNSUPPORTED
+    assert room.reported("get_entities", filters=filters)[0] == UNSUPPORTED
     filters.bounds.type, filters.tags.tags = 0, ["red"]
-    assert room.told("get_entities", filters=filters)[0] == UNSUPPORTED
+    assert room.reported("get_entities", filters=filters)[0] == UNSUPPORTED
 
 
 def test_an_entity_has_a_category(room):
     assert room("get_entity_info", entity="crate").info.category.category == DYNAMIC_OBJECT
-    code, reason = room.told("get_entity_info", entity="crat")
+    code, reason = room.reported("get_entity_info", entity="crat")
     assert (code, reason) == (NOT_FOUND, "found unknown name 'crat', expected 'crate' (one of thymio, crate)")
 
 
 def test_a_state_is_the_truth_in_the_world_s_frame(room):
-    assert room.told("set_entity_state", entity="thymio", state=state(0.2, -0.1, math.pi / 2, frame="map")) == (OK, "")
-    room.simulator.world.post("thymio", _forward())
+    assert room.reported("set_entity_state", entity="thymio", state=state(0.2, -0.1, math.pi / 2, frame="map")) == (
+        OK,
+        "",
+    )
+    room.simulator.runner.world.post("thymio", _forward())
     room("step_simulation", steps=2)
     found = room("get_entity_state", entity="thymio").state
     assert (found.header.frame_id, found.header.stamp.nanosec) == ("map", 20_000_000)
@@ -189,15 +192,15 @@ def _forward():
 @pytest.mark.parametrize(
     ("entity", "wanted", "code", "reason"),
     [
-        ("nobody", state(), NOT_FOUND, "found unknown name 'nobody'"),
-        ("crate", state(0.0, 0.5), 101, "'crate' cannot stand at 0.000, 0.500 m: 'post' is in its way"),
+        ("unknown", state(), NOT_FOUND, "found unknown name 'unknown'"),
+        ("crate", state(0.0, 0.5), 101, "'crate' cannot be placed at 0.000, 0.500 m: occupied by 'post'"),
         ("crate", state(math.nan), 101, "the pose has a value that is not finite"),
         ("crate", state(frame="odom"), UNSUPPORTED, "found frame 'odom', expected 'map'"),
         ("thymio", state(twist=Twist(linear=Vector3(x=1.0))), UNSUPPORTED, "found velocities"),
     ],
 )
-def test_a_state_that_cannot_be_is_refused(room, entity, wanted, code, reason):
-    found = room.told("set_entity_state", entity=entity, state=wanted)
+def test_an_invalid_state_is_rejected(room, entity, wanted, code, reason):
+    found = room.reported("set_entity_state", entity=entity, state=wanted)
     assert (found[0], found[1][: len(reason)]) == (code, reason)
 
 
@@ -205,12 +208,12 @@ def test_a_robot_is_spawned_and_deleted(room):
     (only,) = room("get_spawnables").spawnables
     answer = room("spawn_entity", name="anna", uri=only.uri, entity_namespace="/anna", initial_pose=place(-0.5, 0.2))
     assert (answer.result.result, answer.entity_name) == (OK, "anna")
-    assert room.simulator.names["anna"].topic("odom") == "anna/odom"
-    assert room.simulator.world.robots["anna"].pose.x_m == -0.5
-    assert room.told("delete_entity", entity="anna") == (OK, "")
+    assert room.simulator.endpoints.robots.names["anna"].topic("odom") == "anna/odom"
+    assert room.simulator.runner.world.robots["anna"].pose.x_m == -0.5
+    assert room.reported("delete_entity", entity="anna") == (OK, "")
     assert named(room) == ["thymio", "crate"]
-    assert room.told("delete_entity", entity="crate")[0] == FAILED
-    assert room.told("delete_entity", entity="anna")[0] == NOT_FOUND
+    assert room.reported("delete_entity", entity="crate")[0] == FAILED
+    assert room.reported("delete_entity", entity="anna")[0] == NOT_FOUND
 
 
 @pytest.mark.parametrize(
@@ -228,8 +231,8 @@ def test_a_robot_is_spawned_and_deleted(room):
         ({"name": "anna", "uri": "thymio", "initial_pose": place(0.0, 0.5, "base_link")}, UNSUPPORTED),
     ],
 )
-def test_a_robot_that_cannot_be_is_refused(room, request_, code):
-    found = room.told("spawn_entity", **({"initial_pose": place(-0.5, 0.0)} | request_))
+def test_an_invalid_robot_is_rejected(room, request_, code):
+    found = room.reported("spawn_entity", **({"initial_pose": place(-0.5, 0.0)} | request_))
     assert found[0] == code
     assert found[1]
     assert named(room) == ["thymio", "crate"]
@@ -253,7 +256,7 @@ def test_several_are_spawned_each_with_a_result(room):
 
 def test_worlds_are_listed_and_loaded(room):
     assert [world.name for world in room("get_available_worlds").worlds] == list(resources.playgrounds())
-    room.simulator.pause(False)
+    room.simulator.runner.pause(False)
     answer = room("load_world", uri="maze")
     assert (answer.result.result, answer.world.name, room.state) == (OK, "maze", STOPPED)
     assert room("load_world", resource_string=ROOM).world.name == "Room"
@@ -262,15 +265,15 @@ def test_worlds_are_listed_and_loaded(room):
     assert named(room) == ["thymio", "crate"]
 
 
-def test_a_world_that_cannot_be_is_refused_and_the_old_one_stays(room):
-    assert room.told("load_world")[0] == 102
-    code, reason = room.told("load_world", uri="nowhere")
+def test_an_invalid_world_is_rejected_and_the_old_one_stays(room):
+    assert room.reported("load_world")[0] == 102
+    code, reason = room.reported("load_world", uri="nowhere")
     assert code == 103
     assert reason.startswith("no playground 'nowhere'")
     assert room("get_current_world").world.name == "Room"
 
 
-def test_without_the_package_nothing_is_said(ros, simulation):
+def test_without_the_package_nothing_is_logged(ros, simulation):
     if not hasattr(TYPES.srv.StepSimulation, "Event"):
         assert simulation().simulator._interfaces is None
 
@@ -285,19 +288,19 @@ def test_with_the_package_the_services_and_the_action_are_called_over_ros(ros, s
     assert sim.world.now_ns == 10_000_000
     client = ActionClient(ros.node, SimulateSteps, "/simulator/simulate_steps")
     ros.until(client.server_is_ready)
-    told = []
-    sent = client.send_goal_async(SimulateSteps.Goal(steps=5), feedback_callback=told.append)
+    reported = []
+    sent = client.send_goal_async(SimulateSteps.Goal(steps=5), feedback_callback=reported.append)
     ros.until(sent.done)
     answer = sent.result().get_result_async()
     ros.until(answer.done)
     assert answer.result().result.result.result == OK
     assert sim.world.now_ns == 60_000_000
-    assert [one.feedback.remaining_steps for one in told] == [4, 3, 2, 1, 0]
+    assert [one.feedback.remaining_steps for one in reported] == [4, 3, 2, 1, 0]
     sent = client.send_goal_async(SimulateSteps.Goal(steps=10**9))
     ros.until(sent.done)
     answer = sent.result().get_result_async()
     ros.until(lambda: sim.world.now_ns > 100_000_000)
     sent.result().cancel_goal_async()
     ros.until(answer.done)
-    assert answer.result().result.result.error_message.startswith("cancelled after")
+    assert answer.result().result.result.error_message.startswith("canceled after")
     client.destroy()

@@ -75,7 +75,7 @@ def test_a_mass_makes_it_movable_in_proportion_to_the_robot() -> None:
 
 
 @pytest.mark.parametrize("height", ["", 'h="0"', 'h="0.01"'])
-def test_a_thing_without_a_height_stands_in_the_way_unseen(height: str) -> None:
+def test_an_object_without_a_height_stands_in_the_way_unseen(height: str) -> None:
     things = f'<wall x="70" y="30" l1="2" l2="20" {height} color="white"/>'
     things += f'<cylinder x="20" y="30" r="2" {height} color="white"/>'
     things += f'<door closedX="70" closedY="5" openedX="70" openedY="5" l1="2" l2="2" {height} color="white"/>'
@@ -166,7 +166,7 @@ def test_languages_are_read_as_people_write_them_and_others_are_told() -> None:
         "de-ch": "de_CH",
         "en-us": "en_US",
     }
-    assert found.notes == ["line 3: <description> left out: 'c' is no language code"]
+    assert found.notes == ["line 3: <description> skipped: 'c' is not a language code"]
     assert dict(reader.loads(text(WORLD + body + ROBOT), "mine").translations)["de-ch"].description == "de_CH"
 
 
@@ -186,14 +186,14 @@ def test_a_world_without_an_area_is_refused(size: str, found: str) -> None:
 @pytest.mark.parametrize(
     ("body", "note"),
     [
-        ('<robot type="e-puck" x="50" y="30"/>', "<robot> left out: a robot of type 'e-puck'"),
-        ('<robot x="50" y="30" port="33333"/>', "<robot>: port left out"),
-        ('<robot x="50" y="30" nodeId="2"/>', "<robot>: nodeId left out"),
-        ('<feeder x="5" y="5"/>', "<feeder> left out"),
-        ('<process command=":asebahttp"/>', "<process> left out"),
-        ('<camera x="5"/>', "<camera> left out"),
-        ("<teapot/>", "<teapot> left out: it is not known here"),
-        ('<cylinder x="20" y="30" r="2" h="5" color="mauve"/>', "no color 'mauve' is declared"),
+        ('<robot type="e-puck" x="50" y="30"/>', "<robot> skipped: robot type 'e-puck'"),
+        ('<robot x="50" y="30" port="33333"/>', "<robot>: port skipped"),
+        ('<robot x="50" y="30" nodeId="2"/>', "<robot>: nodeId skipped"),
+        ('<feeder x="5" y="5"/>', "<feeder> skipped"),
+        ('<process command=":asebahttp"/>', "<process> skipped"),
+        ('<camera x="5"/>', "<camera> skipped"),
+        ("<teapot/>", "<teapot> skipped: unknown element"),
+        ('<cylinder x="20" y="30" r="2" h="5" color="mauve"/>', "color 'mauve' is not declared"),
     ],
 )
 def test_what_cannot_be_expressed_is_told_with_its_line(body: str, note: str) -> None:
@@ -220,7 +220,7 @@ def test_metadata_is_passed_over_without_a_word() -> None:
         ('<robot x="1e999" y="0"/>', "line 3: <robot> x", "'1e999'"),
         ('<activation area="b" door="d"/>', "line 3: <activation>", "the area 'b'"),
         ('<area name="a"/><activation area="a" door="d"/>', "line 3: <activation>", "the door 'd'"),
-        (WORLD, "line 2", "2 <world>"),
+        (WORLD, "line 2", "2 <world> elements"),
     ],
 )
 def test_what_is_wrong_is_refused_with_its_line(body: str, key: str, found: str) -> None:
@@ -229,7 +229,7 @@ def test_what_is_wrong_is_refused_with_its_line(body: str, key: str, found: str)
 
 
 def test_a_playground_without_a_world_is_refused() -> None:
-    assert refused("", world="").found == "0 <world>"
+    assert refused("", world="").found == "0 <world> elements"
 
 
 def test_what_our_format_refuses_is_located_in_the_original() -> None:
@@ -245,7 +245,7 @@ def test_a_robot_that_starts_inside_something_is_set_free_with_a_notice() -> Non
     loaded = reader.loads(text(body), "mine.playground")
     (robot,) = loaded.robots
     assert loaded.notes == (
-        f"robots[0]: 'thymio_0' started inside 'block', it was set free at {robot.x_m:.3f}, {robot.y_m:.3f} m",
+        f"robots[0]: 'thymio_0' starts inside 'block', moved to {robot.x_m:.3f}, {robot.y_m:.3f} m",
     )
     assert 0.07 < math.dist((robot.x_m, robot.y_m), (0.5, 0.3)) < 0.14
     assert robot.yaw_rad == 0.0
@@ -264,7 +264,7 @@ def test_of_two_robots_in_one_place_the_second_is_moved() -> None:
     loaded = reader.loads(text(WORLD + ROBOT + ROBOT), "mine")
     first, second = loaded.robots
     assert (first.x_m, first.y_m) == (0.5, 0.3)
-    assert "'thymio_1' started inside 'thymio_0'" in loaded.notes[0]
+    assert "'thymio_1' starts inside 'thymio_0'" in loaded.notes[0]
     assert math.dist((first.x_m, first.y_m), (second.x_m, second.y_m)) > 0.1
 
 
@@ -294,7 +294,7 @@ def test_declared_entities_are_refused_as_before(declared: str) -> None:
     content = text(WORLD + "<description>&ndash;&a;</description>").replace(
         "<!DOCTYPE aseba-playground>", f"<!DOCTYPE aseba-playground [{declared}]>"
     )
-    with pytest.raises(PlaygroundError, match=r"no entities|XML|stands alone"):
+    with pytest.raises(PlaygroundError, match=r"no entity declarations|XML|self-contained"):
         reader.loads(content, "mine.playground")
 
 
@@ -323,9 +323,9 @@ def test_a_packed_svg_is_the_ground(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("data", "found"),
     [
-        (b"no gzip", "cannot be unpacked"),
-        (gzip.compress(SVG)[:-12], "cut off"),
-        (gzip.compress(b" " * 300_000_000), "a picture of at most"),
+        (b"no gzip", "cannot be decompressed"),
+        (gzip.compress(SVG)[:-12], "truncated"),
+        (gzip.compress(b" " * 300_000_000), "an image of at most"),
     ],
 )
 def test_a_broken_or_endless_packed_svg_is_refused(data: bytes, found: str, tmp_path: Path) -> None:
@@ -350,7 +350,7 @@ def test_a_converted_world_is_an_ordinary_one() -> None:
     assert (loaded.solids, loaded.floors, loaded.robots) == (again.solids, again.floors, again.robots)
 
 
-def test_movable_things_and_doors_come_to_life() -> None:
+def test_movable_objects_and_doors_come_to_life() -> None:
     body = (
         '<wall x="20" y="20" l1="6" l2="6" h="5" mass="20" color="orange"/>'
         '<cylinder x="40" y="20" r="3" h="5" mass="20" color="orange"/>'

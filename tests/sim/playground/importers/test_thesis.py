@@ -122,7 +122,7 @@ def test_a_cone_becomes_a_cylinder_of_its_larger_radius() -> None:
     cone = {"topRadius": 1, "botRadius": 2, "height": 6, "color": RED, **at(0, 30)}
     found = converted(cylinders=[{"name": "c", "props": cone}])
     assert found.shapes[0]["radius_m"] == 0.04
-    assert found.notes == ["cylinders[0]: a cone became a cylinder of its larger radius"]
+    assert found.notes == ["cylinders[0]: cone replaced by a cylinder of its larger radius"]
 
 
 def test_a_u_without_a_position_is_at_the_origin() -> None:
@@ -146,7 +146,7 @@ def test_robots_may_be_several_and_may_be_turned() -> None:
 def test_without_a_robot_one_starts_at_the_origin() -> None:
     found = loaded({key: value for key, value in BASE.items() if key != "thymios"})
     assert [(robot.name, robot.pose.x_m) for robot in found.robots] == [("thymio", 0.0)]
-    assert found.notes == ("thymios: none given, so one robot starts at the origin",)
+    assert found.notes == ("thymios: none found, one robot starts at the origin",)
 
 
 def test_the_empty_playground_has_a_robot_and_no_floor() -> None:
@@ -176,8 +176,8 @@ def test_any_css_color_is_read(color: Any, shade: str) -> None:
 def test_unknown_keys_are_told_and_passed_over() -> None:
     found = converted(planes=[{"props": {"width": 9, "height": 9, "color": RED, "shine": 1}}], weather="rain")
     assert found.notes == [
-        "planes[0].shine left out: it is not known here",
-        "weather left out: it is not known here",
+        "planes[0].shine skipped: unknown key",
+        "weather skipped: unknown key",
     ]
 
 

@@ -19,7 +19,7 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     RefusedError,
     resource,
 )
-from thymio_sim_ros.ros.simulator.world_services import SimulatorControl
+from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
@@ -37,10 +37,11 @@ SPAWN_POSE_INVALID, STATE_POSE_INVALID, SOME_FAILED = 109, 101, 150
 
 
 class Entities:
-    """The services on entities; `messages` is the module `simulation_interfaces.msg`."""
+    """The services on entities."""
 
-    def __init__(self, simulator: SimulatorControl, messages: Any) -> None:
-        self._simulator, self._messages = simulator, messages
+    def __init__(self, runner: WorldRunner, map_frame: str, messages: Any) -> None:
+        """`messages` is the module `simulation_interfaces.msg`."""
+        self._runner, self._map_frame, self._messages = runner, map_frame, messages
 
     @property
     def acts(self) -> Mapping[str, Act]:
@@ -59,7 +60,7 @@ class Entities:
 
     def _categories(self) -> dict[str, int]:
         """Return the category of all entities by name: robots, then objects and doors."""
-        world = self._simulator.world
+        world = self._runner.world
         return dict.fromkeys(world.robots, ROBOT) | {thing.name: DYNAMIC_OBJECT for thing in world.objects}
 
     def _known(self, name: str) -> int:
@@ -100,8 +101,8 @@ class Entities:
 
     def _state(self, name: str) -> Any:
         """Return the true state in the world frame; velocities of objects are not available."""
-        world, state = self._simulator.world, self._messages.EntityState()
-        state.header.stamp, state.header.frame_id = stamp(world.now_ns), self._simulator.map_frame
+        world, state = self._runner.world, self._messages.EntityState()
+        state.header.stamp, state.header.frame_id = stamp(world.now_ns), self._map_frame
         robot = world.robots.get(name)
         if robot is None:
             pose = next(thing.pose for thing in world.objects if thing.name == name)
@@ -117,15 +118,15 @@ class Entities:
 
     def _place(self, header: Any, pose: Any, code: int) -> tuple[float, float, float]:
         """Return x, y and yaw of a pose in the world frame. Raises RefusedError, with `code` for non-finite values."""
-        if header.frame_id not in (*WORLD_FRAMES, self._simulator.map_frame):
-            raise RefusedError(UNSUPPORTED, f"found frame '{header.frame_id}', expected '{self._simulator.map_frame}'")
+        if header.frame_id not in (*WORLD_FRAMES, self._map_frame):
+            raise RefusedError(UNSUPPORTED, f"found frame '{header.frame_id}', expected '{self._map_frame}'")
         place = (pose.position.x, pose.position.y, convert_readings.yaw_of(pose.orientation))
         if not all(map(math.isfinite, place)):
             raise RefusedError(code, "the pose has a value that is not finite")
         return place
 
     def _set_state(self, request: Any, response: Any) -> None:
-        name, state, world = request.entity, request.state, self._simulator.world
+        name, state, world = request.entity, request.state, self._runner.world
         category = self._known(name)
         speeds = [state.twist.linear, state.twist.angular, state.acceleration.linear, state.acceleration.angular]
         if any(value for vector in speeds for value in (vector.x, vector.y, vector.z)):
@@ -162,7 +163,7 @@ class Entities:
         x, y, yaw = self._place(header, pose, SPAWN_POSE_INVALID)
         try:
             start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
-            self._simulator.spawn(start)
+            self._runner.spawn(start)
         except FieldError as error:
             raise RefusedError(NAME_INVALID if error.key == "name" else SPAWN_POSE_INVALID, str(error)) from error
         except PlacementError as error:
@@ -170,7 +171,7 @@ class Entities:
         except ValueError as error:
             raise RefusedError(NAME_NOT_UNIQUE, str(error)) from error
         response.entity_name = name
-        self._simulator.update_robots()
+        self._runner.update_robots()
 
     def _name(self, wanted: str, allow_renaming: bool) -> str:
         """Return the requested name or, if renaming is allowed and it is taken, the first free one with a number."""
@@ -198,5 +199,5 @@ class Entities:
     def _delete(self, request: Any, response: Any) -> None:
         if self._known(request.entity) != ROBOT:
             raise RefusedError(FAILED, f"'{request.entity}' belongs to the playground: only robots can be deleted")
-        self._simulator.world.remove(request.entity)
-        self._simulator.update_robots()
+        self._runner.world.remove(request.entity)
+        self._runner.update_robots()

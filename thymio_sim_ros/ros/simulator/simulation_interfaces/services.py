@@ -12,6 +12,8 @@ from typing import Any
 from rclpy.node import Node
 
 from thymio_sim_ros import resources
+from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks
+from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     FAILED,
     UNSUPPORTED,
@@ -22,7 +24,8 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     resource,
 )
 from thymio_sim_ros.ros.simulator.simulation_interfaces.entities import SPAWNABLE, Entities
-from thymio_sim_ros.ros.simulator.world_services import WORLD_STOPPED, SimulatorControl, at_current_tick
+from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
+from thymio_sim_ros.ros.simulator.world_services import WORLD_STOPPED, at_current_tick
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
@@ -84,17 +87,26 @@ NO_RESOURCE, PARSE_ERROR = 102, 103
 
 
 class SimInterfaces:
-    """The services; `interfaces` has the modules `msg`, `srv` and optionally `action` of the package."""
+    """The services of one node."""
 
-    def __init__(self, node: Node, simulator: SimulatorControl, interfaces: Any) -> None:
-        self._node, self._simulator, self._messages = node, simulator, interfaces.msg
-        acts = {**self._acts, **Entities(simulator, interfaces.msg).acts}
+    def __init__(
+        self,
+        node: Node,
+        runner: WorldRunner,
+        params: CurrentParams,
+        parameters: ParameterCallbacks,
+        interfaces: Any,
+    ) -> None:
+        """`interfaces` has the modules `msg`, `srv` and optionally `action` of the package."""
+        self._runner, self._params, self._parameters = runner, params, parameters
+        self._messages = interfaces.msg
+        acts = {**self._acts, **Entities(runner, params.values.map_frame, interfaces.msg).acts}
         offers = [offer for offer in OFFERS if hasattr(interfaces.srv, offer.type)]
         self._features = [feature for offer in offers for feature in offer.features]
         for offer in offers:
             answer = self._get_features if offer.name == "get_simulator_features" else answering(acts[offer.name])
             kind = getattr(interfaces.srv, offer.type)
-            node.create_service(kind, f"~/{offer.name}", at_current_tick(simulator, answer))
+            node.create_service(kind, f"~/{offer.name}", at_current_tick(runner, answer))
         self._close: Callable[[], None] = lambda: None
         actions = getattr(interfaces, "action", None)
         if actions is not None:
@@ -103,7 +115,7 @@ class SimInterfaces:
             )  # imports the action support of rclpy
 
             self._features += STEPS.features
-            self._close = StepsAction(node, simulator, actions.SimulateSteps).close
+            self._close = StepsAction(node, runner, actions.SimulateSteps).close
 
     def close(self) -> None:
         """Close the action server, which the node does not destroy itself."""
@@ -132,9 +144,9 @@ class SimInterfaces:
 
     @property
     def _state(self) -> int:
-        if not self._simulator.paused:
+        if not self._runner.paused:
             return PLAYING
-        return PAUSED if self._simulator.world.now_ns else STOPPED
+        return PAUSED if self._runner.world.now_ns else STOPPED
 
     def _get_state(self, _request: Any, response: Any) -> None:
         response.state.state = self._state
@@ -149,18 +161,18 @@ class SimInterfaces:
             raise RefusedError(
                 INCORRECT_TRANSITION, "the simulation is stopped, which is paused at time 0: step or play it"
             )
-        self._simulator.pause(wanted != PLAYING)
+        self._runner.pause(wanted != PLAYING)
         if wanted == STOPPED:
-            self._simulator.reset()
+            self._runner.reset()
 
     def _step(self, request: Any, _response: Any) -> None:
-        if not self._simulator.paused:
+        if not self._runner.paused:
             raise RefusedError(FAILED, "the simulation is running: pause it first")
         if request.steps > MAX_STEPS:
             raise RefusedError(
                 FAILED, f"found {request.steps} steps, expected at most {MAX_STEPS}; use the action for more"
             )
-        if not self._simulator.step(request.steps):
+        if not self._runner.step(request.steps):
             raise RefusedError(FAILED, WORLD_STOPPED)
 
     def _reset(self, request: Any, _response: Any) -> None:
@@ -168,7 +180,7 @@ class SimInterfaces:
             raise RefusedError(
                 UNSUPPORTED, f"found scope {request.scope}, expected 0 or 255: time, state and robots together"
             )
-        self._simulator.reset()
+        self._runner.reset()
 
     # --- worlds ---
 
@@ -193,19 +205,21 @@ class SimInterfaces:
         uri, text = resource(request, "world_resource")
         if not uri and not text:
             raise RefusedError(NO_RESOURCE, "found no resource, expected the name, path or text of a playground")
-        reason = self._simulator.load(uri or text)
+        reason = self._parameters.load_playground(uri or text)
         if reason:
             raise RefusedError(PARSE_ERROR, reason)
-        self._simulator.pause(True)
+        self._runner.pause(True)
         self._get_world(request, response)
 
     def _get_world(self, _request: Any, response: Any) -> None:
-        name, value = self._simulator.playground_name, self._simulator.playground
+        name, value = self._runner.prepared.name, self._params.values.playground
         is_name = "\n" not in value and not value.lstrip().startswith(("{", "<"))
         response.world = self._world(name, value if is_name else "", "" if is_name else value)
 
 
-def offered(node: Node, simulator: SimulatorControl) -> SimInterfaces | None:
+def offered(
+    node: Node, runner: WorldRunner, params: CurrentParams, parameters: ParameterCallbacks
+) -> SimInterfaces | None:
     """Create the services if the package is installed; a package that cannot be imported is logged."""
     try:
         import simulation_interfaces.action
@@ -218,4 +232,4 @@ def offered(node: Node, simulator: SimulatorControl) -> SimInterfaces | None:
     except ImportError as error:
         node.get_logger().warning(f"{PACKAGE} cannot be used: {error}")
         return None
-    return SimInterfaces(node, simulator, simulation_interfaces)
+    return SimInterfaces(node, runner, params, parameters, simulation_interfaces)

@@ -9,7 +9,8 @@ from rclpy.action.server import ActionServer, CancelResponse
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import FAILED, OK
-from thymio_sim_ros.ros.simulator.world_services import WORLD_STOPPED, SimulatorControl
+from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
+from thymio_sim_ros.ros.simulator.world_services import WORLD_STOPPED
 
 __all__ = ["StepsAction"]
 
@@ -17,8 +18,8 @@ __all__ = ["StepsAction"]
 class StepsAction:
     """The action server; `kind` is `simulation_interfaces.action.SimulateSteps`."""
 
-    def __init__(self, node: Node, simulator: SimulatorControl, kind: Any) -> None:
-        self._simulator, self._kind = simulator, kind
+    def __init__(self, node: Node, runner: WorldRunner, kind: Any) -> None:
+        self._runner, self._kind = runner, kind
         self._server = ActionServer(
             node, kind, "~/simulate_steps", self._execute, cancel_callback=lambda _goal: CancelResponse.ACCEPT
         )
@@ -33,10 +34,10 @@ class StepsAction:
             if goal.is_cancel_requested:
                 goal.canceled()
                 return self._failed(result, f"canceled after {done} of {steps} steps")
-            if not self._simulator.paused:
+            if not self._runner.paused:
                 goal.abort()
                 return self._failed(result, f"the simulation is running after {done} of {steps} steps: pause it first")
-            if not self._simulator.step(1):
+            if not self._runner.step(1):
                 goal.abort()
                 return self._failed(result, f"{WORLD_STOPPED}, after {done} of {steps} steps")
             goal.publish_feedback(self._kind.Feedback(completed_steps=done + 1, remaining_steps=steps - done - 1))

@@ -1,4 +1,4 @@
-"""Playgrounds of other simulators, as data of our format (docs/spec/playground-formats.md).
+"""Converters of playgrounds of other simulators (docs/spec/playground-formats.md).
 
 A converter takes what was parsed and gives a `Conversion`; `sim/playground/format_detection.py` chooses it,
 `sim/playground/reader.py` checks the result as if a person had written it, and names the place in the original when
@@ -27,17 +27,17 @@ class Conversion:
     """Key of an item here (such as "shapes[3]") → its place in the original."""
 
     def add_shape(self, place: str, members: dict[str, Any]) -> None:
-        """One more shape; members whose value is None are left out."""
+        """Add a shape, found at `place` in the original; members whose value is None are omitted."""
         self.places[f"shapes[{len(self.shapes)}]"] = place
         self.shapes.append({key: value for key, value in members.items() if value is not None})
 
     def add_robot(self, place: str, members: dict[str, Any]) -> None:
-        """One more robot."""
+        """Add a robot, found at `place` in the original."""
         self.places[f"robots[{len(self.robots)}]"] = place
         self.robots.append(members)
 
     def data(self) -> dict[str, Any]:
-        """The playground as our JSON has it."""
+        """Return the playground as data of a JSON file."""
         return {
             "format": 1,
             "title": self.title,

@@ -37,19 +37,19 @@ _SILENT = {"author", "thanks", "externalLink", "color", "area", "description", "
 _NOT_EXPRESSED = {
     "camera": "the view is chosen in the page",
     "feeder": "energy feeders are for e-pucks only",
-    "process": "no program is started beside the simulation",
+    "process": "no other program is started with the simulation",
 }
 
 
 def convert(root: Element, name: str) -> Conversion:
-    """The playground below <aseba-playground>; FieldError names the line of what is wrong."""
+    """Convert the playground below <aseba-playground>. Raises FieldError with the line of an error."""
     if root.tag != ROOT:
         raise FieldError(f"line {root.line}", f"<{root.tag}>", f"<{ROOT}>")
     return _Reader(root, name).read()
 
 
 class _Reader:
-    """One conversion."""
+    """Converts one playground."""
 
     def __init__(self, root: Element, name: str) -> None:
         self._root = root
@@ -86,17 +86,17 @@ class _Reader:
                 reader(element)
         for element in self._root.children:
             if element.tag not in readers and element.tag not in _SILENT:
-                self._note(element, _NOT_EXPRESSED.get(element.tag, "it is not known here"))
+                self._note(element, _NOT_EXPRESSED.get(element.tag, "unknown element"))
         self._out.notes = [text for _, text in sorted(self._remarks, key=lambda remark: remark[0])]
         return self._out
 
     def _descriptions(self) -> dict[str, str]:
-        """Language code → description in one line; one without a language is English, `de_CH` is `de-ch`."""
+        """Return descriptions by language code, each in one line; the default is English, `de_CH` becomes `de-ch`."""
         found: dict[str, str] = {}
         for element in self._elements("description"):
             language = (element.attributes.get("lang", "").strip() or "en").lower().replace("_", "-")
             if not re.fullmatch(LANGUAGE, language):
-                self._note(element, f"'{language}' is no language code")
+                self._note(element, f"'{language}' is not a language code")
                 continue
             text = "".join(part.text for part in element.walk())
             found.setdefault(language, " ".join(text.split())[:2000])
@@ -109,12 +109,12 @@ class _Reader:
         self._remarks.append((element.line, f"{_place(element)}{text}"))
 
     def _note(self, element: Element, why: str) -> None:
-        self._remark(element, f" left out: {why}")
+        self._remark(element, f" skipped: {why}")
 
     def _world(self) -> None:
         worlds = list(self._elements("world"))
         if len(worlds) != 1:
-            raise FieldError(f"line {self._root.line}", f"{len(worlds)} <world>", "one <world>")
+            raise FieldError(f"line {self._root.line}", f"{len(worlds)} <world> elements", "exactly one")
         (world,) = worlds
         width, height = _length(world, "w"), _length(world, "h")
         if min(width, height) <= 0.0:
@@ -148,7 +148,7 @@ class _Reader:
                 },
             )
         if world.attributes.get("energyScoringSystemEnabled", "false").lower() in ("true", "1"):
-            self._remark(world, ": the energy score is left out, it is for e-pucks only")
+            self._remark(world, ": energy score skipped, as it is for e-pucks only")
 
     def _wall(self, element: Element) -> None:
         self._out.add_shape(
@@ -205,9 +205,13 @@ class _Reader:
     def _activation(self, element: Element) -> None:
         area, door = element.attributes.get("area", ""), element.attributes.get("door", "")
         if area not in self._areas:
-            raise FieldError(_place(element), f"the area '{area}'", f"one of {', '.join(self._areas) or 'none'}")
+            raise FieldError(
+                _place(element), f"the area '{area}'", f"a declared area ({', '.join(self._areas) or 'there is none'})"
+            )
         if door not in self._doors:
-            raise FieldError(_place(element), f"the door '{door}'", f"one of {', '.join(self._doors) or 'none'}")
+            raise FieldError(
+                _place(element), f"the door '{door}'", f"a declared door ({', '.join(self._doors) or 'there is none'})"
+            )
         self._out.add_shape(
             _place(element),
             {
@@ -225,7 +229,7 @@ class _Reader:
     def _robot(self, element: Element) -> None:
         kind = element.attributes.get("type", "thymio2")
         if kind != "thymio2":
-            self._note(element, f"a robot of type '{kind}', only Thymios are simulated")
+            self._note(element, f"robot type '{kind}', only the Thymio II is simulated")
             return
         index = len(self._out.robots)
         self._out.add_robot(
@@ -239,12 +243,12 @@ class _Reader:
         )
         for attribute in ("port", "nodeId"):
             if attribute in element.attributes:
-                self._remark(element, f": {attribute} left out, robots are found by their names")
+                self._remark(element, f": {attribute} skipped, as robots are identified by name")
 
     def _color_of(self, element: Element) -> str:
         name = element.attributes.get("color", "")
         if name not in self._colors:
-            self._remark(element, f": no color '{name}' is declared, so it is gray")
+            self._remark(element, f": color '{name}' is not declared, gray is used")
         return self._colors.get(name, DEFAULT_COLOR)
 
 
@@ -258,7 +262,7 @@ def _color(element: Element) -> str:
 
 
 def _mass_kg(element: Element) -> float | None:
-    """Of a thing that can be moved; None for one that cannot."""
+    """Return the mass of a movable object; None for a fixed one."""
     mass = _number(element, "mass", default=-1.0)
     return None if mass < 0 else max(LEAST_MASS_KG, min(MOST_MASS_KG, rounded(mass * KG_PER_MASS)))
 
@@ -269,7 +273,7 @@ def _height(element: Element) -> float:
 
 
 def _length(element: Element, attribute: str) -> float:
-    """Centimeters as meters."""
+    """Return an attribute in centimeters as meters."""
     return rounded(_number(element, attribute) / 100)
 
 

@@ -1,4 +1,4 @@
-"""Names of other simulators as ROS names, each once; lengths as numbers without noise in the last digits."""
+"""Names of other simulators as unique ROS names; numbers without noise in the last digits."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _LONGEST = 50
 
 
 class Names:
-    """Gives out names: letters, digits, single underscores, a letter first, none twice."""
+    """Makes unique names of letters, digits and single underscores, with a letter first."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
 
     def take(self, wanted: str, otherwise: str) -> str:
-        """The name nearest to a wanted one, or to `otherwise` if nothing of it can be kept."""
+        """Return an unused name like `wanted`, or like `otherwise` if nothing of it can be kept."""
         plain = unicodedata.normalize("NFKD", wanted).encode("ascii", "ignore").decode()
         words = re.findall(r"[A-Za-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", plain))
         name = "_".join(words).lower()[:_LONGEST].strip("_")
@@ -32,10 +32,10 @@ class Names:
 
 
 def rounded(value: float) -> float:
-    """Meters or radians to a nanometre: 5 cm become 0.05, not 0.05000000000000001."""
+    """Return meters or radians rounded to 1e-9: 5 cm become 0.05, not 0.05000000000000001."""
     return round(value, 9) + 0.0
 
 
 def turned(angle_rad: float) -> float:
-    """The same direction from -π to π."""
+    """Return the same direction in [-π, π]."""
     return rounded(math.remainder(angle_rad, math.tau))

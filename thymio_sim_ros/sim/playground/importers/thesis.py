@@ -1,4 +1,4 @@
-"""JSON playgrounds of the web simulation of the bachelor thesis, as data of our format.
+"""Converter of JSON playgrounds of the web simulation of the bachelor thesis.
 
 Source: docs/spec/playground-formats.md section 2.
 
@@ -24,11 +24,11 @@ WALLS = {"height_m": 6 * UNIT_M, "thickness_m": UNIT_M}
 TRACK_WIDTH_M = UNIT_M
 
 KEYS = ("planes", "octagons", "boxes", "cylinders", "uShapes", "tracks", "thymios")
-"""What tells such a file from others, besides "playground", its title."""
+"""Keys that only such files have, besides "playground", the title."""
 
 
 def convert(data: Mapping[str, object], name: str) -> Conversion:
-    """The playground; FieldError names the key of what is wrong."""
+    """Convert the playground. Raises FieldError with the key of an error."""
     title = data.get("playground", name)
     if not isinstance(title, str):
         raise FieldError("playground", describe(title), "a title")
@@ -49,7 +49,7 @@ class _Item:
         self._known = {"props", "name"}
 
     def number(self, name: str, default: float | None = None) -> float:
-        """A finite number; with a default it may be missing."""
+        """Return a member that is a finite number; it may be missing if there is a default. Raises FieldError."""
         self._known.add(name)
         value = self._members.get(name, default)
         if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e9:
@@ -57,26 +57,26 @@ class _Item:
         return float(value)
 
     def length(self, name: str, default: float | None = None) -> float:
-        """Units as meters."""
+        """Return a member in units as meters. Raises FieldError."""
         return rounded(self.number(name, default) * UNIT_M)
 
     def place(self, *, otherwise: float | None = None) -> dict[str, float]:
-        """Its position in our frame."""
+        """Return its position in the world's frame in m. Raises FieldError."""
         x, z = self.number("positionX", otherwise), self.number("positionZ", otherwise)
         return {"x_m": rounded(x * UNIT_M), "y_m": rounded(-z * UNIT_M)}
 
     def get(self, name: str) -> object:
-        """Any member, or None."""
+        """Return any member, or None."""
         self._known.add(name)
         return self._members.get(name)
 
     def unknown(self) -> list[str]:
-        """Keys that nobody asked for."""
+        """Return the keys that were not read."""
         return [str(name) for name in self._members if name not in self._known]
 
 
 class _Reader:
-    """One conversion."""
+    """Converts one playground."""
 
     def __init__(self, data: Mapping[str, object], title: str) -> None:
         self._data = data
@@ -102,7 +102,7 @@ class _Reader:
         self._robots()
         for key in self._data:
             if key not in (*KEYS, "playground"):
-                self._out.notes.append(f"{key} left out: it is not known here")
+                self._out.notes.append(f"{key} skipped: unknown key")
         return self._out
 
     def _items(self, key: str) -> list[_Item]:
@@ -114,7 +114,7 @@ class _Reader:
         return [_Item(item, f"{key}[{index}]") for index, item in enumerate(value)]
 
     def _note_unknown(self, item: _Item) -> None:
-        self._out.notes.extend(f"{item.key}.{name} left out: it is not known here" for name in item.unknown())
+        self._out.notes.extend(f"{item.key}.{name} skipped: unknown key" for name in item.unknown())
 
     def _plane(self, item: _Item) -> dict[str, Any]:
         size = {"size_x_m": item.length("width"), "size_y_m": item.length("height")}
@@ -140,7 +140,7 @@ class _Reader:
     def _cylinder(self, item: _Item) -> dict[str, Any]:
         top, bottom = item.length("topRadius"), item.length("botRadius")
         if top != bottom:
-            self._out.notes.append(f"{item.key}: a cone became a cylinder of its larger radius")
+            self._out.notes.append(f"{item.key}: cone replaced by a cylinder of its larger radius")
         size = {"radius_m": max(top, bottom), "height_m": item.length("height")}
         return {"kind": "cylinder", **item.place(), **size, "color": _color(item)}
 
@@ -157,7 +157,7 @@ class _Reader:
             self._out.add_robot(item.key, {"name": name, **item.place(otherwise=0.0), "yaw_rad": yaw_rad})
             self._note_unknown(item)
         if not items:
-            self._out.notes.append("thymios: none given, so one robot starts at the origin")
+            self._out.notes.append("thymios: none found, one robot starts at the origin")
             name = self._names.take("thymio", "thymio")
             self._out.add_robot("thymios", {"name": name, "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0})
 

@@ -1,0 +1,95 @@
+"""A client of the bridge for benchmarks: frames of the protocol, and a blocking connection."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import socket
+import struct
+import time
+from collections.abc import Callable
+
+from foxglove_throughput import connected, frame_at
+
+ANSWER_S = 20.0
+START_S = 60.0
+TEXT, BINARY, PING, PONG = 0x81, 0x82, 0x89, 0x8A
+
+
+def frame(kind: int, body: bytes) -> bytes:
+    """Return a client's frame, masked with zeros."""
+    size = len(body)
+    if size < 126:
+        return bytes([kind, 0x80 | size, 0, 0, 0, 0]) + body
+    if size < 1 << 16:
+        return struct.pack("!BBH", kind, 0xFE, size) + bytes(4) + body
+    return struct.pack("!BBQ", kind, 0xFF, size) + bytes(4) + body
+
+
+def said(**message: object) -> bytes:
+    """Return a text frame of the protocol."""
+    return frame(TEXT, json.dumps(message).encode())
+
+
+class Peer:
+    """A blocking connection with the channels, services and parameters by name."""
+
+    def __init__(self, port: int) -> None:
+        self.socket = connected(port)
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._data = b""
+        self.channels: dict[str, int] = {}
+        self.services: dict[str, int] = {}
+        self.parameters: dict[str, object] = {}
+        self.calls = 0
+
+    def next(self, timeout_s: float) -> bytes:
+        """Return the contents of the next frame. Raises TimeoutError, or ConnectionError if the connection ended."""
+        deadline = time.monotonic() + timeout_s
+        while (found := frame_at(self._data, 0)) is None:
+            left_s = deadline - time.monotonic()
+            if left_s <= 0:
+                raise TimeoutError
+            self.socket.settimeout(left_s)
+            more = self.socket.recv(1 << 20)
+            if not more:
+                raise ConnectionError("the server closed the connection")
+            self._data += more
+        begin, end = found
+        body, self._data = self._data[begin:end], self._data[end:]
+        if body.startswith(b"{"):
+            self._note(json.loads(body))
+        return body
+
+    def _note(self, message: dict[str, list[dict[str, object]]]) -> None:
+        for channel in message.get("channels", ()):
+            self.channels[str(channel["topic"])] = int(str(channel["id"]))
+        for service in message.get("services", ()):
+            self.services[str(service["name"])] = int(str(service["id"]))
+        for parameter in message.get("parameters", ()):
+            self.parameters[str(parameter["name"])] = parameter.get("value")
+
+    def until(self, condition: Callable[[], bool], what: str) -> None:
+        """Read until the condition is true. Raises AssertionError after `START_S`."""
+        deadline = time.monotonic() + START_S
+        while not condition():
+            assert time.monotonic() < deadline, f"no {what}"
+            with contextlib.suppress(TimeoutError):
+                self.next(0.1)
+
+    def call(self, name: str, payload: bytes) -> float:
+        """Call a service and return the seconds until its answer. Raises TimeoutError after `ANSWER_S`."""
+        self.calls += 1
+        began = time.monotonic()
+        self.socket.settimeout(ANSWER_S)
+        self.socket.sendall(request(self.services[name], self.calls, payload))
+        while True:
+            body = self.next(began + ANSWER_S - time.monotonic())
+            # A ping of the server has four random bytes.
+            if len(body) > 8 and body[0] == 3 and struct.unpack_from("<I", body, 5)[0] == self.calls:
+                return time.monotonic() - began
+
+
+def request(service: int, call: int, payload: bytes, encoding: bytes = b"cdr") -> bytes:
+    """Return the frame of a service call."""
+    return frame(BINARY, struct.pack("<BIII", 2, service, call, len(encoding)) + encoding + payload)

@@ -1,0 +1,212 @@
+"""A run is replayed from its log bit for bit, and the first tick that differs is reported."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT, box, make, shipped
+from thymio_sim_ros.loading import read_program
+from thymio_sim_ros.runlog.replay import replay
+from thymio_sim_ros.runlog.run_log import RunLog, RunLogError
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim.commands import (
+    Clap,
+    Command,
+    ConnectCharger,
+    MotorTargets,
+    MoveObject,
+    MoveRobot,
+    PlayTone,
+    PressButton,
+    RemoteKey,
+    SetAmbientLight,
+    SetBattery,
+    SetGround,
+    SetMotorModel,
+    SetNoiseLevel,
+    SetPen,
+    SetProximity,
+    SetTemperature,
+    Tap,
+    Tilt,
+)
+from thymio_sim_ros.sim.playground.placement import PlacementError
+from thymio_sim_ros.sim.playground.reader import RobotStart
+from thymio_sim_ros.sim.world import World
+
+CRATE = {**box(-0.5, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}
+
+
+def log_to(path: Path) -> RunLog:
+    return RunLog(path.open("w", encoding="utf-8"))
+
+
+def test_an_eventful_run_is_replayed_bit_for_bit(tmp_path: Path) -> None:
+    """Robots drive, push, draw, fall, are moved, come and go; the world is reset; then another follows."""
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    dice = random.Random(3)
+    for seed in (1, 2):
+        world = World(make([FLOOR, CRATE, {**box(0.6, 0.0, 0.05, 1.0), "name": "wall"}]), seed=seed)
+        log.begin(f"world {seed}", world)
+        for tick in range(600):
+            if tick == 300:
+                world.reset()
+            if tick % 200 == 100:
+                world.spawn(RobotStart(f"late_{tick}", 1.5, -1.5 + tick / 400, 0.3))
+            for robot in world.robots:
+                if dice.random() < 0.02:
+                    world.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
+                if dice.random() < 0.005:
+                    world.post(robot, SetPen(down=True, color=(dice.random(), 0.0, 0.0)))
+                if dice.random() < 0.01:
+                    try:
+                        world.post(robot, MoveRobot(dice.uniform(-2.2, 2.2), dice.uniform(-2, 2), 0.0))
+                        world.post("crate", MoveObject(dice.uniform(-2, 2), dice.uniform(-2, 2), 1.0))
+                    except PlacementError:
+                        continue
+            if tick % 200 == 190:
+                world.remove(next(reversed(world.robots)))
+            world.step()
+    log.close()
+    found = replay(path)
+    assert (found.runs, found.ticks, found.differs, found.is_complete) == (4, 1200, None, True)
+
+
+def test_a_run_with_a_program_is_replayed_without_it(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    Runner(shipped("line"), read_program("line_follower"), seed=3, log=log).run(5.0)
+    log.close()
+    assert replay(path).differs is None
+
+
+@pytest.mark.parametrize("recorded", ["plain", "compiled"])
+def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: str
+) -> None:
+    """Twenty robots are a batch, compiled where wasmtime is installed; the log does not depend on that."""
+
+    def engine(name: str) -> None:
+        monkeypatch.undo()
+        if name == "plain":
+            for module in ("raycast.batch", "ground.sampling"):
+                monkeypatch.setattr(f"thymio_sim_ros.sim.{module}.is_available", lambda: False)
+
+    path = tmp_path / "run.jsonl"
+    engine(recorded)
+    log = log_to(path)
+    runner = Runner(shipped("classroom"), read_program("line_follower"), seed=5, log=log)
+    names = list(runner.world.robots)
+    whims: list[Command] = [
+        Clap(200), Tap(), Tilt(0.3, -0.2), SetTemperature(31.5), RemoteKey(0, 80), SetBattery(3.5), SetAmbientLight(90),
+        SetNoiseLevel(60), PressButton("center", True), PressButton("center", False), ConnectCharger(True),
+        SetProximity((-1, 2000, 4505, -1, -1, -1, 0)), SetGround((77, -1)), SetPen(down=True, width_m=0.02),
+        SetMotorModel("firmware"), PlayTone(440.0, None),
+    ]  # fmt: skip
+    dice = random.Random(5)
+    for round_ in range(16):
+        runner.run(0.1)
+        runner.post(dice.choice(names), whims[round_ % len(whims)])
+        if round_ == 5:
+            runner.world.spawn(RobotStart("late", -1.9, -1.5, 0.3))
+        if round_ % 4 == 3:
+            runner.load(dice.choice(names), read_program(("explorer", "friendly", "fearful")[round_ % 3]))
+        if round_ == 12:
+            runner.world.remove("late")
+    log.close()
+    engine("plain" if recorded == "compiled" else "compiled")
+    found = replay(path)
+    assert (found.ticks, found.differs, found.is_complete) == (160, None, True)
+
+
+def test_refused_places_leave_no_trace(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR, CRATE], (ROBOT,)), seed=1)
+    log.begin("world", world)
+    world.post("thymio", MotorTargets(200, 210))
+    for tick in range(400):
+        if tick % 7 == 0:
+            with pytest.raises(PlacementError):
+                world.spawn(RobotStart("late", world.robots["thymio"].pose.x_m, 0.0))
+        world.step()
+    log.close()
+    assert replay(path).differs is None
+
+
+@pytest.mark.parametrize(("tick", "digits"), [(1, 0), (250, 49), (500, 99)])
+def test_the_first_tick_that_differs_is_reported(tmp_path: Path, tick: int, digits: int) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]), seed=1)
+    log.begin("world", world)
+    for _ in range(500):
+        world.step()
+    log.close()
+    lines = path.read_text().splitlines()
+    row = 2 + (tick - 1) // 100
+    data = json.loads(lines[row])
+    crc = data["crc"]
+    data["crc"] = crc[: digits * 8] + ("0" if crc[digits * 8] != "0" else "1") + crc[digits * 8 + 1 :]
+    path.write_text("\n".join([*lines[:row], json.dumps(data), *lines[row + 1 :]]) + "\n")
+    found = replay(path)
+    assert (found.differs, found.ticks) == ((1, tick), tick)
+
+
+def test_another_command_makes_a_difference(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]), seed=1)
+    log.begin("world", world)
+    for tick in range(100):
+        if tick == 40:
+            world.post("thymio", MotorTargets(100, 100))
+        world.step()
+    log.close()
+    path.write_text(path.read_text().replace('"left": 100', '"left": 101'))
+    assert replay(path).differs == (1, 41)
+
+
+def test_a_log_without_its_end_is_replayed_as_far_as_it_goes(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]), seed=1)
+    log.begin("world", world)
+    for _ in range(250):
+        world.step()
+    log.close()
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-2]))
+    found = replay(path)
+    assert (found.ticks, found.differs, found.is_complete) == (200, None, False)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda lines: [lines[0], *lines[2:]], "line 2: found what happened to no world, expected a world first"),
+        (lambda lines: [*lines, lines[2]], "line 5: found a line after the end, expected nothing"),
+        (lambda lines: [lines[0], lines[1].replace('"default"', '"sonar"'), *lines[2:]], "line 2: .*sonar"),
+        (lambda lines: [*lines[:2], '{"tick": -5, "remove": "x"}', *lines[2:]], "line 3: found tick -5, expected 0"),
+        (lambda lines: [*lines[:3], '{"tick": 0, "remove": "x"}', *lines[3:]], "line 4: found tick 0, expected 1 or"),
+        (
+            lambda lines: [*lines[:2], '{"tick": 1000000, "remove": "x"}', *lines[2:]],
+            "line 4: found the first 1 ticks after an input at tick 1000000",
+        ),
+    ],
+)
+def test_a_log_in_disorder_is_refused(tmp_path: Path, change: object, text: str) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]))
+    log.begin("world", world)
+    world.step()
+    log.close()
+    assert callable(change)
+    path.write_text("".join(f"{line}\n" for line in change(path.read_text().splitlines())))
+    with pytest.raises(RunLogError, match=text):
+        replay(path)

@@ -1,0 +1,64 @@
+"""The banner printed when the suite has started: addresses for this computer and for others."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Sequence
+
+from thymio_sim_ros.addresses import describe_access, describe_urls, urls
+from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.cli import foxglove_layout
+from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.suite_config import SuiteConfig
+
+__all__ = ["banner", "qr_code", "startup_notice"]
+
+_NONE = "none (started without it)"
+_HUNDRED_ROBOTS_S = 67.0
+"""Start time of a hundred robots in one process, where DDS compares each of their topics with all others; it grows with
+the square of their number (measured, docs/performance.md)."""
+_LONG_START_S = 5.0
+
+
+def banner(suite: SuiteConfig, robots: Sequence[str]) -> str:
+    """Lines for the user. They contain the tokens: print them on standard output, never in a log."""
+    tokens = suite.tokens or Tokens()
+    page = describe_urls("http", suite.address, suite.port, "/", tokens.full) if suite.web else _NONE
+    path = "/" if tokens.full else ""
+    foxglove = describe_urls("ws", suite.address, suite.foxglove_port, path, tokens.full) if suite.foxglove else _NONE
+    lines = [f"Page      {page}", f"Foxglove  {foxglove}"]
+    if suite.foxglove:
+        lines += [f"Read only {url}" for url in _read_only_urls(suite, tokens)]
+        lines.append(f"Layout    {foxglove_layout.hint(robots)}")
+        lines.append(f"Access    {describe_access(suite.address, tokens)}")
+    return "\n".join([*lines, f"Domain    {describe_domain(os.environ)}", "Stop      Ctrl-C"])
+
+
+def qr_code(suite: SuiteConfig) -> str:
+    """The page's URL for other computers as a QR code in terminal characters; empty if there is no such URL."""
+    tokens = suite.tokens or Tokens()
+    if not suite.web or is_loopback(suite.address):
+        return ""
+    try:
+        import segno
+    except ImportError:  # not among the packages of every ROS installation
+        return ""
+    drawn = io.StringIO()
+    url = urls("http", suite.address, suite.port, "/", tokens.full)[-1]
+    segno.make_qr(url, error="l").terminal(drawn, border=2, compact=True)
+    return drawn.getvalue().rstrip("\n")
+
+
+def startup_notice(robots: int) -> str | None:
+    """A line that announces a start of more than `_LONG_START_S`; None for a shorter one."""
+    seconds = _HUNDRED_ROBOTS_S * (robots / 100) ** 2
+    return None if seconds < _LONG_START_S else f"Start     {robots} robots: this takes about {seconds:.0f} s"
+
+
+def _read_only_urls(suite: SuiteConfig, tokens: Tokens) -> list[str]:
+    """URLs of page and bridge for other computers with the read-only token; empty without such a token."""
+    if not tokens.read_only:
+        return []
+    page = urls("http", suite.address, suite.port, "/", tokens.read_only)[-1:] if suite.web else []
+    return [*page, urls("ws", suite.address, suite.foxglove_port, "/", tokens.read_only)[-1]]

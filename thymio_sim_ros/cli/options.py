@@ -1,0 +1,154 @@
+"""Options that the suite and the headless run share, types of arguments, and checks of the files that they name."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.device.event_queue import FIRMWARE, POLICIES
+from thymio_sim_ros.device.firmware.sd_card import SdCard, SdCardError
+from thymio_sim_ros.device.firmware.settings import Settings, SettingsError
+from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
+from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.device.programs.program import ProgramError
+from thymio_sim_ros.device.programs.program_assignment import Assignment
+from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments
+from thymio_sim_ros.sim.commands import MOTOR_MODELS
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
+from thymio_sim_ros.suite_config import SuiteConfig
+
+__all__ = [
+    "EXAMPLE",
+    "add_world_options",
+    "check_files",
+    "device_options",
+    "number_argument",
+    "path_argument",
+    "program_option",
+]
+
+EXAMPLE = """\
+example:
+  thymio-sim --playground obstacle --program my_robot.aesl
+  thymio-sim --behaviour menu                                (arrows choose, the center button starts)
+  thymio-sim runner --program my_robot.aesl --seconds 60     (without ROS, as fast as possible)
+  thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (repeats the run, bit for bit)
+  thymio-sim convert maze.playground -o maze.json            (from Aseba and others; without ROS)
+  thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
+  thymio-sim --ros-args -r __ns:=/lab1                       (ROS arguments come last; here a namespace)
+"""
+
+
+def add_world_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of playground, program, seed, run log and robot."""
+    shipped, behaviours = ", ".join(resources.playgrounds()), ", ".join(resources.behaviours())
+    parser.add_argument(
+        "--playground",
+        default=SuiteConfig.playground,
+        metavar="NAME|FILE",
+        help=f"{shipped}, or a file (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--program",
+        metavar="FILE.aesl",
+        help=f"{behaviours}, {NO_PROGRAM}, or a file"
+        f" (default: {SuiteConfig.program}, or {NO_PROGRAM} with --behaviour)",
+    )
+    parser.add_argument(
+        "--behaviour",
+        default=SuiteConfig.behaviour,
+        metavar="NAME",
+        help="built-in behavior that runs after switching on, such as menu; the program can then be started from there",
+    )
+    parser.add_argument("--seed", type=int, default=SuiteConfig.seed, help="seed of all noise (default: %(default)s)")
+    parser.add_argument(
+        "--log", type=path_argument, metavar="FILE", help="write a run log that `thymio-sim replay` can repeat"
+    )
+    robot = parser.add_argument_group("robot")
+    robot.add_argument(
+        "--card",
+        type=path_argument,
+        metavar="DIR",
+        help="folder used as the memory card; with several robots, each uses the subfolder of its name",
+    )
+    robot.add_argument(
+        "--settings",
+        type=path_argument,
+        metavar="DIR",
+        help="folder in which settings are kept; with several robots, each uses the subfolder of its name",
+    )
+    robot.add_argument(
+        "--layout",
+        choices=LAYOUTS,
+        default=THYMIO,
+        help="order of variables and native functions: firmware 14, or the reference playground (default: %(default)s)",
+    )
+    robot.add_argument(
+        "--events",
+        choices=POLICIES,
+        default=FIRMWARE,
+        help="whether an event waits for the running handler, as on the robot, or ends it (default: %(default)s)",
+    )
+    robot.add_argument(
+        "--motors",
+        choices=MOTOR_MODELS,
+        default=SuiteConfig.motor_model,
+        help="whether motors reach their target at once, or as by the robot's control loop (default: %(default)s)",
+    )
+    robot.add_argument(
+        "--proximity",
+        choices=PROXIMITY_MODELS,
+        default=SuiteConfig.proximity_model,
+        help="how proximity sensors detect thin objects, see docs/robot.md (default: %(default)s)",
+    )
+
+
+def device_options(options: argparse.Namespace) -> DeviceOptions:
+    """Options of the robots. Raises UsageError for a folder that cannot be used."""
+    device = DeviceOptions(options.layout, options.events, options.card, options.settings)
+    try:
+        if device.card is not None:
+            SdCard(device.card)
+        Settings(device.settings_file)
+    except (SdCardError, SettingsError) as error:
+        raise UsageError(str(error)) from error
+    return device
+
+
+def program_option(options: argparse.Namespace) -> str:
+    """Name or path of the program; the default depends on whether a behavior is given."""
+    if options.program is not None:
+        return str(options.program)
+    return NO_PROGRAM if options.behaviour else SuiteConfig.program
+
+
+def check_files(playground: str, program: str, behaviour: str, layout: str) -> tuple[Playground, dict[str, Assignment]]:
+    """Load the playground and compile the programs of its robots, by name of the robot.
+
+    Raises UsageError that says where, what was found and what was expected.
+    """
+    try:
+        check_behaviour(behaviour, layout)
+        loaded = load_playground(playground)[1]
+        return loaded, read_assignments(program, [robot.name for robot in loaded.robots], layout)
+    except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
+        raise UsageError(str(error)) from error
+
+
+def path_argument(text: str) -> Path:
+    """A path, with `~` expanded."""
+    return resources.expanded(text)
+
+
+def number_argument(text: str, low: float, high: float) -> float:
+    """A number in a range. Raises ArgumentTypeError."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"'{text}' found, expected a number from {low:g} to {high:g}")
+    return value

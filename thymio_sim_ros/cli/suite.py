@@ -1,0 +1,217 @@
+"""The command `thymio-sim` without a subcommand: simulator, Aseba runtime, Foxglove bridge and page until Ctrl-C."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import importlib.util
+import ipaddress
+import os
+import sys
+from collections.abc import Sequence
+
+import thymio_sim_ros
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
+from thymio_sim_ros.bridge.server_thread import check_free
+from thymio_sim_ros.cli.banner import banner, qr_code, startup_notice
+from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.cli.options import (
+    EXAMPLE,
+    add_world_options,
+    check_files,
+    device_options,
+    number_argument,
+    program_option,
+)
+from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
+
+__all__ = ["run"]
+
+ROS_ARGS = "--ros-args"
+
+
+def run(argv: Sequence[str]) -> int:
+    """Start the suite; return the exit code. Raises UsageError before anything starts."""
+    own, of_ros = _split_ros_args(argv)
+    options = _parser().parse_args(own)
+    suite = _suite_config(options)
+    if options.log is not None and (os.path.isdir(options.log) or not os.path.isdir(options.log.parent)):
+        raise UsageError(f"{options.log}: expected a file in a folder that exists")
+    playground, _ = check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
+    robots = [robot.name for robot in playground.robots]
+    if suite.web:
+        _check_port(suite.address, suite.port, "the page", "--port")
+    if suite.foxglove:
+        _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
+    _check_ros()
+    if (notice := startup_notice(len(robots))) is not None:
+        print_text(notice)
+    # Robots of a classroom stay separate unless the environment says otherwise (docs/spec/ros-packaging.md section 4).
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    from thymio_sim_ros.ros.compat import shm_cleanup
+
+    before = shm_cleanup.present()
+    from thymio_sim_ros.ros import combined
+
+    try:
+        return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots))
+    finally:
+        shm_cleanup.remove_new(before)
+
+
+def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Split the arguments into those of this command and those of ROS, from `--ros-args` on."""
+    words = list(argv)
+    place = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
+    return words[:place], words[place:]
+
+
+def _suite_config(options: argparse.Namespace) -> SuiteConfig:
+    return SuiteConfig(
+        playground=options.playground,
+        program=program_option(options),
+        behaviour=options.behaviour,
+        device=device_options(options),
+        motor_model=options.motors,
+        proximity_model=options.proximity,
+        address=options.address,
+        port=options.port,
+        foxglove_port=options.foxglove_port,
+        web=not (options.no_web or options.headless),
+        foxglove=not options.headless,
+        seed=options.seed,
+        real_time_factor=options.real_time_factor,
+        log="" if options.log is None else str(options.log),
+        tokens=_tokens(options),
+    )
+
+
+def _print_banner(suite: SuiteConfig, robots: Sequence[str]) -> None:
+    print_text(banner(suite, robots))
+    if sys.stdout is not None and sys.stdout.isatty():
+        with contextlib.suppress(UnicodeEncodeError):  # a terminal without these characters
+            if drawn := qr_code(suite):
+                print_text(drawn)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim",
+        description="A simulated Thymio II: ROS 2 nodes, Foxglove bridge and a web page. Ctrl-C ends everything.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    add_world_options(parser)
+    _add_network_options(parser)
+    parser.add_argument(
+        "--real-time-factor",
+        type=_factor_argument,
+        default=SuiteConfig.real_time_factor,
+        metavar="F",
+        help="simulated seconds per second, 0 is as fast as possible (default: %(default)g)",
+    )
+    parser.add_argument("--version", action="version", version=f"thymio-sim {thymio_sim_ros.__version__}")
+    return parser
+
+
+def _add_network_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--address",
+        type=_address_argument,
+        default=SuiteConfig.address,
+        metavar="IPV4",
+        help="address on which page and bridge listen; 0.0.0.0 is the whole network, where clients need the token in "
+        "the printed address (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--token",
+        type=_token_argument,
+        metavar="TEXT",
+        help=f"token that clients need, instead of a random one; other users of this computer can see it in the list "
+        f"of processes, unless it is in the variable {TOKEN_VARIABLE}",
+    )
+    parser.add_argument(
+        "--read-only-token",
+        type=_token_argument,
+        metavar="TEXT",
+        help=f"token with which clients only watch, instead of a random one; or {READ_ONLY_VARIABLE}",
+    )
+    parser.add_argument(
+        "--no-token", action="store_true", help="give full access without a token to all clients that reach the address"
+    )
+    parser.add_argument(
+        "--port", type=_port_argument, default=SuiteConfig.port, help="port of the page (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--foxglove-port",
+        type=_port_argument,
+        default=SuiteConfig.foxglove_port,
+        help="port of the bridge (default: %(default)s)",
+    )
+    parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
+    parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
+
+
+def _address_argument(text: str) -> str:
+    try:
+        return text if text == ADDRESS else str(ipaddress.IPv4Address(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' found, expected {ADDRESS}, 0.0.0.0 for the whole network, or an IPv4 address of this computer"
+        ) from error
+
+
+def _port_argument(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 65535:
+        raise argparse.ArgumentTypeError(f"'{text}' found, expected a port from 1 to 65535")
+    return int(text)
+
+
+def _factor_argument(text: str) -> float:
+    return number_argument(text, 0.0, 1000.0)
+
+
+def _token_argument(text: str) -> str:
+    if not TOKEN.fullmatch(text):
+        raise argparse.ArgumentTypeError("expected 4 to 200 letters, digits, '.', '_', '~' or '-'")
+    return text
+
+
+def _tokens(options: argparse.Namespace) -> Tokens:
+    """Tokens that clients need. Raises UsageError for tokens that contradict each other."""
+    given = options.token, options.read_only_token
+    if options.no_token:
+        if any(given):
+            raise UsageError("--no-token: expected no other option for tokens")
+        return Tokens()
+    full, read_only = given[0] or _token_variable(TOKEN_VARIABLE), given[1] or _token_variable(READ_ONLY_VARIABLE)
+    if full and full == read_only:
+        raise UsageError("the token and the read-only token are the same; expected two different ones")
+    return Tokens.for_address(options.address, full, read_only)
+
+
+def _token_variable(variable: str) -> str:
+    """Token in an environment variable, or "". Raises UsageError without showing the token."""
+    text = os.environ.get(variable, "")
+    try:
+        return _token_argument(text) if text else ""
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"{variable}: {error}") from error
+
+
+def _check_port(address: str, port: int, server: str, option: str) -> None:
+    try:
+        check_free(address, port)
+    except OSError as error:
+        options = option if address == ADDRESS else f"{option} or --address"
+        raise UsageError(f"port {port} of {server}: {error.strerror}; choose another with {options}") from error
+
+
+def _check_ros() -> None:
+    if importlib.util.find_spec("rclpy") is None:
+        raise UsageError(
+            "ROS 2 is not installed: on Linux x86-64 run `pip install 'thymio_sim_ros[ros]'`, elsewhere source a "
+            "ROS 2 Jazzy installation; `thymio-sim runner` works without ROS"
+        )

@@ -1,0 +1,74 @@
+"""Variables of a device by name, and a count of the times at which they may have been written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from aseba_vm import VirtualMachine
+from thymio_sim_ros.device.programs.program import ThymioProgram
+
+__all__ = ["DeviceVariables"]
+
+INT16 = range(-0x8000, 0x8000)
+
+
+class DeviceVariables:
+    """The variables of the robot and of its program, in the memory of the machine.
+
+    A program writes the memory without a trace. Whatever derives values from variables (commands, indicators) therefore
+    compares `writes` first, and the memory itself only if that count has changed.
+    """
+
+    def __init__(self, vm: VirtualMachine) -> None:
+        self.writes = 0
+        """Number of runs, resets and calls of `set`: what may have written the memory, apart from readings."""
+        self.last_clear = 0
+        """Value of `writes` after the last `clear`."""
+        self.sets = 0
+        """Number of calls of `set`."""
+        self._vm = vm
+        self._robot_addresses = vm.target.addresses
+        self._program_addresses: Mapping[str, tuple[int, int]] = {}
+        self._allocated = 0
+
+    def set_program(self, program: ThymioProgram) -> None:
+        """Replace the variables of the program. The memory stays as it is."""
+        self._program_addresses = program.program.addresses
+        self._allocated = program.program.allocated
+
+    def addresses(self) -> dict[str, tuple[int, int]]:
+        """Address and size in words of every variable, including those of the program."""
+        return {**self._robot_addresses, **self._program_addresses}
+
+    def words(self) -> list[int]:
+        """Words (int16) of all variables in order of address."""
+        return list(self._vm.variables.words[: self._allocated])
+
+    def get(self, name: str) -> tuple[int, ...]:
+        """Words (int16) of a variable. Raises KeyError for an unknown name."""
+        address, size = self.addresses()[name]
+        return tuple(self._vm.variables[address : address + size])
+
+    def set(self, name: str, words: Sequence[int]) -> None:
+        """Write a whole variable. Raises KeyError for an unknown name, ValueError for a wrong size or value."""
+        address, size = self.addresses()[name]
+        if len(words) != size:
+            raise ValueError(f"{name}: {len(words)} words found, expected {size}")
+        wrong = [word for word in words if word not in INT16]
+        if wrong:
+            raise ValueError(f"{name}: {wrong[0]} found, expected -32768 to 32767")
+        self._vm.write_variables(address, words)
+        self.sets += 1
+        self.count_write()
+
+    def clear(self, initial_values: Mapping[str, Sequence[int]]) -> None:
+        """Set all words to 0, then these variables of the robot. Raises KeyError for an unknown name."""
+        self._vm.variables[:] = [0] * len(self._vm.variables)
+        for name, words in initial_values.items():
+            self._vm.write_variables(self._robot_addresses[name][0], words)
+        self.count_write()
+        self.last_clear = self.writes
+
+    def count_write(self) -> None:
+        """Count a moment at which the program, or a step of it, may have written the memory."""
+        self.writes += 1

@@ -1,0 +1,51 @@
+"""Publishes `/diagnostics` of the runtime: the status of each robot, publishers with the wrong type."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Protocol
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rclpy.node import Node
+
+from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.rclpy_ext.type_mismatch import TypeMismatches
+
+__all__ = ["DiagnosedRobot", "RuntimeDiagnostics"]
+
+
+class DiagnosedRobot(Protocol):
+    """A robot with a status."""
+
+    @property
+    def status_message(self) -> DiagnosticStatus:
+        """The status that was published last."""
+
+    def observe_load(self) -> None:
+        """Report whether the program exceeded the capacity since the last call."""
+
+
+class RuntimeDiagnostics:
+    """The publisher of `/diagnostics`; costs little without subscribers."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
+        self._type_mismatches = TypeMismatches(node)
+
+    def publish_all(self, robots: Sequence[DiagnosedRobot]) -> None:
+        """Observe the load of all robots, poll for mismatched types and publish all statuses."""
+        for robot in robots:
+            robot.observe_load()
+        self._type_mismatches.poll()
+        self._publish([*(robot.status_message for robot in robots), self._type_mismatches.status()])
+
+    def publish_changed(self, robot: DiagnosedRobot) -> None:
+        """Publish the status of one robot, which has changed."""
+        self._publish([robot.status_message])
+
+    def _publish(self, statuses: Iterable[DiagnosticStatus]) -> None:
+        if self._publisher.get_subscription_count():
+            message = DiagnosticArray(status=list(statuses))
+            message.header.stamp = self._node.get_clock().now().to_msg()
+            self._publisher.publish(message)

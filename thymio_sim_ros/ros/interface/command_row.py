@@ -1,0 +1,34 @@
+"""The description of a topic that carries commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from rclpy.qos import QoSProfile
+
+from thymio_sim_ros.ros.interface import qos, saturation
+from thymio_sim_ros.ros.interface.saturation import LimitCheck
+from thymio_sim_ros.sim.commands import Command
+
+__all__ = ["CommandRow"]
+
+
+@dataclass(frozen=True, slots=True)
+class CommandRow:
+    """One topic: `decode` returns the command of a message or raises CommandError.
+
+    `encode` returns the message of a command that programs may give, or is None. `about` describes content and units
+    for docs/ros.md. `limit_check` describes the part of a message that will be clamped. `is_retained`: the command
+    stays in force until the next one, so late subscribers need it.
+    """
+
+    topic: str
+    type: type
+    decode: Callable[[Any], Command]
+    encode: Callable[[Any], Any] | None = None
+    profile: QoSProfile = field(default_factory=lambda: qos.COMMAND)
+    about: str = ""
+    limit_check: LimitCheck = saturation.nothing
+    is_retained: bool = False

@@ -1,0 +1,50 @@
+"""Loads a playground and everything slow that is derived from it, on any thread, before a world is created."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
+from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
+from thymio_sim_ros.ros.simulator.world_endpoints import SceneMessages
+from thymio_sim_ros.sim.ground.sampling import Ground
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
+from thymio_sim_ros.sim.world import World
+
+__all__ = ["LOAD_ERRORS", "PreparedPlayground", "new_world"]
+
+LOAD_ERRORS = (PlaygroundError, resources.ResourceError, StartError, OSError)
+"""What `PreparedPlayground.load` raises for a value that the user can correct."""
+
+
+@dataclass(frozen=True, slots=True)
+class PreparedPlayground:
+    """A playground with renamed robots, and the slow results derived from it, ready for a world."""
+
+    name: str
+    playground: Playground
+    ground: Ground
+    scene: SceneMessages
+
+    @classmethod
+    def load(cls, value: str, chosen: SimulatorParams) -> PreparedPlayground:
+        """Load a playground by name, path or text. Raises one of `LOAD_ERRORS`."""
+        name, loaded = load_playground(value)
+        playground = chosen.renamed(loaded)
+        scene = SceneMessages.of(playground, chosen.map_frame, with_map=chosen.publish_map)
+        return cls(name, playground, Ground(playground.floors, playground.paints), scene)
+
+
+def new_world(playground: Playground, chosen: SimulatorParams, ground: Ground | None = None) -> World:
+    """Return a new world of a playground; `ground` saves the time to derive it."""
+    return World(
+        playground,
+        seed=chosen.seed,
+        noise=chosen.noise,
+        proximity_model=chosen.proximity_model,
+        motor_model=chosen.motor_model,
+        periods_ns=chosen.periods_ns,
+        ground=ground,
+    )

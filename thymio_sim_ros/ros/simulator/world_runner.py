@@ -1,0 +1,191 @@
+"""Owns the world and its time: steps, pauses, resets and replaces it, and publishes the results.
+
+Ticks that no subscriber could see are deferred and executed together, at the latest when a message arrives; the command
+in it takes effect in the next tick, as if no tick had been deferred.
+"""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable
+
+from rclpy.executors import Executor
+from rclpy.node import Node
+
+from thymio_sim_ros.ros.interface.headers import SECOND_NS
+from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, deliver
+from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
+from thymio_sim_ros.ros.simulator.parameters import CurrentParams
+from thymio_sim_ros.ros.simulator.prepared_playground import PreparedPlayground
+from thymio_sim_ros.ros.simulator.recording import Recording
+from thymio_sim_ros.ros.simulator.tick_scheduler import TickScheduler
+from thymio_sim_ros.ros.simulator.world_endpoints import WorldState
+from thymio_sim_ros.sim.playground.reader import RobotStart
+from thymio_sim_ros.sim.world import World
+
+__all__ = ["WorldRunner"]
+
+MAX_NOTES = 20
+"""Number of notes about a playground in the state; the log has all of them."""
+
+
+class WorldRunner:
+    """Runs one world at a time. Invariant: only the thread of the node's executor calls it and touches the world."""
+
+    def __init__(
+        self,
+        node: Node,
+        params: CurrentParams,
+        endpoints: SimulatorEndpoints,
+        recording: Recording,
+        prepared: PreparedPlayground,
+        world: World,
+    ) -> None:
+        """`start` publishes the world; endpoints may use this object only then."""
+        self._node, self._params, self._endpoints, self._recording = node, params, endpoints, recording
+        self.prepared = prepared
+        """The playground of the world."""
+        self.world = world
+        self.paused = params.values.start_paused
+        self.scheduler = TickScheduler(params.values.real_time_factor, endpoints.demand, endpoints.clock)
+        self._is_spinning = False
+        """Whether callbacks may execute deferred ticks: not within a tick, nor without a thread that runs the node."""
+        self._published_fallen: frozenset[str] = frozenset()
+
+    def start(self) -> None:
+        """Log the notes about the playground, begin its recording and publish its start."""
+        for note in self.world.playground.notes:
+            self._node.get_logger().warning(f"playground {self.prepared.name}: {note}")
+        self._recording.begin(self.prepared.name, self.world)
+        self._publish_start()
+
+    def replace(self, prepared: PreparedPlayground, world: World) -> None:
+        """Run another world from its start."""
+        self.prepared, self.world = prepared, world
+        self.start()
+
+    def run_due_ticks(self, wall_ns: int) -> None:
+        """Execute the ticks that are due at `wall_ns`, unless paused."""
+        if not self.paused and not self.scheduler.wait_ns(wall_ns, self.world.now_ns):
+            self._run_guarded(self._run_owed)
+
+    def spin(self, executor: Executor) -> None:
+        """Handle messages until the next tick is due, or those that have arrived if it is due already."""
+        if self.paused:
+            executor.spin_once(timeout_sec=SPIN_SLICE_S)
+            return
+        wait_s = self.scheduler.wait_ns(time.monotonic_ns(), self.world.now_ns) / SECOND_NS
+        if wait_s > 0.0:
+            self._is_spinning = True
+            executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
+            self._is_spinning = False
+        else:
+            deliver(executor)
+
+    def advance(self, ticks: int) -> None:
+        """Step the world by ticks of 10 ms, also while paused, and publish their results."""
+        self._endpoints.poll()
+        self._advance(ticks)
+
+    def catch_up(self) -> None:
+        """Execute the deferred ticks: a request or a command has arrived, which must see the present world."""
+        if self._is_spinning and not self.paused:
+            self._run_guarded(self._run_owed)
+        self.scheduler.require_next_tick(self.world.now_ns)
+
+    def pause(self, paused: bool) -> None:
+        """Pause or resume the simulation."""
+        self.paused = paused
+        self.scheduler.resume()
+        self._endpoints.clock.publish(self.world.now_ns, last=True)
+        self.publish_state()
+
+    def step(self, ticks: int | None = None) -> bool:
+        """Execute `ticks`, by default those of one `~/step`; False if the world stopped with an internal error."""
+        is_done = self._run_guarded(lambda: self.advance(self._params.values.step_ticks if ticks is None else ticks))
+        self._endpoints.clock.publish(self.world.now_ns, last=True)
+        self.publish_state()
+        return is_done
+
+    def reset(self) -> None:
+        """Reset world, time and noise to the start."""
+        self.world.reset()
+        self._publish_start()
+
+    def spawn(self, start: RobotStart) -> None:
+        """Add a robot. Raises ValueError as `World.spawn` does, and for a name that topics of another robot use."""
+        self._endpoints.robots.check_name(start.name)
+        self.world.spawn(start)
+
+    def update_robots(self) -> None:
+        """Create or destroy topics and frames if robots were added or removed."""
+        if self._endpoints.update_robots(self.world.robots):
+            self.publish_state()
+
+    def state(self) -> WorldState:
+        """Return the state for `~/_state` and the diagnostics."""
+        return WorldState(
+            playground=self.prepared.name,
+            title=self.world.playground.title,
+            notes=self.world.playground.notes[:MAX_NOTES],
+            paused=self.paused,
+            real_time_factor=self._params.values.real_time_factor,
+            achieved=0.0 if self.paused else self.scheduler.achieved,
+            seed=self._params.values.seed,
+            now_ns=self.world.now_ns,
+            movables=self.world.movables,
+            robots=self._endpoints.robots.names,
+            raw=self._endpoints.world.raw.topic_name,
+            fallen=self._fallen(),
+        )
+
+    def publish_state(self) -> None:
+        """Publish `~/_state`."""
+        state = self.state()
+        self._published_fallen = state.fallen
+        self._endpoints.world.publish_state(state)
+
+    def _advance(self, ticks: int) -> None:
+        endpoints = self._endpoints
+        self.update_robots()
+        for _ in range(ticks):
+            result = self.world.step()
+            endpoints.publish_readings(self.world, result)
+            if self.paused:
+                endpoints.clock.publish(result.now_ns, last=True)
+        if not self.paused:
+            endpoints.clock.publish(self.world.now_ns, last=False)
+        endpoints.world.publish_objects(self.world, last=self.paused)
+        if self._fallen() != self._published_fallen:
+            self.publish_state()
+
+    def _fallen(self) -> frozenset[str]:
+        """Return the names (in the world) of the robots that fell off an edge."""
+        return frozenset(name for name, robot in self.world.robots.items() if robot.is_fallen)
+
+    def _run_owed(self) -> None:
+        ticks = self.scheduler.pop_owed(time.monotonic_ns(), self.world.now_ns)
+        if ticks:
+            self._advance(ticks)
+
+    def _run_guarded(self, act: Callable[[], None]) -> bool:
+        """Call `act`; on an internal error log it, pause and return False (docs/architecture.md, "Errors")."""
+        try:
+            act()
+        except Exception:
+            where = f"the world stopped at {self.world.now_ns} ns"
+            self._node.get_logger().error(f"internal error (please report): {where}:\n{traceback.format_exc()}")
+            self.paused = True
+            self.publish_state()
+            return False
+        return True
+
+    def _publish_start(self) -> None:
+        """Publish the start of a run in order: retained topics, then the clock at zero; the first readings follow."""
+        self.scheduler.reset()
+        self._endpoints.reset_robots(self.world.robots)
+        self._endpoints.world.publish_scene(self.prepared.scene)
+        self._endpoints.world.publish_objects(self.world, last=True)
+        self.publish_state()
+        self._endpoints.clock.publish(0, last=True)
