@@ -61,11 +61,15 @@ def push(robots: RobotState, orders: Floats) -> None:
             orders[place + 4] = 0.0
             orders[place + 5] = 0.0
         else:
+            # pymunk integrates the velocity of the last sub-step first, so the body turns by it before this force acts;
+            # the heading in the middle of the sub-step after that is where the wheels will point.
             heading = heading + robots.turn_rate[robot] * _SUB_STEP_S
             cosine = cos(heading)
             sine = sin(heading)
             force_x = (speed * cosine - robots.velocity_x[robot]) * PUSH_N_S_M
             force_y = (speed * sine - robots.velocity_y[robot]) * PUSH_N_S_M
+            # The force is scaled down to the grip of the tires in its own direction. The torque is not limited: with the
+            # large moment of inertia, wheels hold the heading.
             share = _GRIP_N / max(_GRIP_N, math.sqrt(force_x * force_x + force_y * force_y))
             orders[place] = robots.velocity_x[robot]
             orders[place + 1] = robots.velocity_y[robot]
@@ -90,6 +94,7 @@ def read_motion(robots: RobotState, rows: Ints, bodies: Floats, earlier: Ints) -
             continue
         if robots.was_touching[robot] == 0:
             robots.was_touching[robot] = 1
+            # The contact began in this sub-step: in the earlier ones the robot had the speed of the wheels.
             part = float(earlier[0]) / _SUB_STEPS
             robots.covered_left[robot] = robots.ground_left[robot] * part
             robots.covered_right[robot] = robots.ground_right[robot] * part
@@ -99,6 +104,7 @@ def read_motion(robots: RobotState, rows: Ints, bodies: Floats, earlier: Ints) -
         robots.velocity_y[robot] = bodies[place + 4]
         turn_rate = bodies[place + 5]
         speed = bodies[place + 3] * robots.cosine[robot] + bodies[place + 4] * robots.sine[robot]
+        # Each wheel is half a track beside the center.
         half = turn_rate * _TRACK_M / 2.0
         robots.speed[robot] = speed
         robots.turn_rate[robot] = turn_rate

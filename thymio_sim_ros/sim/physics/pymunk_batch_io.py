@@ -29,7 +29,11 @@ _STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | _SPEEDS
 
 
 class BodyWriter:
-    """Writes velocities and forces to chosen bodies of a space; the others stay asleep."""
+    """Writes velocities and forces to chosen bodies of a space; the others stay asleep.
+
+    The public `batch.set_space_bodies` writes to all bodies of a space, and writing wakes a sleeping body. The C
+    function behind it writes to one body and advances in the buffer; it is called here for each chosen body.
+    """
 
     def __init__(self, rows: Values) -> None:
         """A row of `rows` for each body: velocity x, y, rate of turn, force x, y, torque."""
