@@ -17,7 +17,6 @@ from tests.web_ui.page_support import (
     TouchPoints,
     open_page,
     wait_for_frame,
-    wait_for_service,
     wait_until_still,
 )
 from tests.web_ui.test_page_access import AXE, FINDINGS
@@ -339,41 +338,6 @@ def test_ten_thousand_moves_leave_one_animation_loop(suite, page):
     assert frames < 2_000, "moves do not draw, frames do"
 
 
-def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_unchanged(suite, page, tmp_path):
-    broken = tmp_path / "broken.json"
-    broken.write_text(json.dumps({"format": 1, "title": "x", "shapes": [{"kind": "box", "x_m": "far"}]}))
-    open_creator(page, suite)
-    page.set_input_files("#creator-file", str(broken))
-    playwright.expect(page.locator(".creator .fault dd")).to_contain_text(
-        ["shapes[0].x_m", '"far"', "from -100 to 100"]
-    )
-    assert sorted(items(page)) == ["ground", "thymio"]
-
-
-def test_a_copy_of_a_shipped_playground_is_edited(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
-    page.wait_for_function("window.thymio.state().playgrounds.length > 3")
-    page.click("#gallery-open")
-    page.locator("li:has([data-playground=gate]) .change").click()
-    page.wait_for_function("window.thymio.built()?.playground.title === 'Gate'")
-    page.click("[data-verb=undo]")
-    page.wait_for_function("window.thymio.built().playground.title === 'My playground'")
-
-
-def test_a_running_aseba_playground_is_edited(suite, page, tmp_path):
-    foreign = tmp_path / "arena.playground"
-    wall = '<wall x="20" y="80" l1="20" l2="4" h="10" color="gray"/>'
-    foreign.write_text(
-        '<aseba-playground><color name="gray" r="0.5" g="0.5" b="0.5"/><world w="100" h="100" color="gray"/>'
-        f'{wall}<robot x="50" y="50"/></aseba-playground>'
-    )
-    open_page(page, suite("--playground", str(foreign), "--program", "none"))
-    wait_for_service(page, "/simulator/get_playground")
-    page.click("#playground-change")
-    page.wait_for_function("window.thymio.built()?.playground.items.length >= 3")
-    assert "box" in {item["kind"] for item in items(page).values()}
-
-
 def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, page):
     open_creator(page, suite)
     for language in ("de", "fr", "it", "en"):
@@ -480,16 +444,6 @@ def test_without_ground_the_creator_warns_and_offers_to_add_one(suite, page):
     add.click()
     playwright.expect(add).to_be_hidden()
     page.wait_for_function("window.thymio.built().playground.items[0].kind === 'rectangle'")
-
-
-def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page, tmp_path):
-    letter = tmp_path / "letter.json"
-    letter.write_text("hello")
-    open_creator(page, suite)
-    page.set_input_files("#creator-file", str(letter))
-    fault = page.locator(".creator .fault")
-    playwright.expect(fault).to_contain_text("This file is not a playground.")
-    playwright.expect(fault.locator(".technical")).to_be_hidden()
 
 
 def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone(suite, page, tmp_path, monkeypatch):

@@ -8,6 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
+from tests.web_ui.conftest import DEADLINE_MS
 from tests.web_ui.page_support import MARKS, open_page
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros import resources
@@ -35,6 +36,7 @@ def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(suite,
         "(count) => [...document.querySelectorAll('.sample img:not([hidden])')]"
         ".filter(({complete, naturalWidth}) => complete && naturalWidth > 0).length === count",
         arg=len(names),
+        timeout=3 * DEADLINE_MS,  # each is a rendered scene
     )
     for name in names:
         card = page.locator(f"[data-playground={name}]")

@@ -22,7 +22,7 @@ def test_the_rule_of_the_firmware_decides_which_button_is_touched(button: str) -
     held = readings(run(world, 0.01), "button_counts")[-1].words
     assert [is_touched(*each) for each in zip(*parts(held), strict=True)] == [name == button for name in BUTTONS]
     send(world, PressButton(button, pressed=False))
-    released = readings(run(world, 0.01), "button_counts")[-1].words
+    released = readings(run(world, 0.03), "button_counts")[-1].words
     assert not any(is_touched(*each) for each in zip(*parts(released), strict=True))
     assert parts(held)[1:] == parts(released)[1:]
 
