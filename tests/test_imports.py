@@ -38,6 +38,7 @@ MESSAGES = frozenset({
 })  # fmt: skip
 ROS = MESSAGES | {"rclpy", "ament_index_python", "rosidl_parser", "rosidl_runtime_py"}
 ALL_OF_OURS = frozenset(PACKAGES)
+KERNELS = frozenset({"aseba_vm.kernel"})
 DECLARATIONS = _names(
     "sim.commands", "sim.model", "sim.sensors", "sim.actuators", "sim.stimuli", "sim.plugin_api", "sim.audio.synthesis"
 )
@@ -45,13 +46,12 @@ DECLARATIONS = _names(
 # The longest name that fits a module decides.
 RULES = {
     "aseba_vm": Rule(_names("aseba_vm"), never=NO_WALL_CLOCK),
-    f"{OURS}.sim": Rule(_names("sim", "registry"), frozenset({"numpy"}), NO_WALL_CLOCK),
+    # one compiler of kernels to WebAssembly for natives of the machine and laws of the simulator
+    f"{OURS}.sim": Rule(_names("sim", "registry") | KERNELS, frozenset({"numpy"}), NO_WALL_CLOCK),
     # the one place where the core measures wall time: a picture that takes too long to draw is refused
     f"{OURS}.sim.formats.svg_process": Rule(_names("sim"), never=NO_WALL_CLOCK - {"time"}),
     f"{OURS}.sim.formats.svg_worker": Rule(frozenset(), frozenset({"resvg_py"}), NO_WALL_CLOCK),
-    # one compiler of WebAssembly for the process: that of the machine
-    f"{OURS}.sim.kernel": Rule(_names("sim.kernel", "aseba_vm"), frozenset({"numpy"}), NO_WALL_CLOCK),
-    f"{OURS}.sim.physics": Rule(_names("sim"), frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),
+    f"{OURS}.sim.physics": Rule(_names("sim") | KERNELS, frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),
     f"{OURS}.device": Rule(_names("aseba_vm", "device", "registry") | DECLARATIONS, never=NO_WALL_CLOCK),
     f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
     f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),

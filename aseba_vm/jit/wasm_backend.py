@@ -42,7 +42,7 @@ from aseba_vm.jit.wasm_host import (
     WasmCode,
 )
 from aseba_vm.jit.wasm_natives import call, functions, has_standard_parameters, unrolled
-from aseba_vm.jit.wasm_runtime import WasmRuntime, is_usable
+from aseba_vm.kernel.wasm_runtime import WasmRuntime, is_usable
 
 _TRAPPED = -1
 """Kind of exit before there is one; it remains if the code traps."""

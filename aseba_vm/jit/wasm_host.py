@@ -13,8 +13,8 @@ from collections.abc import Callable, MutableSequence
 from typing import Any, NamedTuple
 
 from aseba_vm.jit.host import Run, TranslatedMachine
-from aseba_vm.jit.wasm_calls import make_caller, make_import
-from aseba_vm.jit.wasm_runtime import WasmRuntime
+from aseba_vm.kernel.wasm_calls import make_caller, make_import
+from aseba_vm.kernel.wasm_runtime import WasmRuntime
 
 VARIABLES = 0
 BRANCHES = 0x20000

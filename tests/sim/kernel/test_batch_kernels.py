@@ -7,13 +7,13 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from thymio_sim_ros.sim.physics.broadphase_batch import BroadphaseBatch
 
 from tests.sim.batch.test_robot_batch import busy
 from tests.sim.builders import shipped
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Solid
-from thymio_sim_ros.sim.physics.broadphase_batch import BroadphaseBatch
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 from thymio_sim_ros.sim.world import World

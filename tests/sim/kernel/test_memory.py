@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.sim.kernel import samples
-from thymio_sim_ros.sim.kernel.compiler import KernelError
+from aseba_vm.kernel.compiler import KernelError
+from tests.aseba_vm.kernel import samples
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 
 
@@ -31,12 +31,12 @@ def test_a_full_memory_says_so() -> None:
 
 
 def test_arrays_of_another_memory_are_refused() -> None:
-    memory = KernelMemory(1000)
+    memory = KernelMemory(1000, is_compiled=True)
     for array in (np.zeros(1), memory.array(2, np.int32), memory.array((2, 2), np.float64)[:, 0]):
-        with pytest.raises(KernelError, match="expected a contiguous array of float64 in the kernel's memory"):
-            memory.bind(samples, samples.early, array)
+        with pytest.raises(KernelError, match="expected a contiguous array of float64 in this memory"):
+            memory.bind(samples.early, array)
 
 
 def test_the_number_of_arguments_is_checked() -> None:
     with pytest.raises(KernelError, match="early: found 0 arguments, expected 1"):
-        KernelMemory(1000).bind(samples, samples.early)
+        KernelMemory(1000).bind(samples.early)

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from thymio_sim_ros.sim.physics.broadphase_batch import CHECK_INTERVAL_TICKS, BroadphaseBatch
+from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M
 
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Disc, Polygon, Solid
-from thymio_sim_ros.sim.physics.broadphase_batch import CHECK_INTERVAL_TICKS, BroadphaseBatch
-from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M
 from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 
 WAY_M = CHECK_INTERVAL_TICKS * MAX_TICK_DISTANCE_M

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterable
 
 import pymunk
+from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M, SAFETY_MARGIN_M, ticks_to_contact
 
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Disc, Load, Solid
 from thymio_sim_ros.sim.physics import MovableBody, RobotBody
-from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M, SAFETY_MARGIN_M, ticks_to_contact
 from thymio_sim_ros.sim.raycast.broadphase import Broadphase, Mover
 from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 

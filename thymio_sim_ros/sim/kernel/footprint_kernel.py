@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.types import Floats, Ints, Words, kernel
+from aseba_vm.kernel.types import Floats, Ints, Words, kernel
 
 __all__ = ["COUNTS", "TAPS", "sample", "spots"]
 

@@ -9,23 +9,22 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from functools import cache, partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from aseba_vm.jit.wasm_calls import make_caller
-from aseba_vm.jit.wasm_runtime import WasmRuntime, is_usable
-from thymio_sim_ros.sim.kernel.compiler import KernelError, parameters, translate
-from thymio_sim_ros.sim.kernel.record import Record, fields
-from thymio_sim_ros.sim.kernel.types import ALIGNMENT, DTYPES, Kernel
+from aseba_vm.kernel.compiler import KernelError, parameters, translate
+from aseba_vm.kernel.record import Record, fields
+from aseba_vm.kernel.types import ALIGNMENT, DTYPES, Kernel
+from aseba_vm.kernel.wasm_calls import make_caller
+from aseba_vm.kernel.wasm_runtime import WasmRuntime, is_usable
 
 __all__ = ["KernelMemory", "is_available"]
 
 _PAGE = 0x10000
 
 Shape = int | tuple[int, ...]
-A = TypeVar("A", bound=np.generic)
 Argument = Record | npt.NDArray[Any] | float
 
 
@@ -67,11 +66,11 @@ class KernelMemory:
         return memory, found[0], found[1]
 
     @staticmethod
-    def room(shape: Shape, kind: type[np.generic]) -> int:
+    def room(shape: Shape, kind: npt.DTypeLike) -> int:
         """Bytes that an array takes at most."""
         return int(np.prod(shape)) * np.dtype(kind).itemsize + ALIGNMENT
 
-    def array(self, shape: Shape, kind: type[A]) -> npt.NDArray[A]:
+    def array(self, shape: Shape, kind: npt.DTypeLike) -> npt.NDArray[Any]:
         """Allocate an array of zeros. Raises MemoryError when there is no room."""
         start = -(-self._used // ALIGNMENT) * ALIGNMENT
         end = start + int(np.prod(shape)) * np.dtype(kind).itemsize
@@ -92,6 +91,9 @@ class KernelMemory:
             raise KernelError(f"{kernel.__name__}: result is {result}, expected None of a kernel that Python calls")
         if len(kinds) != len(arguments):
             raise KernelError(f"{kernel.__name__}: found {len(arguments)} arguments, expected {len(kinds)}")
+        for (name, kind), argument in zip(kinds.items(), arguments, strict=True):
+            if isinstance(kind, type) and type(argument) is not kind:
+                raise KernelError(f"{kernel.__name__}: {name} is {type(argument).__name__}, expected {kind.__name__}")
         if self._wasmtime is None:
             return partial(kernel, *map(_as_python, arguments))
         values: list[float] = []
@@ -116,7 +118,9 @@ class KernelMemory:
     def _place(self, array: npt.NDArray[Any], kind: str) -> int:
         place = array.ctypes.data - self._base
         if array.dtype != DTYPES[kind] or not array.flags.c_contiguous or not 0 <= place <= len(self._bytes):
-            raise KernelError(f"an array of {array.dtype}, expected {DTYPES[kind]} in one piece in this memory")
+            raise KernelError(
+                f"an array of {array.dtype}, expected a contiguous array of {DTYPES[kind]} in this memory"
+            )
         return place
 
 

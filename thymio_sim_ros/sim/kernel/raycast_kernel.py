@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
+from aseba_vm.kernel.types import Floats, Ints, kernel
 
 __all__ = ["COUNTS", "cast"]
 

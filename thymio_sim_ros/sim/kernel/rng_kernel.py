@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
+from aseba_vm.kernel.types import Floats, Ints, kernel
 
 __all__ = ["COUNTS", "draw"]
 

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from thymio_sim_ros.sim.kernel.trigonometry import cos, sin
-from thymio_sim_ros.sim.kernel.types import kernel
+from aseba_vm.kernel.types import kernel
 from thymio_sim_ros.sim.mechanics.motor_control import WheelControl
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.geometry import Pose, Twist
 from thymio_sim_ros.sim.model.robot_constants import WHEEL_RADIUS_M, WHEEL_TRACK_M
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
 from thymio_sim_ros.sim.physics.robot_state import RobotState
+from thymio_sim_ros.sim.physics.trigonometry import cos, sin
 
 __all__ = ["WheelArrays", "Wheels", "roll", "twist_of"]
 

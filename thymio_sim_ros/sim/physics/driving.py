@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.trigonometry import cos, sin
-from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
+from aseba_vm.kernel.types import Floats, Ints, kernel
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, TICK_S
 from thymio_sim_ros.sim.physics.robot_state import RobotState
+from thymio_sim_ros.sim.physics.trigonometry import cos, sin
 
 __all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "push", "read_motion", "read_poses"]
 
@@ -39,7 +39,7 @@ _SUB_STEPS = SUB_STEPS
 def push(robots: RobotState, orders: Floats) -> None:
     """Before a sub-step: set the speed of the wheels, or in contact a force toward it, limited by the grip.
 
-    Six values of `orders` for each standing robot, one after the other: velocity x, y, rate of turn, force x, y, torque.
+    `orders` has six values for each standing robot: velocity x, y, rate of turn, force x, y, torque.
     """
     place = 0
     for robot in range(robots.count):
@@ -68,8 +68,8 @@ def push(robots: RobotState, orders: Floats) -> None:
             sine = sin(heading)
             force_x = (speed * cosine - robots.velocity_x[robot]) * PUSH_N_S_M
             force_y = (speed * sine - robots.velocity_y[robot]) * PUSH_N_S_M
-            # The force is scaled down to the grip of the tires in its own direction. The torque is not limited: with the
-            # large moment of inertia, wheels hold the heading.
+            # The force is scaled down to the grip of the tires in its own direction. The torque is not limited: wheels
+            # hold the heading, with the large moment of inertia.
             share = _GRIP_N / max(_GRIP_N, math.sqrt(force_x * force_x + force_y * force_y))
             orders[place] = robots.velocity_x[robot]
             orders[place + 1] = robots.velocity_y[robot]
@@ -86,7 +86,7 @@ def push(robots: RobotState, orders: Floats) -> None:
 def read_motion(robots: RobotState, rows: Ints, bodies: Floats, earlier: Ints) -> None:
     """After a sub-step: read the motion that contacts allowed to the robots that are in contact or were in this tick.
 
-    `bodies` has six values for each body: x, y, angle, velocity x, y, rate of turn; `rows` are the robots' numbers there.
+    `bodies` has six values for each body: x, y, angle, velocity x, y, rate of turn; `rows` are the robots' rows there.
     `earlier[0]` sub-steps of this tick came before.
     """
     for robot in range(robots.count):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.kernel.record import Record
-from thymio_sim_ros.sim.kernel.types import Floats, Ints
+from aseba_vm.kernel.record import Record
+from aseba_vm.kernel.types import Floats, Ints
 
 __all__ = ["RobotState"]
 

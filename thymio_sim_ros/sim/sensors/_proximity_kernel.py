@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.types import Floats, Ints, kernel
+from aseba_vm.kernel.types import Floats, Ints, kernel
 from thymio_sim_ros.sim.model import robot_constants, units
 from thymio_sim_ros.sim.model.units import proximity_response
 

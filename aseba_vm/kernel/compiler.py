@@ -17,9 +17,9 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
+from aseba_vm.kernel.record import Record, fields
+from aseba_vm.kernel.types import Kernel, is_kernel
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.sim.kernel.record import Record, fields
-from thymio_sim_ros.sim.kernel.types import Kernel, is_kernel
 
 __all__ = ["KernelError", "Signature", "parameters", "translate"]
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import numpy as np
-
-__all__ = ["ALIGNMENT", "DTYPES", "Floats", "Ints", "Kernel", "Words", "is_kernel", "kernel"]
+__all__ = ["ALIGNMENT", "DTYPES", "ITEM_SIZES", "Floats", "Ints", "Kernel", "Words", "is_kernel", "kernel"]
 
 Floats = Any
 """A flat array of float64."""
@@ -16,8 +14,10 @@ Ints = Any
 Words = Any
 """A flat array of uint16."""
 
-DTYPES = {"Floats": np.dtype(np.float64), "Ints": np.dtype(np.int32), "Words": np.dtype(np.uint16)}
-"""Type of the elements of each kind of array."""
+DTYPES = {"Floats": "float64", "Ints": "int32", "Words": "uint16"}
+"""Type of the elements of each kind of array, as numpy names it."""
+ITEM_SIZES = {"Floats": 8, "Ints": 4, "Words": 2}
+"""Bytes of an element of each kind of array."""
 ALIGNMENT = 16
 """Every array begins at a multiple of so many bytes."""
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from thymio_sim_ros.sim.kernel.types import kernel
+from aseba_vm.kernel.types import kernel
 
 __all__ = ["cos", "sin"]
 

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.sim.kernel import samples
-from thymio_sim_ros.sim.kernel.compiler import Floats, KernelError, translate
+from aseba_vm.kernel.compiler import KernelError, translate
+from aseba_vm.kernel.types import Floats
+from tests.aseba_vm.kernel import samples
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 
 MEMORY = 4096
@@ -29,7 +30,7 @@ def both(kernel: Callable[..., None], *arguments: Any, room: tuple[int, type[np.
             shared.append(argument)
     mine, compiled = np.zeros(*room), memory.array(*room)
     kernel(*arguments, mine)
-    memory.bind(samples, kernel, *shared, compiled)()
+    memory.bind(kernel, *shared, compiled)()
     return mine.tolist(), compiled.tolist()
 
 
@@ -72,7 +73,7 @@ def test_words_have_no_sign() -> None:
     memory = KernelMemory(MEMORY)
     shared, found = memory.array(2, np.uint16), memory.array(2, np.uint16)
     shared[:] = given
-    memory.bind(samples, samples.words, shared, found)()
+    memory.bind(samples.words, shared, found)()
     assert found.tolist() == [0, 65535]
 
 
@@ -121,5 +122,28 @@ def test_parameters_need_a_type_of_kernels() -> None:
     def kernel(found: list) -> None:  # type: ignore[type-arg]  # what is refused
         found[0] = 1
 
-    with pytest.raises(KernelError, match="parameter found is list, expected int, float or an array"):
+    with pytest.raises(KernelError, match="parameter found is list, expected int, float, array or record"):
         translate([kernel])
+
+
+def test_records_come_out_alike() -> None:
+    found = []
+    for is_compiled in (False, True):
+        memory = KernelMemory(MEMORY, is_compiled=is_compiled)
+        points, sums = samples.Points(memory, 3), memory.array(3, np.float64)
+        points.x[:] = (0.5, -1.5, 3.0)
+        visit_all = memory.bind(samples.visit_all, points, sums)
+        visit_all()
+        visit_all()
+        found.append((points.x.tolist(), points.visits.tolist(), sums.tolist()))
+    assert found == [([2.0, -6.0, 12.0], [2, 2, 2], [4.0, -4.0, 14.0])] * 2
+
+
+def test_another_record_is_refused() -> None:
+    class Others(samples.Points):
+        pass
+
+    memory = KernelMemory(MEMORY)
+    others, found = Others(memory, 1), memory.array(1, np.float64)
+    with pytest.raises(KernelError, match="visit_all: points is Others, expected Points"):
+        memory.bind(samples.visit_all, others, found)

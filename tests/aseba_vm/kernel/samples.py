@@ -4,8 +4,35 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.types import Floats, Ints, Words, kernel
+from aseba_vm.kernel.record import Record
+from aseba_vm.kernel.types import Floats, Ints, Words, kernel
 
+SHARE = 0.1
+STEP = 3
+
+
+@kernel
+def square(x: float) -> float:
+    """Called by others."""
+    return x * x
+
+
+class Points(Record):
+    """A record of two arrays."""
+
+    x: Floats
+    visits: Ints
+
+
+@kernel
+def arithmetic(given: Floats, found: Floats) -> None:
+    """Every operation of floats."""
+    a = given[0]
+    b = given[1]
+    found[0] = a + b * SHARE
+    found[1] = a - b / 3
+    found[2] = -a
+    found[3] = abs(a) + math.sqrt(abs(b))
     found[4] = min(a, b) - max(a, 0.5)
     found[5] = float(math.floor(a)) + int(b)
     found[6] = square(a) - 2
@@ -102,6 +129,21 @@ def beyond(found: Floats) -> None:
     """Numbers without end."""
     found[0] = math.floor(1.5) * HUGE
     found[1] = -HUGE
+
+
+@kernel
+def visit(points: Points, index: int) -> None:
+    """Called with a record."""
+    points.x[index] *= 2.0
+    points.visits[index] += 1
+
+
+@kernel
+def visit_all(points: Points, found: Floats) -> None:
+    """Fields of a record, its length, and a call that passes it on."""
+    for index in range(points.count):
+        visit(points, index)
+        found[index] = points.x[index] + points.visits[index]
 
 
 HUGE = math.inf

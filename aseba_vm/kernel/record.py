@@ -6,15 +6,20 @@ same memory as Python reads it fastest: a memoryview, whose elements are Python'
 
 from __future__ import annotations
 
+import inspect
 from functools import cache
-from typing import TYPE_CHECKING, Self
+from typing import Any, Protocol, Self
 
-from thymio_sim_ros.sim.kernel.types import ALIGNMENT, DTYPES
+from aseba_vm.kernel.types import ALIGNMENT, DTYPES, ITEM_SIZES
 
-if TYPE_CHECKING:
-    from thymio_sim_ros.sim.kernel.memory import KernelMemory
+__all__ = ["ArrayMemory", "Record", "fields"]
 
-__all__ = ["Record", "fields"]
+
+class ArrayMemory(Protocol):
+    """Memory in which arrays are allocated; kernels are bound to arrays of one memory."""
+
+    def array(self, shape: int, kind: str) -> Any:
+        """Allocate an array of zeros of a type of `DTYPES`. Raises MemoryError when there is no room."""
 
 
 @cache
@@ -22,7 +27,7 @@ def fields(record: type[Record]) -> dict[str, str]:
     """The arrays of a record class by name, and their types `Floats`, `Ints` or `Words`; in the order of the class."""
     found = {}
     for base in reversed(record.__mro__):
-        for name, kind in base.__dict__.get("__annotations__", {}).items():
+        for name, kind in inspect.get_annotations(base).items():
             if kind in DTYPES:
                 found[name] = str(kind)
     return found
@@ -32,11 +37,11 @@ class Record:
     """Base of all records. `count` is the length of all arrays."""
 
     count: int
-    memory: KernelMemory
+    memory: ArrayMemory
     view: Self
     """The same record with memoryviews in place of arrays, for Python that reads single elements."""
 
-    def __init__(self, memory: KernelMemory, count: int) -> None:
+    def __init__(self, memory: ArrayMemory, count: int) -> None:
         """Allocate the arrays, all zero.
 
         Raises:
@@ -47,14 +52,14 @@ class Record:
         self.view.count = count
         self.view.view = self.view
         for name, kind in fields(type(self)).items():
-            array = memory.array(count, DTYPES[kind].type)
+            array = memory.array(count, DTYPES[kind])
             setattr(self, name, array)
             setattr(self.view, name, memoryview(array))
 
     @classmethod
     def size(cls, count: int) -> int:
         """Bytes that a record of this length takes at most."""
-        return sum(count * DTYPES[kind].itemsize + ALIGNMENT for kind in fields(cls).values())
+        return sum(count * ITEM_SIZES[kind] + ALIGNMENT for kind in fields(cls).values())
 
     def copy_from(self, other: Self) -> None:
         """Copy the elements of another record; of the longer one, only the first."""

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from aseba_vm.jit import wasm_runtime
 from aseba_vm.jit.wasm_backend import is_available
+from aseba_vm.kernel import wasm_runtime
 
 ROOT = Path(__file__).parents[3]
 ENOUGH, TOO_LITTLE = 1 << 30, 300 << 20
@@ -19,7 +19,7 @@ ENOUGH, TOO_LITTLE = 1 << 30, 300 << 20
 PROGRAM = """
 import sys
 from aseba_vm import VirtualMachine, compile
-from aseba_vm.jit import wasm_runtime
+from aseba_vm.kernel import wasm_runtime
 from aseba_vm.targets import THYMIO_II
 machine = VirtualMachine(THYMIO_II)
 machine.load(compile("var n = 0\\nwhile n < 9000 do\\nn = n + 3\\nend", THYMIO_II))
@@ -31,7 +31,7 @@ print(wasm_runtime.is_usable(), file=sys.stderr)
 BATCH_SCRIPT = """
 import sys
 from dataclasses import replace
-from aseba_vm.jit import wasm_runtime
+from aseba_vm.kernel import wasm_runtime
 from thymio_sim_ros.loading import load_playground, read_assignments
 from thymio_sim_ros.runner import Runner
 playground = load_playground("borderless")[1]
