@@ -3,9 +3,10 @@
 A kernel is a function of numbers, flat arrays and records of arrays. Every parameter has one of the types of
 `kernel.types`, `int`, `float`, or is a `Record`; a local variable has the type of its first value. There are
 assignments, `if`, `while`, `for … in range(…)`, `break`, `continue`, `return`; the operators of numbers, comparisons,
-`and`, `or`, `not`, conditional expressions; `min`, `max`, `abs`, `int`, `float`, `round`, `math.sqrt`, `math.floor`;
-numbers of the module, and kernels that it defines or imports. Floats are IEEE doubles and every operation is rounded as
-Python rounds it, so that both give the same bits; integers have 32 bits. NaN and the sign of 0 are left open.
+`and`, `or`, `not`, conditional expressions; `wrap_int`, `min`, `max`, `abs`, `int`, `float`, `round`, `math.sqrt`,
+`math.floor`; numbers of the module, and kernels that it defines or imports. Floats are IEEE doubles and every operation
+is rounded as Python rounds it, so that both give the same bits; integers have 32 bits. NaN and the sign of 0 are left
+open.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from functools import cache
 from typing import Any
 
 from aseba_vm.kernel.record import Record, fields
-from aseba_vm.kernel.types import Kernel, is_kernel
+from aseba_vm.kernel.types import Kernel, is_kernel, wrap_int
 from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["KernelError", "Signature", "parameters", "translate"]
@@ -28,7 +29,7 @@ _ARRAYS = {"Floats": ("f64", "f64.load", "f64.store", 3), "Ints": ("i32", "i32.l
 """Type of an element, instructions to read and write it, and the shift from its index to its offset."""
 _SCALARS = {"int": "i32", "float": "f64", "None": ""}
 _ARITHMETIC = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
-_BITS = {ast.LShift: "shl", ast.RShift: "shr_s", ast.BitAnd: "and", ast.BitOr: "or"}
+_BITS = {ast.LShift: "shl", ast.RShift: "shr_s", ast.BitAnd: "and", ast.BitOr: "or", ast.BitXor: "xor"}
 _COMPARISONS = {ast.Lt: "lt", ast.LtE: "le", ast.Gt: "gt", ast.GtE: "ge", ast.Eq: "eq", ast.NotEq: "ne"}
 
 Signature = tuple[dict[str, "str | type[Record]"], str]
@@ -48,7 +49,7 @@ def translate(kernels: Iterable[Kernel]) -> str:
         KernelError: A kernel uses something else than this language has.
     """
     exported = {kernel.__name__: kernel for kernel in kernels}
-    functions = {}
+    functions: dict[str, Kernel] = {}
     pending = list(exported.values())
     while pending:
         kernel = pending.pop()
@@ -307,6 +308,8 @@ class _Function:
                 (a, b), kind = self._alike(left, right)
                 if kind == "f64":  # WebAssembly has no minimum of integers
                     return f"(f64.{name} {a} {b})", kind
+            case ast.Name(id=name), [value] if self._globals.get(name) is wrap_int:
+                return self._integer(value), "i32"
             case ast.Name(id="abs"), [value]:
                 return f"(f64.abs {self._as(self._value(value), 'f64', node)})", "f64"
             case ast.Name(id="float"), [value]:

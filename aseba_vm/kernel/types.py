@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-__all__ = ["ALIGNMENT", "DTYPES", "ITEM_SIZES", "Floats", "Ints", "Kernel", "Words", "is_kernel", "kernel"]
+__all__ = ["ALIGNMENT", "DTYPES", "ITEM_SIZES", "Floats", "Ints", "Kernel", "Words", "is_kernel", "kernel", "wrap_int"]
 
 Floats = Any
 """A flat array of float64."""
@@ -29,6 +29,11 @@ def kernel(function: K) -> K:
     """Mark a function as a kernel: other kernels may call it."""
     function.is_kernel = True  # type: ignore[attr-defined]
     return function
+
+
+def wrap_int(number: int) -> int:
+    """Wrap an integer to 32 bits, as integers of compiled kernels always are; kernels call it where they rely on it."""
+    return (number + 0x80000000 & 0xFFFFFFFF) - 0x80000000
 
 
 def is_kernel(candidate: object) -> bool:

@@ -12,18 +12,17 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.batch.robot_batch import MIN_BATCH_ROBOTS, RobotBatch
+from thymio_sim_ros.sim.batch.robot_batch import RobotBatch
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveRobot, SetMotorModel, SetPen
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.input_recorder import Input, InputRecorder, Posted, Removed, Reset, Spawned, WorldOptions
-from thymio_sim_ros.sim.mechanics import wheels
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
-from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics, RobotState
+from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics
 from thymio_sim_ros.sim.playground.placement import (
     Footprint,
     Occupied,
@@ -104,12 +103,18 @@ class World:
 
     def _begin(self) -> None:
         self._clock = SimClock()
-        self._batch: RobotBatch | None = None
         self._ground.restore()
-        self._physics = Physics(self.playground.solids, self.playground.triggers)
-        self._rolled: RobotState | None = None
+        self._physics = Physics(self.playground.solids, self.playground.triggers, len(self.playground.robots))
         self._robots: dict[str, Robot] = {}
-        self._shared = SharedState(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
+        self._shared = SharedState(
+            self._clock,
+            self._ground,
+            self._physics,
+            self._robots,
+            proximity_model=self.options.proximity_model,
+            seed=self.options.seed,
+            is_noisy=self.options.noise,
+        )
         self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
         for start in self.playground.robots:
@@ -119,7 +124,7 @@ class World:
         """Last position at which the distance to an edge was computed for an object, and that distance."""
         for movable in self._physics.movables.values():
             self._drop_over_edge(movable)
-        self._form_batch()
+        self._batch = RobotBatch(self._robots.values(), self._shared)
 
     @property
     def now_ns(self) -> int:
@@ -174,25 +179,27 @@ class World:
             raise ValueError(str(error)) from error
         self._check_place(footprint_of_robot(start.name, start.pose))
         self._record(Spawned(start))
+        rows = self._batch.rows
         self._add(start)
-        self._form_batch()
+        self._batch = RobotBatch(self._robots.values(), self._shared, rows)
 
     def remove(self, robot: str) -> None:
         """Remove a robot at once; raises KeyError for an unknown name."""
         gone = self._robots.pop(robot)
+        rows = self._batch.rows
         self._physics.remove_robot(gone.body)
         self._shared.forget(gone)
         self._record(Removed(robot))
         self._posted = [(name, command) for name, command in self._posted if name != robot]
-        self._form_batch()
+        self._batch = RobotBatch(self._robots.values(), self._shared, rows)
 
     def step(self) -> StepResult:
         """Advance the world by one tick."""
         self._apply_commands()
-        self._run_actuators()
+        self._batch.act(_TICK_S)
         contacts = self._move_bodies()
         now_ns = self._clock.advance()
-        result = StepResult(now_ns, self._run_sensors(now_ns), contacts)
+        result = StepResult(now_ns, self._batch.measure(self._schedule.due(now_ns)), contacts)
         if self.recorder is not None:
             self.recorder.record_step((now_ns, tuple(result.readings), contacts))
         return result
@@ -206,20 +213,12 @@ class World:
         )
 
     def _add(self, start: RobotStart) -> None:
-        robot = Robot(
-            start, self._shared, self._plugins, self._sensors, seed=self.options.seed, noise=self.options.noise
-        )
+        robot = Robot(start, self._shared, self._plugins, self._sensors)
         self._robots[start.name] = robot
         robot.apply(self._motor_model)
         if start.pen is not None:
             pen = start.pen
             robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
-
-    def _form_batch(self) -> None:
-        """Update the robots as a batch if there are enough of them."""
-        if self._batch is not None:
-            self._batch.dissolve()
-        self._batch = RobotBatch(self._robots.values(), self._shared) if len(self._robots) >= MIN_BATCH_ROBOTS else None
 
     def _names(self) -> set[str]:
         """Return all names in use."""
@@ -261,21 +260,8 @@ class World:
             else:
                 self._robots[name].apply(command)
 
-    def _run_actuators(self) -> None:
-        if self._batch is not None:
-            self._batch.act(_TICK_S)
-            return
-        for robot in self._robots.values():
-            robot.act(_TICK_S)
-
     def _move_bodies(self) -> tuple[Contact, ...]:
-        contacts = self._physics.step()
-        self._roll()
-        if self._batch is not None:
-            self._batch.check_floor(self._floor_support)
-        else:
-            for robot in self._robots.values():
-                robot.edge_fall.check_floor(self._floor_support)
+        contacts = self._batch.move(self._floor_support)
         for movable in self._physics.movables.values():
             if movable.is_moving:
                 self._drop_over_edge(movable)
@@ -283,13 +269,6 @@ class World:
             if contact.is_new:
                 self._robots[contact.robot].wake(Contact)
         return contacts
-
-    def _roll(self) -> None:
-        """Advance the wheels by the motion of the bodies."""
-        state = self._physics.robot_state
-        if state is not self._rolled:
-            self._rolled, self._roll_all = state, state.memory.bind(wheels.roll, state)
-        self._roll_all()
 
     def _drop_over_edge(self, movable: MovableBody) -> None:
         x, y = movable.pose.x_m, movable.pose.y_m
@@ -300,15 +279,6 @@ class World:
         self._clearances[movable.name] = (x, y, clearance_m)
         if clearance_m < 0.0:
             self._physics.drop_movable(movable)
-
-    def _run_sensors(self, now_ns: int) -> Sequence[tuple[str, str, Reading]]:
-        due = self._schedule.due(now_ns)
-        if self._batch is not None:
-            return self._batch.measure(due)
-        readings: list[tuple[str, str, Reading]] = []
-        for robot in self._robots.values():
-            readings.extend(robot.measure(due))
-        return tuple(readings)
 
 
 def _finite(name: str, pose: Pose) -> Pose:

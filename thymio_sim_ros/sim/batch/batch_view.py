@@ -1,99 +1,78 @@
-"""The robots of a batch as one sensor sees them."""
+"""All robots of a world as one sensor sees them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
-from thymio_sim_ros.sim.audio.propagation import Sound
-from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
+from aseba_vm.kernel.record import Record, fields
+from thymio_sim_ros.sim.ground.sampling import Ground
+from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.model.geometry import Tilt
-from thymio_sim_ros.sim.model.noise import NormalBank, UniformBank
-from thymio_sim_ros.sim.physics import Contact, RobotState
-from thymio_sim_ros.sim.plugin_api.column_state import ColumnState
-from thymio_sim_ros.sim.plugin_api.view import SensorView
-from thymio_sim_ros.sim.raycast.batch import Fan, Indices, Values
+from thymio_sim_ros.sim.model.noise import NoiseKeys, noise_keys
+from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
+from thymio_sim_ros.sim.raycast.raycaster import Fan, Values
 from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 
-__all__ = ["BatchView"]
+__all__ = ["BatchView", "Rows", "keys_of"]
 
 S = TypeVar("S")
+R = TypeVar("R", bound=Record)
+
+Rows = dict[str, dict[str, Any]]
+"""What a record has of each robot: values by field, by robot."""
 
 
 class RobotArrays(Protocol):
     """The arrays of a batch."""
 
-    @property
-    def shared(self) -> SharedState:
-        """What all robots of the world share."""
-        ...
+    shared: SharedState
+    memory: KernelMemory
+    tick: npt.NDArray[np.int32]
 
-    @property
-    def state(self) -> RobotState:
-        """Their motion."""
-        ...
-
-    @property
-    def fallen(self) -> list[int]:
-        """Numbers of the robots that have fallen."""
-        ...
-
-    @property
-    def wheels(self) -> WheelArrays:
-        """Their wheels."""
-        ...
-
-    @property
-    def poses(self) -> Values:
-        """Poses, shape (robots, 3): x, y, yaw; a fallen robot is far from any floor."""
+    def bind_rays(self, fan: Fan) -> tuple[Callable[[], None], Values]:
+        """See `Raycaster.bind`; the function also follows what has moved."""
         ...
 
     def states(self, kind: type[S]) -> list[S]:
         """Return the state of one actuator of every robot, in the order of the world."""
         ...
 
-    def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        """Casts the rays of all robots; see `BatchRaycaster.cast`."""
-        ...
-
 
 class BatchView:
     """Satisfies `BatchSensorView`."""
 
-    __slots__ = ("_batch", "_noise", "_robots", "_uniforms", "_views", "column_state", "memory")
-
-    def __init__(self, batch: RobotArrays, robots: Sequence[Robot], views: Sequence[SensorView]) -> None:
-        self._batch, self._robots, self._views = batch, robots, views
-        self._noise: NormalBank | None = None
-        self._uniforms: UniformBank | None = None
-        self.memory: dict[str, Any] = {}
-        self.column_state = ColumnState([view.memory for view in views])
+    def __init__(self, batch: RobotArrays, robots: Sequence[Robot], user: str, before: Rows) -> None:
+        """`user` is the name of the sensor, `before` are the `rows` of the last batch."""
+        self._batch, self._robots, self._user, self._before = batch, robots, user, before
+        self._keys: NoiseKeys | None = None
+        self._record: Record | None = None
+        bodies = batch.shared.physics.robots
+        self.robots: RobotState = bodies.state
+        self.wheels: WheelState = bodies.wheels
+        self.memory, self.tick = batch.memory, batch.tick
+        self.array, self.bind, self.bind_rays, self.states = (
+            batch.memory.array,
+            batch.memory.bind,
+            batch.bind_rays,
+            batch.states,
+        )
 
     def __len__(self) -> int:
         return len(self._robots)
 
-    def release(self) -> None:
-        """Return unused random numbers and stored values to the robots."""
-        for bank in (self._noise, self._uniforms):
-            if bank is not None:
-                bank.release()
-        self.column_state.release()
-
     @property
-    def noise(self) -> NormalBank:
-        assert self._uniforms is None
-        if self._noise is None:
-            self._noise = NormalBank([view.noise for view in self._views])
-        return self._noise
-
-    @property
-    def uniforms(self) -> UniformBank:
-        assert self._noise is None
-        if self._uniforms is None:
-            self._uniforms = UniformBank([view.noise for view in self._views])
-        return self._uniforms
+    def rows(self) -> Rows:
+        """The values of the record."""
+        if self._record is None:
+            return self._before
+        names = list(fields(type(self._record)))
+        columns = [getattr(self._record, name).tolist() for name in names]
+        rows = zip(*columns, strict=True)
+        return {robot.name: dict(zip(names, row, strict=True)) for robot, row in zip(self._robots, rows, strict=True)}
 
     @property
     def now_ns(self) -> int:
@@ -104,48 +83,32 @@ class BatchView:
         return self._batch.shared.proximity_model
 
     @property
-    def poses(self) -> Values:
-        state, count = self._batch.state, len(self._robots)
-        return np.stack((state.x[:count], state.y[:count], state.yaw[:count]), axis=1)
+    def ground(self) -> Ground:
+        return self._batch.shared.ground
 
     @property
-    def motion(self) -> tuple[Values, Values]:
-        state, count = self._batch.state, len(self._robots)
-        return state.speed[:count], state.turn_rate[:count]
-
-    @property
-    def wheels(self) -> WheelArrays:
-        return self._batch.wheels
-
-    @property
-    def fallen(self) -> Sequence[int]:
-        return self._batch.fallen
-
-    @property
-    def falling(self) -> Sequence[int]:
-        return [robot for robot in self.fallen if self._robots[robot].is_falling]
+    def noise_keys(self) -> NoiseKeys:
+        if self._keys is None:
+            self._keys = keys_of(self.memory, self._robots, self._user, self._batch.shared, len(self))
+        return self._keys
 
     @property
     def tilts(self) -> Sequence[Tilt]:
-        tilts = [robot.held_tilt for robot in self._robots]
-        for robot in self.fallen:
-            tilts[robot] = self._robots[robot].tilt
-        return tilts
+        return [robot.tilt for robot in self._robots]
 
-    @property
-    def contacts(self) -> Mapping[int, tuple[Contact, ...]]:
-        touched = ((number, robot.body.touching) for number, robot in enumerate(self._robots))
-        return {number: tuple(touching.values()) for number, touching in touched if touching}
+    def record(self, kind: type[R]) -> R:
+        record = kind(self.memory, len(self._robots))
+        self._record = record
+        for index, robot in enumerate(self._robots):
+            for name, value in self._before.get(robot.name, {}).items():
+                getattr(record, name)[index] = value
+        return record
 
-    @property
-    def sounds(self) -> Sequence[Sound]:
-        return self._batch.shared.sounds()
 
-    def states(self, kind: type[S]) -> list[S]:
-        return self._batch.states(kind)
-
-    def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        return self._batch.cast(fan)
-
-    def ground_at(self, places: Values) -> tuple[Values, Values]:
-        return self._batch.shared.ground.sample_under(self._batch.poses, places)
+def keys_of(memory: KernelMemory, robots: Sequence[Robot], user: str, shared: SharedState, count: int) -> NoiseKeys:
+    """Return the keys of the random numbers of a sensor or actuator on each robot, a record of `count` elements."""
+    keys = NoiseKeys(memory, count)
+    for index, robot in enumerate(robots):
+        keys.key_1[index], keys.key_2[index] = noise_keys(shared.seed, robot.name, user)
+    keys.is_on[:] = shared.is_noisy
+    return keys

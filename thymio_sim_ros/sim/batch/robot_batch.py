@@ -1,8 +1,4 @@
-"""The robots of a world as a batch: motion, and plug-ins that support it, are computed for all robots at once.
-
-Readings are those of robots one by one, but for counts that are rounded differently due to the last bit: every sensor
-has its own random number generator on every robot, and draws from it in the same order.
-"""
+"""All robots of a world: motion, floor and sensors are computed for all of them at once."""
 
 from __future__ import annotations
 
@@ -10,106 +6,62 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import chain
 from typing import Any, TypeVar
 
-import numpy as np
-
-from thymio_sim_ros.sim.batch.batch_view import BatchView
+from thymio_sim_ros.sim.batch.batch_view import BatchView, Rows, keys_of
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport
-from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
-from thymio_sim_ros.sim.model.noise import UniformBank
+from thymio_sim_ros.sim.mechanics import motor_control, wheels
+from thymio_sim_ros.sim.mechanics.edge_fall import list_unsafe
+from thymio_sim_ros.sim.model.noise import tick_number
 from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
-from thymio_sim_ros.sim.plugin_api.view import BatchActuatorView
-from thymio_sim_ros.sim.raycast.batch import BatchRaycaster, Fan, Indices, Values
+from thymio_sim_ros.sim.raycast.raycaster import Fan, Raycaster, Values
 from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 
-__all__ = ["MIN_BATCH_ROBOTS", "RobotBatch"]
-
-Act = Callable[[Sequence[Any], BatchActuatorView, float], None]
+__all__ = ["RobotBatch"]
 
 S = TypeVar("S")
+Measure = Callable[[], Sequence[Reading | None]]
 
-MIN_BATCH_ROBOTS = 14
-"""Number of robots from which on a batch is faster (measured, docs/performance.md)."""
-
-_NOWHERE_M = -1e6
-
-
-class _ActuatorBatchView:
-    """The robots as one actuator sees them; satisfies `BatchActuatorView`."""
-
-    __slots__ = ("_clock", "memory", "noise", "wheels")
-
-    def __init__(self, shared: SharedState, wheels: WheelArrays, noise: UniformBank) -> None:
-        self._clock, self.wheels, self.noise = shared.clock, wheels, noise
-        self.memory: dict[str, Any] = {}
-
-    @property
-    def now_ns(self) -> int:
-        return self._clock.now_ns
+_SLIP_USER = "motors"
+"""Name under which wheels draw the random numbers of their slip."""
 
 
 class RobotBatch:
-    """The robots of a world; a batch is dissolved when a robot is added or removed."""
+    """The robots of a world; there is a new one when a robot is added or removed."""
 
-    def __init__(self, robots: Iterable[Robot], shared: SharedState) -> None:
+    def __init__(self, robots: Iterable[Robot], shared: SharedState, before: dict[str, Rows] | None = None) -> None:
+        """`before`: `rows` of the last batch, which must not be used any more."""
+        bodies = shared.physics.robots
         self.shared = shared
-        self._raycaster = BatchRaycaster(shared.physics.fixed, shared.physics.movable_obstacles())
+        self.memory = memory = bodies.memory
+        memory.used = bodies.first_free
         self._robots = tuple(robots)
         self._names = tuple(robot.name for robot in self._robots)
-        self._states: dict[type[Any], list[Any]] = {}
         self._order = {robot: index for index, robot in enumerate(self._robots)}
-        self._uniform_banks: list[UniformBank] = []
-        self._sensors = [sensor for sensor, _ in self._robots[0].sensors]
-        self._views = [
-            [view for _, view in column] for column in zip(*(robot.sensors for robot in self._robots), strict=True)
-        ]
-        self._batch_views = {
-            number: BatchView(self, self._robots, self._views[number])
-            for number, sensor in enumerate(self._sensors)
-            if sensor.measure_all is not None
-        }
-        self.state = shared.physics.robot_state
-        self.wheels = WheelArrays(self.state, [robot.wheels for robot in self._robots])
-        self._clearances = np.zeros((3, len(self._robots)))
-        """Position at which the distance to the edge was computed last, and the square of that distance, by robot."""
-        self._acts: list[tuple[Act, list[Any], _ActuatorBatchView]] = []
-        for instances in zip(*(robot.instances for robot in self._robots), strict=True):
-            if (update_all := instances[0].update_all) is not None:
-                uniform_bank = UniformBank([instance.view.noise for instance in instances])
-                self._uniform_banks.append(uniform_bank)
-                self._acts.append(
-                    (
-                        update_all,
-                        [instance.state for instance in instances],
-                        _ActuatorBatchView(shared, self.wheels, uniform_bank),
-                    )
-                )
-
-    def __len__(self) -> int:
-        return len(self._robots)
-
-    def dissolve(self) -> None:
-        """End the batch: every robot is updated on its own again."""
-        for bank in self._uniform_banks:
-            bank.release()
-        for view in self._batch_views.values():
-            view.release()
+        self._states: dict[type[Any], list[Any]] = {}
+        self.tick = memory.array(1, "int32")
+        self._unsafe, self._unsafe_count = memory.array(bodies.state.count, "int32"), memory.array(1, "int32")
+        slip = keys_of(memory, self._robots, _SLIP_USER, shared, bodies.state.count)
+        self._drive = memory.bind(motor_control.drive, bodies.wheels, slip, self.tick)
+        self._roll = memory.bind(wheels.roll, bodies.state, bodies.wheels)
+        self._list_unsafe = memory.bind(list_unsafe, bodies.state, self._unsafe, self._unsafe_count)
+        self._raycaster: Raycaster | None = None
+        self._views: dict[str, BatchView] = {}
+        sensors = self._robots[0].sensors if self._robots else ()
+        self._sensors = [sensor for sensor, _ in sensors]
+        self._measure: list[Measure] = []
+        for number, sensor in enumerate(self._sensors):
+            if sensor.prepare_all is not None:
+                view = BatchView(self, self._robots, sensor.name, (before or {}).get(sensor.name, {}))
+                self._views[sensor.name] = view
+                self._measure.append(sensor.prepare_all(view))
+            else:
+                self._measure.append(self._one_by_one(number))
 
     @property
-    def poses(self) -> Values:
-        """Poses, shape (robots, 3): x, y, yaw; a fallen robot is far from any floor."""
-        state, count = self.state, len(self._robots)
-        poses = np.stack((state.x[:count], state.y[:count], state.yaw[:count]), axis=1)
-        fallen = self.fallen
-        if fallen:
-            poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
-        return poses
-
-    @property
-    def fallen(self) -> list[int]:
-        """Numbers of the robots that have fallen."""
-        found: list[int] = (self.state.is_standing[: len(self._robots)] == 0).nonzero()[0].tolist()
-        return found
+    def rows(self) -> dict[str, Rows]:
+        """What the records of sensors have of each robot, by sensor."""
+        return {name: view.rows for name, view in self._views.items()}
 
     def states(self, kind: type[S]) -> list[S]:
         """Return the state of one actuator of every robot, in the order of the world."""
@@ -118,59 +70,67 @@ class RobotBatch:
             found = self._states[kind] = [robot.state(kind) for robot in self._robots]
         return found
 
+    def bind_rays(self, fan: Fan) -> tuple[Callable[[], None], Values]:
+        """See `Raycaster.bind`; the function also follows what has moved."""
+        physics = self.shared.physics
+        if self._raycaster is None:
+            movable = physics.movable_obstacles()
+            self._raycaster = Raycaster(self.memory, physics.robots.state, len(self._robots), physics.fixed, movable)
+        move, moved_obstacles = self._raycaster.move, physics.moved_obstacles
+        cast, distances = self._raycaster.bind(fan)
+
+        def move_and_cast() -> None:
+            moved = moved_obstacles()
+            if moved:
+                move(moved)
+            cast()
+
+        return move_and_cast, distances
+
     def act(self, dt_s: float) -> None:
         """Run the actuators for one tick."""
+        self.tick[0] = tick_number(self.shared.clock.now_ns)
         for robot in self._in_order(self.shared.busy):
-            robot.act(dt_s, is_batched=True)
-        for update_all, states, view in self._acts:
-            update_all(states, view, dt_s)
+            robot.act(dt_s)
+        self._drive()
 
-    def check_floor(self, floor_support: FloorSupport) -> None:
-        """Make robots without floor under their origin fall.
-
-        A robot is checked again only when it has moved by the distance to the edge that was found last.
-        """
-        places = np.stack((self.state.x[: len(self._robots)], self.state.y[: len(self._robots)]))
-        ways = places - self._clearances[:2]
-        ways *= ways
-        for index in (ways[0] + ways[1] >= self._clearances[2]).nonzero()[0].tolist():
-            x, y = places[:, index].tolist()
-            self._clearances[:, index] = x, y, self._robots[index].edge_fall.check_floor_at(floor_support, x, y) ** 2
-
-    def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        """What the rays of all robots meet now (`BatchRaycaster.cast`)."""
-        self._raycaster.move(self.shared.physics.moved_obstacles(), self.fallen)
-        return self._raycaster.cast(self.poses, fan)
+    def move(self, floor_support: FloorSupport) -> tuple[Contact, ...]:
+        """Move all bodies by a tick; robots without floor under their origin fall. Returns the contacts."""
+        contacts = self.shared.physics.step()
+        self._roll()
+        self._list_unsafe()
+        # A robot is checked again only when it has moved by the distance to the edge that was found last.
+        if self._unsafe_count[0]:
+            for index in self._unsafe[: self._unsafe_count[0]].tolist():
+                self._robots[index].edge_fall.check_floor(floor_support)
+        return contacts
 
     def measure(self, due: Sequence[int]) -> ReadingTable:
         """Return the readings of the sensors with these numbers, and of those woken."""
+        self.tick[0] = tick_number(self.shared.clock.now_ns)
         woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
         awake: Sequence[int] = sorted({*due, *chain.from_iterable(woken.values())}) if woken else due
         columns: list[tuple[str, Sequence[Reading | None]]] = []
         for number in awake:
-            sensor = self._sensors[number]
-            if number not in due:
-                some = [index for index, numbers in woken.items() if number in numbers]
-                column: Sequence[Reading | None] = self._measure_some(number, some)
-            elif sensor.measure_all is not None:
-                column = sensor.measure_all(self._batch_views[number])
+            if number in due:
+                column = self._measure[number]()
             else:
-                column = [sensor.measure(view) for view in self._views[number]]
-            columns.append((sensor.name, column))
+                some = [index for index, numbers in woken.items() if number in numbers]
+                column = [
+                    robot.measure_one(number) if index in some else None for index, robot in enumerate(self._robots)
+                ]
+            columns.append((self._sensors[number].name, column))
         return ReadingTable(self._names, columns)
 
-    def _measure_some(self, number: int, some: Sequence[int]) -> Sequence[Reading | None]:
-        """Return the readings of one sensor of some robots."""
-        column: list[Reading | None] = [None] * len(self._robots)
-        view = self._batch_views.get(number)
-        for index in some:
-            if view is not None:
-                view.column_state.write_row(index)
-            column[index] = self._robots[index].measure_one(number)
-            if view is not None:
-                view.column_state.read_row(index)
-        return column
+    def _one_by_one(self, number: int) -> Measure:
+        """Return a function that measures a sensor of all robots, one after the other."""
+        sensor, views = self._sensors[number], [robot.sensors[number][1] for robot in self._robots]
+        measure = sensor.measure
+        assert measure is not None
+        return lambda: [measure(view) for view in views]
 
     def _in_order(self, some: Collection[Robot]) -> list[Robot]:
         """Return some robots in the order of the world."""
-        return [robot for robot in self._robots if robot in some] if some else []
+        if len(some) < 2:
+            return list(some)
+        return sorted(some, key=self._order.__getitem__)

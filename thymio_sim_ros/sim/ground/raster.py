@@ -16,7 +16,7 @@ from thymio_sim_ros.sim.ground.decals import Area, area_of, bands, few_colors, l
 from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Color, Floor, Mark, Print
 
-__all__ = ["MAX_COST", "Area", "Picture", "cost"]
+__all__ = ["MAX_COST", "Area", "Picture", "cost", "grid_of"]
 
 _PIXEL_M = 0.001
 _MAX_PIXELS = 25_000_000
@@ -33,7 +33,7 @@ _ROW_COST, _PRINT_COST = 2000, 20
 
 def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
     """Return the cost of rasterizing a ground, in pixels of paint; each takes about a nanosecond."""
-    pixel_m, origin, shape = _grid(floors)
+    pixel_m, origin, shape = grid_of(floors)
     found = 0
     for mark in (*floors, *paints):
         left, bottom, right, top = area_of(mark, pixel_m, origin, shape)
@@ -42,7 +42,7 @@ def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
     return found
 
 
-def _grid(floors: Sequence[Floor]) -> tuple[float, tuple[int, int], tuple[int, int]]:
+def grid_of(floors: Sequence[Floor]) -> tuple[float, tuple[int, int], tuple[int, int]]:
     """Return the size of a pixel in m, column and row of the first pixel, and number of rows and columns."""
     corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
     low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
@@ -57,13 +57,27 @@ def _grid(floors: Sequence[Floor]) -> tuple[float, tuple[int, int], tuple[int, i
 class Picture:
     """Colors by number; number 0 is where there is no floor. Invariant: drawing never makes nor removes floor."""
 
-    def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
-        self.pixel_m, self.origin, shape = _grid(floors)
+    COLORS = _MAX_COLORS + 1
+    """Color numbers that there can be."""
+
+    def __init__(
+        self,
+        floors: Sequence[Floor],
+        paints: Sequence[Mark],
+        pixels: npt.NDArray[np.uint16],
+        grays: npt.NDArray[np.float64],
+    ) -> None:
+        """Rasterize floors and paint.
+
+        Args:
+            floors: where there is floor, later ones on earlier ones.
+            paints: markings on the floor, later ones on earlier ones.
+            pixels: zeros, in the shape of `grid_of`; gets the color numbers by row (y) and column (x).
+            grays: zeros, shape (COLORS,); gets the gray 0…1 of each color: the mean of its parts.
+        """
+        self.pixel_m, self.origin, _ = grid_of(floors)
         """Size of a pixel, and column and row of the first one, counted from the world's origin."""
-        self.pixels = np.zeros(shape, dtype=np.uint16)
-        """Color numbers by row (y) and column (x)."""
-        self.grays = np.zeros(_MAX_COLORS + 1)
-        """Gray 0…1 of each color: the mean of its parts."""
+        self.pixels, self.grays = pixels, grays
         self._palette: list[Color] = [(0.0, 0.0, 0.0)]
         self._numbers: dict[Color, int] = {}
         for floor in floors:
@@ -123,19 +137,6 @@ class Picture:
             return False
         self.pixels[:], self._before = self._before, None
         return True
-
-    def move_to(self, pixels: npt.NDArray[np.uint16], grays: npt.NDArray[np.float64]) -> None:
-        """Use these arrays, which have the same content, from now on: they are the memory of a kernel."""
-        self.pixels, self.grays = pixels, grays
-
-    def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint16]:
-        """Return rows `top` to `bottom` and columns `left` to `right` (exclusive); outside the raster is no floor."""
-        height, width = self.pixels.shape
-        part = np.zeros((bottom - top, right - left), dtype=np.uint16)
-        y0, y1, x0, x1 = max(top, 0), min(bottom, height), max(left, 0), min(right, width)
-        if y0 < y1 and x0 < x1:
-            part[y0 - top : y1 - top, x0 - left : x1 - left] = self.pixels[y0:y1, x0:x1]
-        return part
 
     def _fill(self, vertices: Sequence[Point], color: Color, *, everywhere: bool) -> None:
         """Paint the pixels whose center lies in a convex polygon; without `everywhere` only those that are floor.

@@ -6,8 +6,9 @@ compiled kernel that reads beyond its arrays would not be noticed; the tests run
 
 from __future__ import annotations
 
+import ctypes
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
@@ -20,7 +21,7 @@ from aseba_vm.kernel.types import ALIGNMENT, DTYPES, Kernel
 from aseba_vm.kernel.wasm_calls import make_caller
 from aseba_vm.kernel.wasm_runtime import WasmRuntime, is_usable
 
-__all__ = ["KernelMemory", "is_available"]
+__all__ = ["Argument", "KernelMemory", "is_available"]
 
 _PAGE = 0x10000
 
@@ -50,20 +51,19 @@ class KernelMemory:
             pages = -(-size // _PAGE)
             memory = wasmtime.Memory(self._store, wasmtime.MemoryType(wasmtime.Limits(pages, pages)))
             self._memory = memory
-            self._bytes = np.ctypeslib.as_array(memory.data_ptr(self._store), (pages * _PAGE,))
+            block = (ctypes.c_ubyte * (pages * _PAGE)).from_address(
+                ctypes.addressof(memory.data_ptr(self._store).contents)
+            )
+            block.owner = self  # arrays keep the block alive, and so the memory
+            self._bytes = np.ctypeslib.as_array(block)
             runtime.register(self)
         else:
             self._bytes = np.zeros(size + ALIGNMENT, dtype=np.uint8)
         self._base = self._bytes.ctypes.data
-        self._used = 0
-
-    @classmethod
-    def holding(cls, floats: Sequence[Shape], ints: Sequence[Shape] = ()) -> tuple[KernelMemory, list[Any], list[Any]]:
-        """Allocate a memory for arrays of these shapes; returns it, the float64 arrays and the int32 arrays."""
-        kinds = [(shape, np.float64) for shape in floats], [(shape, np.int32) for shape in ints]
-        memory = cls(sum(cls.room(shape, kind) for part in kinds for shape, kind in part))
-        found = [[memory.array(shape, kind) for shape, kind in part] for part in kinds]
-        return memory, found[0], found[1]
+        self.used = 0
+        """Number of bytes in use; set it back to free the arrays allocated since."""
+        self._touched = 0
+        """Number of bytes that have ever been in use; those behind are zero."""
 
     @staticmethod
     def room(shape: Shape, kind: npt.DTypeLike) -> int:
@@ -72,13 +72,15 @@ class KernelMemory:
 
     def array(self, shape: Shape, kind: npt.DTypeLike) -> npt.NDArray[Any]:
         """Allocate an array of zeros. Raises MemoryError when there is no room."""
-        start = -(-self._used // ALIGNMENT) * ALIGNMENT
+        start = -(-self.used // ALIGNMENT) * ALIGNMENT
         end = start + int(np.prod(shape)) * np.dtype(kind).itemsize
         if end > len(self._bytes):
             raise MemoryError(
                 f"an array of {shape}: found {len(self._bytes) - start} free bytes, expected {end - start}"
             )
-        self._used = end
+        self.used = end
+        self._bytes[start : min(end, self._touched)] = 0
+        self._touched = max(self._touched, end)
         return self._bytes[start:end].view(kind).reshape(shape)
 
     def bind(self, kernel: Kernel, *arguments: Argument) -> Callable[[], Any]:

@@ -1,30 +1,40 @@
-"""Detects when a robot leaves the floor."""
+"""Detects when robots leave the floor."""
 
 from __future__ import annotations
 
+from aseba_vm.kernel.types import Ints, kernel
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 from thymio_sim_ros.sim.mechanics.fall import Fall
-from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.clock import TICK_NS, SimClock
 from thymio_sim_ros.sim.model.geometry import Tilt
+from thymio_sim_ros.sim.model.robot_state import RobotState
 from thymio_sim_ros.sim.physics import Physics, RobotBody
 
-__all__ = ["EdgeFall"]
+__all__ = ["EdgeFall", "list_unsafe"]
 
-_MAX_TICK_DISTANCE_M = robot_constants.MAX_SPEED_M_S * TICK_NS * 1e-9
-"""Longest distance of a robot in a tick, unless it is pushed."""
-_MAX_SAFE_TICKS = 100
+
+@kernel
+def list_unsafe(robots: RobotState, unsafe: Ints, count: Ints) -> None:
+    """Write the standing robots that have moved by the distance to the edge found last to `unsafe`, `count[0]` of them."""
+    found = 0
+    for robot in range(robots.count):
+        dx = robots.x[robot] - robots.safe_x[robot]
+        dy = robots.y[robot] - robots.safe_y[robot]
+        safe = robots.safe_m[robot]
+        if robots.is_standing[robot] == 1 and dx * dx + dy * dy >= safe * safe:
+            unsafe[found] = robot
+            found += 1
+    count[0] = found
 
 
 class EdgeFall:
     """The support of one robot. Invariant: its body has fallen exactly when `tilt` is not None."""
 
-    __slots__ = ("_body", "_clock", "_fall", "_physics", "_safe_ticks")
+    __slots__ = ("_body", "_clock", "_fall", "_physics")
 
     def __init__(self, clock: SimClock, physics: Physics, body: RobotBody) -> None:
         self._clock, self._physics, self._body = clock, physics, body
         self._fall: Fall | None = None
-        self._safe_ticks = 0
 
     @property
     def tilt(self) -> Tilt | None:
@@ -38,24 +48,15 @@ class EdgeFall:
 
     def clear(self) -> None:
         """Forget a fall: the robot was placed."""
-        self._fall, self._safe_ticks = None, 0
+        self._fall = None
+        self._body.state.safe_m[self._body.index] = 0.0
 
     def check_floor(self, floor_support: FloorSupport) -> None:
-        """Make the robot fall if there is no floor under its origin."""
-        # The clearance is a lower bound of the distance to the edge, so for some ticks the robot cannot reach it by its
-        # own wheels. A robot in contact may be pushed faster and is checked in each tick.
-        if self._safe_ticks > 0 and not self._body.touching:
-            self._safe_ticks -= 1
-        elif self._fall is None:
-            safe_m = self.check_floor_at(floor_support, self._body.pose.x_m, self._body.pose.y_m)
-            self._safe_ticks = int(min(safe_m / _MAX_TICK_DISTANCE_M, _MAX_SAFE_TICKS))
-
-    def check_floor_at(self, floor_support: FloorSupport, x_m: float, y_m: float) -> float:
-        """Make the robot fall if there is no floor at its position; returns a lower bound of the distance to the
-        edge in m, 0 when it falls.
-        """
+        """Make the robot fall if there is no floor under its origin; else note how far it is from the edge."""
+        state, index = self._body.state, self._body.index
+        x_m, y_m = state.x[index], state.y[index]
         clearance_m = floor_support.clearance_m(x_m, y_m)
-        if clearance_m < 0.0 and self._fall is None:
+        if clearance_m < 0.0:
             self._fall = Fall(self._clock.now_ns + TICK_NS, self._body.course_rad)
             self._physics.drop_robot(self._body)
-        return max(0.0, clearance_m)
+        state.safe_x[index], state.safe_y[index], state.safe_m[index] = x_m, y_m, max(0.0, clearance_m)

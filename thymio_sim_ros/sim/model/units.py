@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from aseba_vm.kernel.types import kernel
 from thymio_sim_ros.sim.commands import LED_FULL
+from thymio_sim_ros.sim.kernel.elementary import exp
 from thymio_sim_ros.sim.model.robot_constants import (
     ACC_LIMIT,
     ACC_PER_G,
@@ -22,9 +21,6 @@ from thymio_sim_ros.sim.model.robot_constants import (
     PWM_LIMIT,
     PWM_PER_SPEED_UNIT,
 )
-
-Values = npt.NDArray[np.float64]
-Counts = npt.NDArray[np.int64]
 
 _UNITS_PER_M_S = FULL_TARGET / MAX_SPEED_M_S * (1 + 1e-9)
 """A hair more, so that a target does not lose one when it comes back as a speed."""
@@ -43,14 +39,10 @@ _GROUND_SLOPE = 9.0
 _GROUND_MIDDLE = 0.44
 
 
+@kernel
 def speed_to_units(speed_m_s: float) -> int:
     """Return the ground speed of a wheel in m/s as motor.*.speed, truncated as in the reference."""
     return int(speed_m_s * _UNITS_PER_M_S)
-
-
-def speeds_to_units(speeds_m_s: Values) -> Counts:
-    """Convert speeds as `speed_to_units` does, shape kept."""
-    return (speeds_m_s * _UNITS_PER_M_S).astype(np.int64)
 
 
 def units_to_speed(target: int) -> float:
@@ -61,18 +53,14 @@ def units_to_speed(target: int) -> float:
     return target * (MAX_SPEED_M_S / FULL_TARGET)
 
 
+@kernel
 def units_to_pwm(speed: int) -> int:
     """Return motor.*.pwm for a speed in Thymio units."""
     pwm = int(PWM_PER_SPEED_UNIT * speed)
     return pwm if -PWM_LIMIT <= pwm <= PWM_LIMIT else PWM_LIMIT if pwm > 0 else -PWM_LIMIT
 
 
-def units_to_pwms(speeds: Counts) -> Counts:
-    """Convert speeds as `units_to_pwm` does, shape kept."""
-    pwms: Counts = np.maximum(-PWM_LIMIT, np.minimum(PWM_LIMIT, (PWM_PER_SPEED_UNIT * speeds).astype(np.int64)))
-    return pwms
-
-
+@kernel
 def proximity_response(distance_m: float) -> float:
     """Return the response F of one ray to an obstacle at a distance in m; 0 beyond the range.
 
@@ -85,15 +73,6 @@ def proximity_response(distance_m: float) -> float:
     return _PROXIMITY_SCALE / (distance_m * distance_m - 2.0 * _PROXIMITY_X0_M * distance_m + _PROXIMITY_C_M2)
 
 
-def proximity_responses(distances_m: Values) -> Values:
-    """Compute `proximity_response` of many rays, shape kept."""
-    near = np.minimum(distances_m, PROXIMITY_RANGE_M)
-    found = _PROXIMITY_SCALE / (near * near - 2.0 * _PROXIMITY_X0_M * near + _PROXIMITY_C_M2)
-    found[near < _PROXIMITY_X0_M] = PROXIMITY_FULL
-    found[distances_m > PROXIMITY_RANGE_M] = 0.0
-    return found
-
-
 def proximity_distance(count: float) -> float:
     """Return the distance in m of a wall across the axis that gives this count above 0; at most the range."""
     if count >= PROXIMITY_FULL:
@@ -102,9 +81,10 @@ def proximity_distance(count: float) -> float:
     return min(PROXIMITY_RANGE_M, _PROXIMITY_X0_M + math.sqrt(max(0.0, square)))
 
 
+@kernel
 def ground_response(reflectance: float) -> float:
     """Return the count of a ground sensor over a gray 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
-    return _GROUND_BLACK + _GROUND_SPAN / (1.0 + math.exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
+    return _GROUND_BLACK + _GROUND_SPAN / (1.0 + exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
 
 
 def ground_reflectance(count: float) -> float:
@@ -115,21 +95,9 @@ def ground_reflectance(count: float) -> float:
     return min(1.0, max(0.0, _GROUND_MIDDLE - math.log(_GROUND_SPAN / above - 1.0) / _GROUND_SLOPE))
 
 
-def ground_responses(reflectances: Values) -> Values:
-    """Compute `ground_response` of many grays, shape kept."""
-    found: Values = _GROUND_BLACK + _GROUND_SPAN / (1.0 + np.exp(-_GROUND_SLOPE * (reflectances - _GROUND_MIDDLE)))
-    return found
-
-
 def acceleration_to_units(acceleration_m_s2: float) -> int:
     """Return one axis of acc for m/s²: 23 for each g, within ±32 (section 7.3)."""
     return round(max(-ACC_LIMIT, min(ACC_LIMIT, acceleration_m_s2 * (ACC_PER_G / GRAVITY_M_S2))))
-
-
-def accelerations_to_units(accelerations_m_s2: Values) -> Counts:
-    """Convert accelerations as `acceleration_to_units` does, shape kept."""
-    counts = accelerations_m_s2 * (ACC_PER_G / GRAVITY_M_S2)
-    return np.rint(np.maximum(-ACC_LIMIT, np.minimum(ACC_LIMIT, counts))).astype(np.int64)
 
 
 def units_to_acceleration(count: int) -> float:

@@ -10,7 +10,6 @@ from thymio_sim_ros.sim.physics.contact import Contact
 from thymio_sim_ros.sim.physics.door_body import DoorBody
 from thymio_sim_ros.sim.physics.movable_body import MovableBody
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.physics.robot_state import RobotState
 from thymio_sim_ros.sim.physics.space import Physics
 
-__all__ = ["Contact", "DoorBody", "MovableBody", "Physics", "RobotBody", "RobotState"]
+__all__ = ["Contact", "DoorBody", "MovableBody", "Physics", "RobotBody"]

@@ -13,10 +13,10 @@ from __future__ import annotations
 import math
 
 from aseba_vm.kernel.types import Floats, Ints, kernel
+from thymio_sim_ros.sim.kernel.elementary import cos, sin
 from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, TICK_S
-from thymio_sim_ros.sim.physics.robot_state import RobotState
-from thymio_sim_ros.sim.physics.trigonometry import cos, sin
 
 __all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "push", "read_motion", "read_poses"]
 
@@ -36,7 +36,7 @@ _SUB_STEPS = SUB_STEPS
 
 
 @kernel
-def push(robots: RobotState, orders: Floats) -> None:
+def push(robots: RobotState, wheels: WheelState, orders: Floats) -> None:
     """Before a sub-step: set the speed of the wheels, or in contact a force toward it, limited by the grip.
 
     `orders` has six values for each standing robot: velocity x, y, rate of turn, force x, y, torque.
@@ -45,8 +45,8 @@ def push(robots: RobotState, orders: Floats) -> None:
     for robot in range(robots.count):
         if robots.is_standing[robot] == 0:
             continue
-        speed = (robots.ground_left[robot] + robots.ground_right[robot]) / 2.0
-        turn_rate = (robots.ground_right[robot] - robots.ground_left[robot]) / _TRACK_M
+        speed = (wheels.ground[2 * robot] + wheels.ground[2 * robot + 1]) / 2.0
+        turn_rate = (wheels.ground[2 * robot + 1] - wheels.ground[2 * robot]) / _TRACK_M
         heading = robots.yaw[robot] + turn_rate / 2.0 * _SUB_STEP_S
         if robots.is_touching[robot] == 0:
             robots.speed[robot] = speed
@@ -83,7 +83,7 @@ def push(robots: RobotState, orders: Floats) -> None:
 
 
 @kernel
-def read_motion(robots: RobotState, rows: Ints, bodies: Floats, earlier: Ints) -> None:
+def read_motion(robots: RobotState, wheels: WheelState, rows: Ints, bodies: Floats, earlier: Ints) -> None:
     """After a sub-step: read the motion that contacts allowed to the robots that are in contact or were in this tick.
 
     `bodies` has six values for each body: x, y, angle, velocity x, y, rate of turn; `rows` are the robots' rows there.
@@ -96,8 +96,8 @@ def read_motion(robots: RobotState, rows: Ints, bodies: Floats, earlier: Ints) -
             robots.was_touching[robot] = 1
             # The contact began in this sub-step: in the earlier ones the robot had the speed of the wheels.
             part = float(earlier[0]) / _SUB_STEPS
-            robots.covered_left[robot] = robots.ground_left[robot] * part
-            robots.covered_right[robot] = robots.ground_right[robot] * part
+            wheels.covered[2 * robot] = wheels.ground[2 * robot] * part
+            wheels.covered[2 * robot + 1] = wheels.ground[2 * robot + 1] * part
         place = 6 * rows[robot]
         robots.yaw[robot] = bodies[place + 2]
         robots.velocity_x[robot] = bodies[place + 3]
@@ -108,22 +108,22 @@ def read_motion(robots: RobotState, rows: Ints, bodies: Floats, earlier: Ints) -
         half = turn_rate * _TRACK_M / 2.0
         robots.speed[robot] = speed
         robots.turn_rate[robot] = turn_rate
-        robots.covered_left[robot] = robots.covered_left[robot] + (speed - half) / _SUB_STEPS
-        robots.covered_right[robot] = robots.covered_right[robot] + (speed + half) / _SUB_STEPS
+        wheels.covered[2 * robot] = wheels.covered[2 * robot] + (speed - half) / _SUB_STEPS
+        wheels.covered[2 * robot + 1] = wheels.covered[2 * robot + 1] + (speed + half) / _SUB_STEPS
 
 
 @kernel
-def read_poses(robots: RobotState, rows: Ints, bodies: Floats) -> None:
+def read_poses(robots: RobotState, wheels: WheelState, rows: Ints, bodies: Floats) -> None:
     """After a tick: read the poses; a robot that touched nothing covered what its wheels gave. See `read_motion`."""
     for robot in range(robots.count):
         if robots.is_standing[robot] == 0:
-            robots.covered_left[robot] = robots.ground_left[robot]
-            robots.covered_right[robot] = robots.ground_right[robot]
+            wheels.covered[2 * robot] = wheels.ground[2 * robot]
+            wheels.covered[2 * robot + 1] = wheels.ground[2 * robot + 1]
             continue
         place = 6 * rows[robot]
         robots.x[robot] = bodies[place]
         robots.y[robot] = bodies[place + 1]
         robots.yaw[robot] = bodies[place + 2]
         if robots.was_touching[robot] == 0:
-            robots.covered_left[robot] = robots.ground_left[robot]
-            robots.covered_right[robot] = robots.ground_right[robot]
+            wheels.covered[2 * robot] = wheels.ground[2 * robot]
+            wheels.covered[2 * robot + 1] = wheels.ground[2 * robot + 1]

@@ -4,38 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
 import pymunk
 
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
 from thymio_sim_ros.sim.physics import driving
 from thymio_sim_ros.sim.physics.contact import Contact
 from thymio_sim_ros.sim.physics.pymunk_batch_io import BodyReader, BodyWriter
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.physics.robot_state import RobotState
 
 __all__ = ["RobotBodies"]
 
 _VALUES = 6
 """Values of a body that pymunk reads and writes."""
+_SHARED_BYTES, _ROBOT_BYTES = 1 << 20, 1 << 16
+"""Room in the memory for the arrays of sensors, for all robots and for each: far more than they need. What is not used
+costs only address space."""
 
 
 class RobotBodies:
-    """The robots of a space. pymunk owns poses and velocities; `state` is what the last tick ended with.
+    """The robots of a space. pymunk owns poses and velocities; `state` and `wheels` are what the last tick ended with.
 
-    A robot that has fallen is not in the space.
+    A robot that has fallen is not in the space. `memory` holds the records; sensors allocate their arrays behind them,
+    from `first_free` on. All three are replaced when more robots come than there is room for.
     """
 
-    def __init__(self, space: pymunk.Space, others: int) -> None:
-        """`others`: the number of other bodies that may be in the space."""
-        self._space, self._others = space, others
+    def __init__(self, space: pymunk.Space, bodies: int, obstacles: int, robots: int) -> None:
+        """Allocate the memory.
+
+        Args:
+            space: where the robots are.
+            bodies: number of other bodies that may be in the space.
+            obstacles: number of obstacles, fixed and movable.
+            robots: number of robots that will be added at once.
+        """
+        self._space, self._others, self._obstacles = space, bodies, obstacles
         self._robots: list[RobotBody] = []
         self._held: dict[RobotBody, None] = {}
         """Robots that are in contact or were in this tick."""
         self.reader = BodyReader(space)
         self._order = -1
-        self._allocate(1)
+        self._allocate(max(1, robots))
 
     def __iter__(self) -> Iterator[RobotBody]:
         return iter(self._robots)
@@ -43,13 +53,13 @@ class RobotBodies:
     def add(self, name: str, pose: Pose) -> RobotBody:
         """Add a robot at rest at a pose."""
         if len(self._robots) == self.state.count:
-            before = self.state
-            self._allocate(2 * before.count)
-            self.state.copy_from(before)
-            for index, other in enumerate(self._robots):
-                other.attach(self.state.view, index)
+            before = self.state, self.wheels
+            self._allocate(2 * self.state.count)
+            self.state.copy_from(before[0])
+            self.wheels.copy_from(before[1])
+            self._attach()
         robot = RobotBody(name, pose, self._held)
-        robot.attach(self.state.view, len(self._robots))
+        robot.attach(self.state.view, self.wheels.view, len(self._robots))
         self._robots.append(robot)
         self._space.add(robot.body, robot.shape)
         robot.place(pose)
@@ -63,8 +73,9 @@ class RobotBodies:
         self._held.pop(robot, None)
         del self._robots[robot.index]
         self.state.remove(robot.index)
-        for index, other in enumerate(self._robots):
-            other.attach(self.state.view, index)
+        for _ in range(2):
+            self.wheels.remove(2 * robot.index)
+        self._attach()
         self._choose()
 
     def drop(self, robot: RobotBody) -> None:
@@ -127,6 +138,10 @@ class RobotBodies:
             self._rows[[robot.index for robot in standing]] = rows
         self._bodies[: len(reader.state)] = reader.state
 
+    def _attach(self) -> None:
+        for index, robot in enumerate(self._robots):
+            robot.attach(self.state.view, self.wheels.view, index)
+
     def _choose(self) -> None:
         """Note which bodies are in the space."""
         self._order = -1
@@ -135,12 +150,21 @@ class RobotBodies:
     def _allocate(self, count: int) -> None:
         """Arrays for so many robots, and the kernels bound to them."""
         bodies = count + self._others + 1
-        shapes = ((count, _VALUES), np.float64), ((bodies, _VALUES), np.float64), (count, np.int32), (1, np.int32)
-        memory = KernelMemory(RobotState.size(count) + sum(KernelMemory.room(*shape) for shape in shapes))
-        self.state = RobotState(memory, count)
+        shapes = ((count, _VALUES), "float64"), ((bodies, _VALUES), "float64"), (count, "int32"), (1, "int32")
+        memory = KernelMemory(
+            RobotState.size(count)
+            + WheelState.size(2 * count)
+            + sum(KernelMemory.room(*shape) for shape in shapes)
+            + _SHARED_BYTES
+            + count * (_ROBOT_BYTES + 4 * (self._obstacles + count))  # pairs of a robot and what it may see
+        )
+        self.memory = memory
+        self.state, self.wheels = RobotState(memory, count), WheelState(memory, 2 * count)
         orders, self._bodies, self._rows, self._earlier = (memory.array(*shape) for shape in shapes)
+        self.first_free = memory.used
         self._writer = BodyWriter(orders)
         self._order = -1
-        self._push = memory.bind(driving.push, self.state, orders)
-        self._read_motion = memory.bind(driving.read_motion, self.state, self._rows, self._bodies, self._earlier)
-        self._read_poses = memory.bind(driving.read_poses, self.state, self._rows, self._bodies)
+        records = self.state, self.wheels
+        self._push = memory.bind(driving.push, *records, orders)
+        self._read_motion = memory.bind(driving.read_motion, *records, self._rows, self._bodies, self._earlier)
+        self._read_poses = memory.bind(driving.read_poses, *records, self._rows, self._bodies)

@@ -9,9 +9,9 @@ import pymunk
 
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
+from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
 from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, Contact
 from thymio_sim_ros.sim.physics.driving import MOMENT_KG_M2
-from thymio_sim_ros.sim.physics.robot_state import RobotState
 from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle
 
 __all__ = ["ROBOT_TYPE", "RobotBody"]
@@ -23,9 +23,21 @@ _HULL = robot_constants.hull()
 
 
 class RobotBody:
-    """One robot's body. `state` has its motion at `index`, after the last tick."""
+    """One robot's body. `state` has its motion at `index`, after the last tick; `wheels` has that of its wheels."""
 
-    __slots__ = ("_held", "_obstacle", "_pose", "body", "index", "is_fallen", "name", "shape", "state", "touching")
+    __slots__ = (
+        "_held",
+        "_obstacle",
+        "_pose",
+        "body",
+        "index",
+        "is_fallen",
+        "name",
+        "shape",
+        "state",
+        "touching",
+        "wheels",
+    )
 
     def __init__(self, name: str, pose: Pose, held: dict[RobotBody, None]) -> None:
         """`held`: where it adds itself when a contact begins or ends. It is placed once it has been attached."""
@@ -35,6 +47,7 @@ class RobotBody:
         self.is_fallen = False
         """Whether it has fallen; nothing touches or sees it until it is placed."""
         self.state: RobotState
+        self.wheels: WheelState
         self.index = 0
         self._pose = pose
         self._obstacle: tuple[Pose, ConvexObstacle] | None = None
@@ -44,9 +57,9 @@ class RobotBody:
         self.shape.collision_type = ROBOT_TYPE
         self.shape.elasticity = ROBOT_BOUNCE
 
-    def attach(self, state: RobotState, index: int) -> None:
-        """Use an element of the view of a record from now on."""
-        self.state, self.index = state, index
+    def attach(self, state: RobotState, wheels: WheelState, index: int) -> None:
+        """Use an element of the views of these records from now on."""
+        self.state, self.wheels, self.index = state, wheels, index
 
     @property
     def pose(self) -> Pose:
@@ -122,7 +135,7 @@ class RobotBody:
         """Its contacts are no longer new; in contact, it has covered nothing yet in this tick."""
         state, index = self.state, self.index
         state.was_touching[index] = state.is_touching[index]
-        state.covered_left[index] = state.covered_right[index] = 0.0
+        self.wheels.covered[2 * index] = self.wheels.covered[2 * index + 1] = 0.0
         for key, contact in self.touching.items():
             if contact.is_new:
                 self.touching[key] = replace(contact, is_new=False)

@@ -17,7 +17,6 @@ from thymio_sim_ros.sim.physics.door_controller import DoorController
 from thymio_sim_ros.sim.physics.movable_body import AT_REST_M_S, MovableBody
 from thymio_sim_ros.sim.physics.robot_bodies import RobotBodies
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.physics.robot_state import RobotState
 from thymio_sim_ros.sim.raycast.broadphase import Broadphase, Mover
 from thymio_sim_ros.sim.raycast.scalar import Obstacle, Surroundings, obstacle_of
 
@@ -39,7 +38,8 @@ _DROWSY_S = 0.1
 class Physics:
     """The bodies of a world. Invariant: only `step` and the placing methods move them."""
 
-    def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger] = ()) -> None:
+    def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger] = (), robots: int = 1) -> None:
+        """Create the space; `robots` is the number of robots that will be added at once."""
         self._space = pymunk.Space()
         self._space.collision_slop = _SLOP_M
         self._space.iterations = _ITERATIONS
@@ -66,7 +66,7 @@ class Physics:
         self.fixed: tuple[Obstacle, ...] = tuple(obstacle_of(solid) for solid in solids if solid.is_fixed)
         """Obstacles that never move."""
         self._broadphase = Broadphase(self.fixed)
-        self._robots = RobotBodies(self._space, len(self._numbers))
+        self.robots = RobotBodies(self._space, len(self._numbers), len(solids), robots)
         self._list_movers()
 
     @property
@@ -93,14 +93,9 @@ class Physics:
         self._moved.clear()
         return found
 
-    @property
-    def robot_state(self) -> RobotState:
-        """The motion of all robots, in the order in which they were added; another record after one is added."""
-        return self._robots.state
-
     def add_robot(self, name: str, pose: Pose) -> RobotBody:
         """Add the body of a robot, at rest at a pose."""
-        robot = self._robots.add(name, pose)
+        robot = self.robots.add(name, pose)
         self._contact_tracker.watch(robot.shape, robot)
         self._list_movers()
         return robot
@@ -108,13 +103,13 @@ class Physics:
     def remove_robot(self, robot: RobotBody) -> None:
         """Remove a robot's body and its contacts."""
         self._contact_tracker.unwatch(robot.shape)
-        self._robots.remove(robot)
+        self.robots.remove(robot)
         self._list_movers()
 
     def drop_robot(self, robot: RobotBody) -> None:
         """Make a robot fall; nothing touches or sees it until it is placed."""
         self._contact_tracker.forget(robot.shape)
-        self._robots.drop(robot)
+        self.robots.drop(robot)
         self._list_movers()
 
     def drop_movable(self, movable: MovableBody) -> None:
@@ -128,7 +123,7 @@ class Physics:
         """Place a robot or an object at a pose, at rest; a fallen one stands on the floor again."""
         was_fallen = body.is_fallen
         if isinstance(body, RobotBody):
-            self._robots.place(body, pose)
+            self.robots.place(body, pose)
         else:
             body.place(pose)
             if was_fallen:
@@ -146,16 +141,16 @@ class Physics:
         """Advance by one tick; returns the contacts at its end, by robot and in the order in which they began."""
         self._broadphase.invalidate_movers()
         self._door_controller.begin_tick(self._broadphase)
-        self._robots.begin_tick()
+        self.robots.begin_tick()
         for earlier in range(SUB_STEPS):
-            self._robots.push()
+            self.robots.push()
             self._space.step(SUB_STEP_S)
-            self._robots.finish_sub_step(earlier)
-        self._robots.end_tick()
+            self.robots.finish_sub_step(earlier)
+        self.robots.end_tick()
         for movable in self._movables.values():
             movable.end_tick()
         self._door_controller.end_tick(self._space)
-        return self._robots.contacts()
+        return self.robots.contacts()
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """Return the obstacles within `reach_m` of a robot's origin that are at least `height_m` high.
@@ -184,7 +179,7 @@ class Physics:
 
     def _list_movers(self) -> None:
         """Update the list of moving bodies in the broadphase."""
-        movers: list[Mover] = [robot for robot in self._robots if not robot.is_fallen]
+        movers: list[Mover] = [robot for robot in self.robots if not robot.is_fallen]
         movers += [movable for movable in self._movables.values() if not movable.is_fallen]
         self._broadphase.replace_movers([*movers, *self.doors.values()])
 

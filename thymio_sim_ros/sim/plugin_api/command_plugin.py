@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from thymio_sim_ros.sim.model.geometry import Tilt
 from thymio_sim_ros.sim.plugin_api.plugin_isolation import PluginGuard
-from thymio_sim_ros.sim.plugin_api.view import ActuatorView, BatchActuatorView
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
 __all__ = ["CommandPlugin", "Tilting", "isolated"]
 
@@ -26,7 +26,6 @@ class CommandPlugin:
         update: Called with the state, a view of the robot and the length of the tick in s, in every tick, or, with
             `is_idle`, in every tick from a command on until the state is idle.
         is_idle: Returns whether `update` has nothing to do for this state until the next command.
-        update_all: Does for all robots of a batch what `update` does for one.
         shows: Returns what a viewer shows of the state; the items are merged into `RobotSnapshot.shown`.
     """
 
@@ -36,7 +35,6 @@ class CommandPlugin:
     apply: Callable[[Any, Any, int], None]
     update: Callable[[Any, ActuatorView, float], None] | None = None
     is_idle: Callable[[Any], bool] | None = None
-    update_all: Callable[[Sequence[Any], BatchActuatorView, float], None] | None = None
     shows: Callable[[Any], Mapping[str, Any]] | None = None
 
 

@@ -5,23 +5,31 @@ Views of a batch give arrays with one entry per robot, in the order of the world
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, TypeVar
 
+import numpy as np
+import numpy.typing as npt
+
+from aseba_vm.kernel.record import Record
+from aseba_vm.kernel.types import Kernel
 from thymio_sim_ros.sim.audio.propagation import Sound
-from thymio_sim_ros.sim.ground.sampling import GroundSample
-from thymio_sim_ros.sim.mechanics.wheels import WheelArrays, Wheels
+from thymio_sim_ros.sim.ground.sampling import Ground, GroundSample
+from thymio_sim_ros.sim.kernel.memory import Argument, KernelMemory
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
 from thymio_sim_ros.sim.model.geometry import Point, Pose, Tilt, Twist
-from thymio_sim_ros.sim.model.noise import Noise, NormalBank, UniformBank
+from thymio_sim_ros.sim.model.noise import Noise, NoiseKeys
 from thymio_sim_ros.sim.model.primitives import Color
+from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.plugin_api.column_state import ColumnState
-from thymio_sim_ros.sim.raycast.batch import Fan, Indices, Values
+from thymio_sim_ros.sim.raycast.raycaster import Fan, Values
 from thymio_sim_ros.sim.raycast.scalar import Surroundings
 
-__all__ = ["ActuatorView", "BatchActuatorView", "BatchSensorView", "OtherRobot", "SensorView"]
+__all__ = ["ActuatorView", "BatchSensorView", "OtherRobot", "SensorView"]
 
 S = TypeVar("S")
+R = TypeVar("R", bound=Record)
+IntArray = npt.NDArray[np.int32]
 
 
 class OtherRobot(Protocol):
@@ -129,10 +137,10 @@ class SensorView(Protocol):
 
 
 class BatchSensorView(Protocol):
-    """All robots of a batch as one sensor sees them; robots are numbered in the order of the world."""
+    """All robots as one sensor sees them, for kernels; robots are numbered in the order of the world."""
 
     def __len__(self) -> int:
-        """Number of robots."""
+        """Number of robots. Records may have further elements, for robots to come."""
         ...
 
     @property
@@ -141,23 +149,28 @@ class BatchSensorView(Protocol):
         ...
 
     @property
-    def noise(self) -> NormalBank:
-        """Normal random numbers of this sensor, one stream per robot. A sensor uses this or `uniforms`, not both."""
+    def tick(self) -> IntArray:
+        """The number of the present tick, one element."""
         ...
 
     @property
-    def uniforms(self) -> UniformBank:
-        """Uniform random numbers of this sensor, one stream per robot."""
+    def memory(self) -> KernelMemory:
+        """The memory of the records."""
         ...
 
     @property
-    def memory(self) -> dict[str, Any]:
-        """What the sensor stores while the batch exists, empty at the start; it is not copied to the robots."""
+    def robots(self) -> RobotState:
+        """Their motion."""
         ...
 
     @property
-    def column_state(self) -> ColumnState:
-        """What the sensor stores per robot, as columns; the same values as `SensorView.memory`."""
+    def wheels(self) -> WheelState:
+        """The motion of their wheels."""
+        ...
+
+    @property
+    def noise_keys(self) -> NoiseKeys:
+        """The keys of the random numbers of this sensor on each robot."""
         ...
 
     @property
@@ -166,13 +179,8 @@ class BatchSensorView(Protocol):
         ...
 
     @property
-    def poses(self) -> Values:
-        """True poses, shape (robots, 3): x and y in m, yaw in rad."""
-        ...
-
-    @property
-    def motion(self) -> tuple[Values, Values]:
-        """True speeds along the headings in m/s and turn rates in rad/s, each of shape (robots,)."""
+    def ground(self) -> Ground:
+        """The ground of the world."""
         ...
 
     @property
@@ -180,68 +188,24 @@ class BatchSensorView(Protocol):
         """Tilts by robot."""
         ...
 
-    @property
-    def fallen(self) -> Sequence[int]:
-        """Numbers of the robots that have fallen off an edge, still falling or not."""
-        ...
-
-    @property
-    def falling(self) -> Sequence[int]:
-        """Numbers of the robots that are in the air after an edge."""
-        ...
-
-    @property
-    def wheels(self) -> WheelArrays:
-        """Angles and speeds of the wheels, and the odometry."""
-        ...
-
-    @property
-    def contacts(self) -> Mapping[int, tuple[Contact, ...]]:
-        """Contacts of the robots that have any, by robot number."""
-        ...
-
-    @property
-    def sounds(self) -> Sequence[Sound]:
-        """All sounds in the world now."""
-        ...
-
     def states(self, kind: type[S]) -> Sequence[S]:
         """The state of type `kind` of every robot."""
         ...
 
-    def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        """Casts the rays of all robots; returns what `BatchRaycaster.cast` returns."""
+    def array(self, shape: int | tuple[int, ...], kind: str) -> npt.NDArray[Any]:
+        """Allocate an array of zeros of a type of `aseba_vm.kernel.types.DTYPES` in the memory."""
         ...
 
-    def ground_at(self, places: Values) -> tuple[Values, Values]:
-        """Reflectance and share of floor under points, each of shape (robots, points).
-
-        `places` has shape (points, 2): x and y in the robots' frames, in m.
-        """
+    def record(self, kind: type[R]) -> R:
+        """A record of this sensor with an element for each robot; robots keep theirs when others come or go."""
         ...
 
-
-class BatchActuatorView(Protocol):
-    """All robots of a batch as one actuator sees them."""
-
-    @property
-    def now_ns(self) -> int:
-        """Simulated time in ns."""
+    def bind(self, kernel: Kernel, *arguments: Argument) -> Callable[[], Any]:
+        """A function that calls a kernel with these arguments; see `KernelMemory.bind`."""
         ...
 
-    @property
-    def memory(self) -> dict[str, Any]:
-        """What the actuator stores while the batch exists, empty at the start."""
-        ...
-
-    @property
-    def noise(self) -> UniformBank:
-        """Uniform random numbers of this actuator, one stream per robot."""
-        ...
-
-    @property
-    def wheels(self) -> WheelArrays:
-        """The wheels of all robots."""
+    def bind_rays(self, fan: Fan) -> tuple[Callable[[], None], Values]:
+        """A function that casts the rays of all robots, and their lengths; see `Raycaster.bind`."""
         ...
 
 

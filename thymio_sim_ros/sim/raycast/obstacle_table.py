@@ -1,4 +1,4 @@
-"""Obstacles as rows of arrays: a frame, the half size of the bounding box in that frame, and the exact outline.
+"""Obstacles as records: a frame, the half size of the bounding box in that frame, and the exact outline.
 
 Rays are transformed into the frame of an obstacle, where a box has only a half size and all hulls of robots are equal.
 """
@@ -11,68 +11,135 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from aseba_vm.kernel.record import Record
+from aseba_vm.kernel.types import Floats, Ints
+from thymio_sim_ros.sim.kernel.memory import KernelMemory
+from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.raycast.scalar import DiscObstacle, Obstacle
 
-__all__ = ["BOX", "DISC", "HEIGHT", "NOWHERE_M", "ObstacleTable", "Values", "polygon_in_frame"]
+__all__ = [
+    "BOX",
+    "DISC",
+    "FAR_M",
+    "HULL_FRAME",
+    "NOWHERE_M",
+    "ObstacleTable",
+    "Obstacles",
+    "Planes",
+    "polygon_in_frame",
+]
 
-Values = npt.NDArray[np.float64]
-
-DISC, BOX = -2, -1
-"""Kinds; a number from 0 up is that of a polygon."""
-HEIGHT = 6
-"""Column of the height."""
+DISC, BOX, POLYGON = 0, 1, 2
+"""Kinds of outlines."""
 NOWHERE_M = -1.0
-"""Height of a missing obstacle."""
+"""Height of a missing obstacle, below all rays."""
+FAR_M = 1e6
+"""A coordinate where nothing is."""
 _RIGHT_ANGLE = 1e-9
+
+Frame = tuple[float, float, float, float, float, float]
+
+
+class Obstacles(Record):
+    """All obstacles: those that never move, those that can move, robots."""
+
+    x: Floats
+    """Middle of the bounding box, m."""
+    y: Floats
+    cosine: Floats
+    """Of the heading of the frame."""
+    sine: Floats
+    half_x: Floats
+    """Half size along the heading, m."""
+    half_y: Floats
+    height: Floats
+    """Height above the floor, m; NOWHERE_M if it is missing."""
+    kind: Ints
+    """DISC, BOX or POLYGON."""
+    first_plane: Ints
+    """The half planes of a polygon are `first_plane` to `last_plane`, the end not included."""
+    last_plane: Ints
+    reach_x: Floats
+    """Distance along the world's axes within which a robot may detect it, with a margin, m."""
+    reach_y: Floats
+    known_x: Floats
+    """Where it was when the candidates were found; FAR_M if they are out of date."""
+    known_y: Floats
+
+
+class Planes(Record):
+    """Half planes n·p <= c of polygons, with outward unit normals, in the frame of their obstacle."""
+
+    normal_x: Floats
+    normal_y: Floats
+    limit: Floats
 
 
 class ObstacleTable:
-    """Obstacles as arrays.
+    """The records of all obstacles; those of robots are written by kernels."""
 
-    Attributes:
-        rows: shape (obstacles, 7): x and y of the middle, cosine and sine of the heading, half size along and across
-            the heading, height; m.
-        kinds: shape (obstacles,): DISC, BOX, or the index of the outline in `polygons`.
-        polygons: half planes n·p <= c of each polygon in its frame, shape (sides, 3): nx, ny, c.
-    """
+    def __init__(
+        self, memory: KernelMemory, fixed: Sequence[Obstacle], loose: Sequence[Obstacle | None], robots: int
+    ) -> None:
+        """Allocate the records and write the obstacles.
 
-    __slots__ = ("kinds", "polygons", "rows")
-
-    def __init__(self, obstacles: Sequence[Obstacle | None]) -> None:
-        self.rows = np.zeros((len(obstacles), 7))
-        self.kinds = np.full(len(obstacles), BOX, dtype=np.intp)
-        self.polygons: list[Values] = []
-        for row, obstacle in enumerate(obstacles):
+        Args:
+            memory: where the records are.
+            fixed: obstacles that never move.
+            loose: obstacles that can move, by number; None for a missing one.
+            robots: number of robots.
+        """
+        self.first_loose, self.first_robot = len(fixed), len(fixed) + len(loose)
+        hull, hull_planes = polygon_in_frame(robot_constants.hull())
+        assert hull_planes is not None  # it is no box
+        sides = [len(getattr(obstacle, "vertices", ())) for obstacle in (*fixed, *loose)]
+        self.planes = Planes(memory, len(hull_planes) + sum(sides))
+        self.obstacles = obstacles = Obstacles(memory, self.first_robot + robots)
+        self._planes_used = 0
+        hulls = slice(self.first_robot, None)
+        obstacles.half_x[hulls], obstacles.half_y[hulls] = hull[4:]
+        obstacles.kind[hulls] = POLYGON
+        obstacles.first_plane[hulls], obstacles.last_plane[hulls] = self._add_planes(hull_planes)
+        obstacles.known_x[:] = FAR_M
+        for row, obstacle in enumerate((*fixed, *loose)):
             self.put(row, obstacle)
 
     def put(self, row: int, obstacle: Obstacle | None) -> None:
-        """Write an obstacle to a row; None for a missing one, which is lower than all rays."""
+        """Write an obstacle; None for a missing one, which is lower than all rays."""
+        rows = self.obstacles.view
+        # Candidates allow for motion, not for an object that fell, or came back.
+        height_m = NOWHERE_M if obstacle is None else obstacle.height_m
+        if rows.height[row] != height_m:
+            rows.height[row], rows.known_x[row] = height_m, FAR_M
         if obstacle is None:
-            self.rows[row, HEIGHT] = NOWHERE_M
             return
-        place: tuple[float, float, float, float, float, float]
         if isinstance(obstacle, DiscObstacle):
-            self.kinds[row] = DISC
-            place = (obstacle.x_m, obstacle.y_m, 1.0, 0.0, obstacle.radius_m, obstacle.radius_m)
+            rows.kind[row] = DISC
+            frame: Frame = (obstacle.x_m, obstacle.y_m, 1.0, 0.0, obstacle.radius_m, obstacle.radius_m)
         else:
-            place, planes = polygon_in_frame(obstacle.vertices)
+            frame, planes = polygon_in_frame(obstacle.vertices)
             if planes is None:
-                self.kinds[row] = BOX
-            elif self.kinds[row] >= 0:
-                self.polygons[self.kinds[row]] = planes
-            else:
-                self.kinds[row] = len(self.polygons)
-                self.polygons.append(planes)
-        self.rows[row] = (*place, obstacle.height_m)
+                rows.kind[row] = BOX
+            elif rows.kind[row] != POLYGON:  # an obstacle that moves keeps its half planes
+                rows.kind[row] = POLYGON
+                rows.first_plane[row], rows.last_plane[row] = self._add_planes(planes)
+        rows.x[row], rows.y[row], rows.cosine[row], rows.sine[row], rows.half_x[row], rows.half_y[row] = frame
+
+    def _add_planes(self, planes: npt.NDArray[np.float64]) -> tuple[int, int]:
+        first, self._planes_used = self._planes_used, self._planes_used + len(planes)
+        part = slice(first, self._planes_used)
+        self.planes.normal_x[part], self.planes.normal_y[part], self.planes.limit[part] = planes.T
+        return first, self._planes_used
 
 
 def polygon_in_frame(
     vertices: Sequence[tuple[float, float]],
-) -> tuple[tuple[float, float, float, float, float, float], Values | None]:
+) -> tuple[Frame, npt.NDArray[np.float64] | None]:
     """Return the frame of a convex polygon, and its half planes in this frame; None for them if it is a rectangle.
 
     The frame lies along the first side: x and y of the middle of the bounding box, cosine and sine of the heading, half
-    size along and across. A polygon that moves keeps its half planes, and a rectangle is its own bounding box.
+    size along and across. A polygon that moves keeps its half planes, rows nx, ny, c; a rectangle is its own bounding
+    box.
     """
     (ax, ay), (bx, by) = vertices[0], vertices[1]
     length = math.hypot(bx - ax, by - ay)
@@ -93,3 +160,7 @@ def polygon_in_frame(
         nx, ny = (qy - py) / side, (px - qx) / side
         planes.append((nx, ny, nx * px + ny * py))
     return place, np.array(planes)
+
+
+HULL_FRAME = polygon_in_frame(robot_constants.hull())[0]
+"""The frame of a robot's hull in the robot's frame."""

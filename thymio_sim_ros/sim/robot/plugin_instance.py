@@ -13,10 +13,9 @@ __all__ = ["PluginInstance"]
 class PluginInstance:
     """An actuator or stimulus with its state; it acts in every tick in which it is busy."""
 
-    __slots__ = ("is_busy", "is_idle", "state", "update", "update_all", "view")
+    __slots__ = ("is_busy", "is_idle", "state", "update", "view")
 
     def __init__(self, plugin: CommandPlugin, state: Any, view: ActuatorView) -> None:
         assert plugin.update is not None
         self.update, self.is_idle, self.state, self.view = plugin.update, plugin.is_idle, state, view
-        self.update_all = plugin.update_all
         self.is_busy = self.is_idle is None or not self.is_idle(state)

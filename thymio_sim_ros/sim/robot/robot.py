@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 from thymio_sim_ros.sim.audio.propagation import Sound, SoundSource
@@ -30,15 +30,36 @@ S = TypeVar("S")
 class SharedState:
     """State that all robots of a world share."""
 
-    __slots__ = ("_sounds", "_sounds_ns", "busy", "clock", "ground", "physics", "proximity_model", "robots", "woken")
+    __slots__ = (
+        "_sounds",
+        "_sounds_ns",
+        "busy",
+        "clock",
+        "ground",
+        "is_noisy",
+        "physics",
+        "proximity_model",
+        "robots",
+        "seed",
+        "woken",
+    )
 
     def __init__(
-        self, clock: SimClock, ground: Ground, physics: Physics, proximity_model: str, robots: Mapping[str, Robot]
+        self,
+        clock: SimClock,
+        ground: Ground,
+        physics: Physics,
+        robots: Mapping[str, Robot],
+        *,
+        proximity_model: str,
+        seed: int,
+        is_noisy: bool,
     ) -> None:
         self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
+        self.seed, self.is_noisy = seed, is_noisy
         self.robots = robots
         self.busy: dict[Robot, None] = {}
-        """Robots with plug-ins to update in the next tick that are not updated as a batch."""
+        """Robots with plug-ins to update in the next tick."""
         self.woken: dict[Robot, None] = {}
         """Robots with a sensor that was woken."""
         self._sounds: list[Sound] = []
@@ -67,9 +88,9 @@ class _PluginView:
 
     __slots__ = ("_clock", "_robot", "_states", "_world", "memory", "noise", "proximity_model")
 
-    def __init__(self, robot: Robot, world: SharedState, noise: Noise) -> None:
+    def __init__(self, robot: Robot, world: SharedState, user: str) -> None:
         self._robot, self._world, self._states, self._clock = robot, world, robot.states, world.clock
-        self.noise = noise
+        self.noise = Noise(world.seed, robot.name, user, enabled=world.is_noisy, clock=world.clock)
         self.memory: dict[str, Any] = {}
         self.proximity_model = world.proximity_model
 
@@ -145,9 +166,6 @@ class Robot:
         shared: SharedState,
         plugins: Iterable[CommandPlugin],
         sensors: Iterable[Sensor],
-        *,
-        seed: int,
-        noise: bool,
     ) -> None:
         self.name = start.name
         self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
@@ -170,15 +188,12 @@ class Robot:
             if plugin.shows is not None:
                 self._shown.append((plugin.shows, state))
             if plugin.update is not None:
-                view = _PluginView(self, shared, Noise(seed, self.name, plugin.name, enabled=noise))
+                view = _PluginView(self, shared, plugin.name)
                 self.instances.append(PluginInstance(plugin, state, view))
         self._list_busy()
         self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
         self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
-        self.sensors = [
-            (sensor, _PluginView(self, shared, Noise(seed, self.name, sensor.name, enabled=noise)))
-            for sensor in sensors
-        ]
+        self.sensors = [(sensor, _PluginView(self, shared, sensor.name)) for sensor in sensors]
         self._wakes: dict[type[Any], list[int]] = {}
         for number, (sensor, _) in enumerate(self.sensors):
             for kind in sensor.wakes_on:
@@ -244,12 +259,11 @@ class Robot:
             self._woken.update(numbers)
             self._shared.woken[self] = None
 
-    def act(self, dt_s: float, *, is_batched: bool = False) -> None:
-        """Update the busy actuators and stimuli for one tick; in a batch, those without `update_all`."""
+    def act(self, dt_s: float) -> None:
+        """Update the busy actuators and stimuli for one tick."""
         has_rested = False
         for instance in self._busy:
-            if not (is_batched and instance.update_all is not None):
-                instance.update(instance.state, instance.view, dt_s)
+            instance.update(instance.state, instance.view, dt_s)
             if instance.is_idle is not None and instance.is_idle(instance.state):
                 instance.is_busy, has_rested = False, True
         if has_rested:
@@ -258,10 +272,10 @@ class Robot:
     def _list_busy(self) -> None:
         """Collect what has to be updated, in name order, and register the robot as busy."""
         self._busy = tuple(instance for instance in self.instances if instance.is_busy)
-        if all(instance.update_all is not None for instance in self._busy):
-            self._shared.busy.pop(self, None)
-        else:
+        if self._busy:
             self._shared.busy[self] = None
+        else:
+            self._shared.busy.pop(self, None)
 
     def pop_woken(self) -> list[int]:
         """Remove and return the numbers of the woken sensors, in order; those with `on_wake` are called instead."""
@@ -276,25 +290,15 @@ class Robot:
         return [number for number in woken if self.sensors[number][0].on_wake is None]
 
     def measure_one(self, number: int) -> Reading | None:
-        """Return the reading of the sensor with this number now."""
+        """Return the reading of the sensor with this number, which measures each robot by itself, now."""
         sensor, view = self.sensors[number]
+        assert sensor.measure is not None
         return sensor.measure(view)
 
     def place(self, pose: Pose) -> None:
         """Place it at a pose, at rest, also after a fall."""
         self._physics.place(self.body, pose)
         self.edge_fall.clear()
-
-    def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
-        """Return the readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
-        woken = self.pop_woken() if self._woken else ()
-        readings = []
-        for number in sorted({*woken, *due}) if woken else due:
-            sensor, view = self.sensors[number]
-            reading = sensor.measure(view)
-            if reading is not None:
-                readings.append((self.name, sensor.name, reading))
-        return readings
 
     def state(self, kind: type[S]) -> S:
         """Return the state of type `kind` of an actuator or stimulus. Raises KeyError if there is none."""

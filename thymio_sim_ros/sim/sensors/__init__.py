@@ -30,32 +30,36 @@ class Sensor:
     Args:
         name: Name of the sensor, unique among sensors; it also seeds the noise.
         period_ns: Period of the measurement in simulated time; NEVER_NS for a sensor that only measures when woken.
-        measure: Returns the reading, or None if there is nothing new to report.
+        measure: Returns the reading of one robot, or None if there is nothing new to report.
         aseba: The variables and the event by which Aseba programs see the reading.
         phase_ns: Time of the first measurement, before the period applies.
         wakes_on: Types of commands that wake the sensor in the tick in which its robot gets one; `Contact` wakes it
             when a contact begins. A woken sensor measures in that tick, unless it has `on_wake`.
-        measure_all: Returns for all robots of a batch, in order, what `measure` returns for one.
+        prepare_all: Instead of `measure`: called once for all robots, returns the function that returns the readings of
+            all of them, in order. Such a sensor cannot be woken. Called again when robots are added or removed.
         on_wake: Called instead of `measure` when the sensor is woken; it usually writes to `view.memory`.
         label: Heading of its values in viewers; its name if empty.
         values: The rows that viewers show, for the words of a reading in order; None for a row for each variable,
             empty for none, as for sensors whose rows the page arranges itself.
 
-    Raises ValueError if `values` show more words than a reading has.
+    Raises ValueError if `values` show more words than a reading has, or unless there is either `measure` or
+    `prepare_all`.
     """
 
     name: str
     period_ns: int
-    measure: Callable[[SensorView], Reading | None]
+    measure: Callable[[SensorView], Reading | None] | None = None
     aseba: AsebaFace = NO_SENSOR_FACE
     phase_ns: int = 0
     wakes_on: tuple[type[Any], ...] = ()
-    measure_all: Callable[[BatchSensorView], Sequence[Reading | None]] | None = None
+    prepare_all: Callable[[BatchSensorView], Callable[[], Sequence[Reading | None]]] | None = None
     on_wake: Callable[[SensorView], None] | None = None
     label: Label = field(default="", hash=False)
     values: tuple[DisplayedValue, ...] | None = field(default=None, hash=False)
 
     def __post_init__(self) -> None:
+        if (self.measure is None) == (self.prepare_all is None) or (self.prepare_all is not None and self.wakes_on):
+            raise ValueError(f"sensor {self.name}: expected either measure, or prepare_all and no wakes_on")
         shown = sum(value.words for value in self.displayed)
         if shown > self.aseba.size:
             raise ValueError(f"sensor {self.name}: values show {shown} words, expected at most {self.aseba.size}")
@@ -80,4 +84,5 @@ def all_sensors() -> tuple[Sensor, ...]:
 def _guarded(sensor: Sensor) -> Sensor:
     """Return a sensor of another package, guarded so that its errors do not stop the world."""
     on_wake = None if sensor.on_wake is None else guarded_sensor(sensor.name, sensor.on_wake)
-    return replace(sensor, measure=guarded_sensor(sensor.name, sensor.measure), measure_all=None, on_wake=on_wake)
+    measure = None if sensor.measure is None else guarded_sensor(sensor.name, sensor.measure)
+    return replace(sensor, measure=measure, on_wake=on_wake)

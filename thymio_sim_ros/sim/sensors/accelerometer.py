@@ -14,18 +14,15 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from thymio_sim_ros.sim.mechanics.fall import FALL_NS
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.model.readings import AccelerometerReading
 from thymio_sim_ros.sim.model.robot_constants import ACC_LIMIT, ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
-from thymio_sim_ros.sim.model.units import acceleration_to_units, accelerations_to_units
+from thymio_sim_ros.sim.model.units import acceleration_to_units
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.display import DisplayedValue
-from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
-from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR", "gravity"]
@@ -78,35 +75,10 @@ def _measure(view: SensorView) -> AccelerometerReading:
     return AccelerometerReading(view.now_ns, words)
 
 
-def _measure_all(batch: BatchSensorView) -> LazyReadings:
-    now_ns, column_state, (speeds, turns) = batch.now_ns, batch.column_state, batch.motion
-    since_ns, before = column_state.column("since_ns", now_ns - _PERIOD_NS), column_state.column("speed_m_s", 0.0)
-    was_falling, falling = column_state.column("is_falling", first=False), batch.falling
-    dt_s = (now_ns - since_ns) * 1e-9
-    forward, left, up = np.array([gravity(tilt) for tilt in batch.tilts]).T
-    hits = np.array(
-        [0.0 if robot in falling else memory.pop("hit_m_s", 0.0) for robot, memory in enumerate(column_state.memories)]
-    )
-    forward = forward + (speeds - before) / dt_s
-    left = left + (speeds * turns + hits / dt_s)
-    for robot in batch.fallen:
-        if was_falling[robot]:
-            up[robot] += _LANDING_M_S / dt_s[robot]
-    for robot in falling:
-        forward[robot] = left[robot] = up[robot] = 0.0
-    was_falling[:] = False
-    was_falling[falling] = True
-    since_ns[:], before[:] = now_ns, speeds
-    noise = batch.uniforms.draw(-_NOISE_M_S2, _NOISE_M_S2, 3)
-    words = accelerations_to_units(noise + np.stack((-left, forward, up))).T.tolist()
-    return LazyReadings(len(batch), lambda robot: AccelerometerReading(now_ns, tuple(words[robot])))
-
-
 SENSOR = Sensor(
     name="accelerometer",
     period_ns=_PERIOD_NS,
     measure=_measure,
-    measure_all=_measure_all,
     wakes_on=(Contact,),
     on_wake=_feel,
     aseba=AsebaFace(variables=(("acc", 3),), event="acc"),

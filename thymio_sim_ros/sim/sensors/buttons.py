@@ -5,8 +5,7 @@ from __future__ import annotations
 from thymio_sim_ros.sim.commands import BUTTONS
 from thymio_sim_ros.sim.model.readings import ButtonsReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
-from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.stimuli.buttons import ButtonState
 
@@ -17,16 +16,10 @@ def _measure(view: SensorView) -> ButtonsReading:
     return ButtonsReading(view.now_ns, view.state(ButtonState).words)
 
 
-def _measure_all(batch: BatchSensorView) -> LazyReadings:
-    now_ns, words = batch.now_ns, [state.words for state in batch.states(ButtonState)]
-    return LazyReadings(len(batch), lambda robot: ButtonsReading(now_ns, words[robot]))
-
-
 SENSOR = Sensor(
     name="buttons",
     period_ns=20_000_000,
     measure=_measure,
-    measure_all=_measure_all,
     aseba=AsebaFace(variables=tuple((f"button.{button}", 1) for button in BUTTONS), event="buttons", edge_events=True),
     values=(),
 )

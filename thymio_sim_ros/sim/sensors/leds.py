@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.model.readings import LedReading
-from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR"]
@@ -16,13 +15,6 @@ __all__ = ["SENSOR"]
 def _measure(view: SensorView) -> LedReading | None:
     state, memory = view.state(LedState), view.memory
     return None if state.changes == memory.get("changes") else _changed(state, memory, view.now_ns)
-
-
-def _measure_all(batch: BatchSensorView) -> Sequence[LedReading | None]:
-    now_ns, pairs = batch.now_ns, zip(batch.states(LedState), batch.column_state.memories, strict=True)
-    return [
-        None if state.changes == memory.get("changes") else _changed(state, memory, now_ns) for state, memory in pairs
-    ]
 
 
 def _changed(state: LedState, memory: dict[str, Any], now_ns: int) -> LedReading | None:
@@ -34,4 +26,4 @@ def _changed(state: LedState, memory: dict[str, Any], now_ns: int) -> LedReading
     return LedReading(now_ns, (), groups)
 
 
-SENSOR = Sensor(name="leds", period_ns=40_000_000, measure=_measure, measure_all=_measure_all, phase_ns=10_000_000)
+SENSOR = Sensor(name="leds", period_ns=40_000_000, measure=_measure, phase_ns=10_000_000)

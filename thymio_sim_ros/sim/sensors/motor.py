@@ -5,53 +5,43 @@ The pwm is that of the speed, or of the control loop where motors have one (sect
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Callable
 
-from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import MotorReading
 from thymio_sim_ros.sim.model.robot_constants import WHEEL_RADIUS_M
+from thymio_sim_ros.sim.model.units import speed_to_units
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
-from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR"]
 
 
-def _measure(view: SensorView) -> MotorReading:
-    wheels, memory = view.wheels, view.memory
-    speeds = wheels.speeds_m_s
-    if speeds != memory.get("speeds"):
-        memory["speeds"], memory["faces"] = speeds, _faces(*speeds)
-    words, velocities = memory["faces"]
-    if wheels.control is not None:
-        words = (*words[:2], *(round(loop.output) for loop in wheels.control))
-    return MotorReading(view.now_ns, words, wheels.angles_rad, velocities)
+def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
+    wheels = batch.wheels
+    rim, angle, output = (part[: 2 * len(batch)] for part in (wheels.rim, wheels.angle, wheels.output))
 
+    def measure() -> LazyReadings:
+        now_ns, speeds, angles, pwms = batch.now_ns, rim.tolist(), angle.tolist(), output.tolist()
 
-def _faces(left_m_s: float, right_m_s: float) -> tuple[tuple[int, int, int, int], tuple[float, float]]:
-    """Return the words and the angular velocities in rad/s of wheels at these speeds."""
-    left, right = units.speed_to_units(left_m_s), units.speed_to_units(right_m_s)
-    words = (left, right, units.units_to_pwm(left), units.units_to_pwm(right))
-    return words, (left_m_s / WHEEL_RADIUS_M, right_m_s / WHEEL_RADIUS_M)
+        def make(robot: int) -> MotorReading:
+            left, right = 2 * robot, 2 * robot + 1
+            words = (
+                speed_to_units(speeds[left]), speed_to_units(speeds[right]), round(pwms[left]), round(pwms[right])
+            )  # fmt: skip
+            velocities = (speeds[left] / WHEEL_RADIUS_M, speeds[right] / WHEEL_RADIUS_M)
+            return MotorReading(now_ns, words, (angles[left], angles[right]), velocities)
 
+        return LazyReadings(len(batch), make)
 
-def _measure_all(batch: BatchSensorView) -> LazyReadings:
-    now_ns, wheels = batch.now_ns, batch.wheels
-    speeds = units.speeds_to_units(wheels.speeds)
-    words = list(zip(*np.concatenate((speeds, units.units_to_pwms(speeds))).tolist(), strict=True))
-    for robot, loops in wheels.controls.items():
-        words[robot] = (*words[robot][:2], *(round(loop.output) for loop in loops))
-    angles = list(zip(*wheels.angles.tolist(), strict=True))
-    velocities = list(zip(*(wheels.speeds / WHEEL_RADIUS_M).tolist(), strict=True))
-    return LazyReadings(len(batch), lambda robot: MotorReading(now_ns, words[robot], angles[robot], velocities[robot]))
+    return measure
 
 
 SENSOR = Sensor(
     name="motor",
     period_ns=10_000_000,
-    measure=_measure,
-    measure_all=_measure_all,
+    prepare_all=_prepare,
     aseba=AsebaFace(
         variables=(
             ("motor.left.speed", 1),

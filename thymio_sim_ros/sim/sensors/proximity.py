@@ -17,13 +17,11 @@ An operator can override counts (`stimuli/sensor_override.py`).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from functools import reduce
+from collections.abc import Callable, Sequence
 
-import numpy as np
-
-from thymio_sim_ros.sim.kernel.memory import is_available
+from aseba_vm.kernel.types import Floats, Ints, kernel
 from thymio_sim_ros.sim.model import robot_constants, units
+from thymio_sim_ros.sim.model.noise import NoiseKeys, normal
 from thymio_sim_ros.sim.model.readings import ProximityReading
 from thymio_sim_ros.sim.model.robot_constants import (
     PROXIMITY_HEIGHT_M,
@@ -31,100 +29,117 @@ from thymio_sim_ros.sim.model.robot_constants import (
     PROXIMITY_POSES,
     PROXIMITY_RANGE_M,
 )
+from thymio_sim_ros.sim.model.units import PROXIMITY_FULL, proximity_response
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
-from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
-from thymio_sim_ros.sim.raycast.batch import Fan, Values
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView
+from thymio_sim_ros.sim.raycast.raycaster import Fan
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._proximity_binding import ProximityCounts
-from thymio_sim_ros.sim.sensors._proximity_kernel import COS_CONE
 from thymio_sim_ros.sim.stimuli.sensor_override import SensorOverrideState, overridden
 
-__all__ = ["SENSOR", "response", "responses"]
+__all__ = ["SENSOR", "count_all", "response"]
 
-_COUNT = len(PROXIMITY_POSES)
-_CONE_RAD = robot_constants.PROXIMITY_HALF_CONE_RAD
+_DEFAULT, _CONE = map(robot_constants.PROXIMITY_MODELS.index, ("default", "cone"))
+_SENSORS = len(PROXIMITY_POSES)
+_FAR = math.inf
 _RAYS = {"default": 3, "enki": 3, "cone": 9}
+_HALF_CONE_RAD = robot_constants.PROXIMITY_HALF_CONE_RAD
+_COS_CONE = math.cos(_HALF_CONE_RAD)
 _ANGLES_RAD = {
-    model: tuple(-_CONE_RAD + 2 * _CONE_RAD * ray / (count - 1) for ray in range(count))
+    model: tuple(-_HALF_CONE_RAD + 2 * _HALF_CONE_RAD * ray / (count - 1) for ray in range(count))
     for model, count in _RAYS.items()
 }
-_COSINES = {model: tuple(map(math.cos, angles)) for model, angles in _ANGLES_RAD.items()}
-_PLACES = tuple((x, y) for x, y, _ in PROXIMITY_POSES)
-_DIRECTIONS = {
-    model: tuple(
-        tuple((math.cos(yaw + side), math.sin(yaw + side)) for side in angles) for _, _, yaw in PROXIMITY_POSES
+"""Angles between the rays of a sensor and its axis, right to left, by model."""
+_FANS = {
+    model: Fan(
+        [(x, y) for x, y, _ in PROXIMITY_POSES],
+        [[(math.cos(yaw + side), math.sin(yaw + side)) for side in angles] for _, _, yaw in PROXIMITY_POSES],
+        PROXIMITY_RANGE_M,
+        PROXIMITY_HEIGHT_M,
     )
     for model, angles in _ANGLES_RAD.items()
 }
-"""For each sensor the unit directions of its rays in the robot's frame, right to left."""
-_FANS = {
-    model: Fan(_PLACES, directions, PROXIMITY_RANGE_M, PROXIMITY_HEIGHT_M) for model, directions in _DIRECTIONS.items()
-}
-_NOTHING = ((0,) * _COUNT, (math.inf,) * _COUNT)
 
 
-def response(distances_m: Sequence[float], model: str) -> float:
-    """Return the count without noise of one sensor.
+@kernel
+def response(distances: Floats, first: int, last: int, cosines: Floats, model: int) -> float:
+    """Return the count without noise of one sensor, of whose rays `first` to `last - 1` at least one meets something.
 
-    `distances_m` are those of its rays, from right to left, inf for a ray that meets nothing.
+    Args:
+        distances: lengths of rays in m, those of a sensor from right to left, inf for a ray that meets nothing.
+        first: index of its first ray.
+        last: index behind its last ray.
+        cosines: of the angles between its rays and its axis.
+        model: index in `PROXIMITY_MODELS`.
     """
-    if model == "cone":
-        # The distance along the axis is d cos a, the range limits d itself.
-        straight = map(float.__mul__, distances_m, _COSINES[model])
-        return math.fsum(map(_within_range, distances_m, straight)) / len(distances_m)
-    right, center, left = distances_m
-    if model == "default":
+    if model == _CONE:
+        total = 0.0
+        for ray in range(first, last):
+            if distances[ray] <= PROXIMITY_RANGE_M:  # the distance along the axis is d cos a, the range limits d itself
+                total += proximity_response(distances[ray] * cosines[ray - first])
+        return total / (last - first)
+    right = distances[first]
+    center = distances[first + 1]
+    left = distances[first + 2]
+    if model == _DEFAULT:
         # F falls with the distance, so the largest response is that of the smallest distance.
-        return units.proximity_response(min(right * COS_CONE, center, left * COS_CONE))
-    slanted = center / COS_CONE
-    total = units.proximity_response(right) + units.proximity_response(center) + units.proximity_response(left)
-    return total - 2.0 * units.proximity_response(slanted)
+        return proximity_response(min(min(right * _COS_CONE, center), left * _COS_CONE))
+    total = proximity_response(right) + proximity_response(center) + proximity_response(left)
+    return total - 2.0 * proximity_response(center / _COS_CONE)
 
 
-def responses(distances_m: Values, model: str) -> Values:
-    """Return `response` of many sensors, shape (sensors,), for distances of shape (sensors, rays)."""
-    if model == "cone":
-        found = units.proximity_responses(distances_m * _COSINES[model])
-        found[distances_m > PROXIMITY_RANGE_M] = 0.0
-        mean: Values = reduce(np.add, found.T) / distances_m.shape[1]  # one after the other, as the kernel does
-        return mean
-    right, center, left = distances_m.T
-    if model == "default":
-        return units.proximity_responses(np.minimum(np.minimum(right * COS_CONE, center), left * COS_CONE))
-    slanted = center / COS_CONE
-    of = units.proximity_responses(np.stack((right, center, left, slanted)))
-    total: Values = of[0] + of[1] + of[2] - 2.0 * of[3]
-    return total
+@kernel
+def count_all(
+    distances: Floats, rays: int, cosines: Floats, model: int, keys: NoiseKeys, tick: Ints, counts: Ints
+) -> None:
+    """Write the counts of all sensors to `counts`, shape (robots, sensors).
+
+    Args:
+        distances: lengths of the rays, shape (robots, sensors, rays), see `response`.
+        rays: number of rays of a sensor.
+        cosines: of the angles between the rays and the axis of a sensor.
+        model: index in `PROXIMITY_MODELS`.
+        keys: those of the noise of each robot.
+        tick: one element, the number of the tick.
+        counts: result.
+    """
+    for robot in range(keys.count):
+        for sensor in range(_SENSORS):
+            number = robot * _SENSORS + sensor
+            first = number * rays
+            nearest = _FAR
+            for ray in range(first, first + rays):
+                nearest = min(nearest, distances[ray])
+            value = 0.0
+            if nearest < _FAR:
+                value = response(distances, first, first + rays, cosines, model)
+                if keys.is_on[robot] == 1:
+                    value += PROXIMITY_NOISE * normal(keys.key_1[robot], keys.key_2[robot], tick[0], sensor)
+            counts[number] = round(min(max(value, 0.0), PROXIMITY_FULL))
 
 
-def _within_range(distance_m: float, straight_m: float) -> float:
-    return 0.0 if distance_m > PROXIMITY_RANGE_M else units.proximity_response(straight_m)
+def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
+    model = batch.proximity_model
+    cast, distances = batch.bind_rays(_FANS[model])
+    cosines = batch.array(len(_ANGLES_RAD[model]), "float64")
+    cosines[:] = [math.cos(angle) for angle in _ANGLES_RAD[model]]
+    counts = batch.array((len(batch), _SENSORS), "int32")
+    number = robot_constants.PROXIMITY_MODELS.index(model)
+    count = batch.bind(count_all, distances, _RAYS[model], cosines, number, batch.noise_keys, batch.tick, counts)
+    overrides = batch.states(SensorOverrideState)
 
+    def measure() -> LazyReadings:
+        cast()
+        count()
+        now_ns, found, chosen = batch.now_ns, counts.tolist(), [override.proximity for override in overrides]
 
-def _measure(view: SensorView) -> ProximityReading:
-    model = view.proximity_model
-    around = view.surroundings(_FANS[model].reach_m, PROXIMITY_HEIGHT_M)
-    override = view.state(SensorOverrideState).proximity
-    if around.is_empty and not override:
-        return ProximityReading(view.now_ns, *_NOTHING)
-    pose, noise = view.pose, view.noise
-    x, y, cos, sin = pose.x_m, pose.y_m, math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
-    counts = []
-    for (mount_x, mount_y), rays in zip(_PLACES, _DIRECTIONS[model], strict=True):
-        origin_x, origin_y = x + cos * mount_x - sin * mount_y, y + sin * mount_x + cos * mount_y
-        # Noise is drawn only for sensors that detect something, in their order; the batch does the same.
-        near = around.near(origin_x, origin_y, PROXIMITY_RANGE_M)
-        count = 0
-        if not near.is_empty:
-            directions = [(cos * dx - sin * dy, sin * dx + cos * dy) for dx, dy in rays]
-            distances = near.fan(origin_x, origin_y, directions, PROXIMITY_RANGE_M)
-            if min(distances) < math.inf:
-                value = response(distances, model) + noise.gauss(PROXIMITY_NOISE)
-                count = round(max(0.0, min(float(units.PROXIMITY_FULL), value)))
-        counts.append(count)
-    counts = overridden(counts, override)
-    return ProximityReading(view.now_ns, tuple(counts), _ranges(counts))
+        def make(robot: int) -> ProximityReading:
+            words = overridden(found[robot], chosen[robot])
+            return ProximityReading(now_ns, tuple(words), _ranges(words))
+
+        return LazyReadings(len(batch), make)
+
+    return measure
 
 
 def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
@@ -132,33 +147,10 @@ def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
     return tuple([units.proximity_distance(count) if count else math.inf for count in counts])
 
 
-def _measure_all(batch: BatchSensorView) -> LazyReadings:
-    now_ns, model = batch.now_ns, batch.proximity_model
-    sensors, distances = batch.cast(_FANS[model])
-    noise = batch.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
-    if is_available():
-        kernel = batch.memory.get("counts")
-        if kernel is None:
-            kernel = batch.memory["counts"] = ProximityCounts(len(batch) * _COUNT, model, _COSINES[model])
-        counts = kernel.count(sensors, distances, noise).reshape(-1, _COUNT)
-    else:
-        counts = np.zeros((len(batch), _COUNT), dtype=np.int32)
-        values = responses(distances, model) + noise
-        counts.ravel()[sensors] = np.rint(np.minimum(np.maximum(values, 0.0), units.PROXIMITY_FULL))
-    overrides = [state.proximity for state in batch.states(SensorOverrideState)]
-
-    def make(robot: int) -> ProximityReading:
-        words = overridden(counts[robot].tolist(), overrides[robot])
-        return ProximityReading(now_ns, tuple(words), _ranges(words))
-
-    return LazyReadings(len(batch), make)
-
-
 SENSOR = Sensor(
     name="proximity",
     period_ns=100_000_000,
-    measure=_measure,
-    measure_all=_measure_all,
-    aseba=AsebaFace(variables=(("prox.horizontal", _COUNT),), event="prox"),
+    prepare_all=_prepare,
+    aseba=AsebaFace(variables=(("prox.horizontal", _SENSORS),), event="prox"),
     values=(),
 )

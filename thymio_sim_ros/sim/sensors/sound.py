@@ -9,18 +9,15 @@ unless that is 0. Quieter blocks are reported on change and once per second.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-
-import numpy as np
 
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
 from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, level_at
 from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.display import DisplayedValue
-from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._publish_on_change import should_publish, should_publish_all
+from thymio_sim_ros.sim.sensors._publish_on_change import should_publish
 from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 
 __all__ = ["BLOCK_NS", "SENSOR"]
@@ -48,25 +45,10 @@ def _reading(now_ns: int, intensity: int, *, is_loud: bool) -> SoundReading:
     return SoundReading(now_ns, (intensity, 2 * smallest + intensity), is_loud)
 
 
-def _measure_all(batch: BatchSensorView) -> Sequence[SoundReading | None]:
-    levels = [float(environment.noise_level) for environment in batch.states(EnvironmentState)]
-    if sounds := batch.sounds:
-        places = zip(levels, batch.poses.tolist(), strict=True)
-        levels = [math.hypot(level, level_at(sounds, x, y)) for level, (x, y, _) in places]
-    intensities = [min(FULL_LEVEL, round(level)) for level in levels]
-    microphones = zip(batch.states(MicrophoneState), intensities, strict=True)
-    loud = [microphone.is_exceeded(intensity) for microphone, intensity in microphones]
-    readings: list[SoundReading | None] = [None] * len(batch)
-    for robot in np.flatnonzero(should_publish_all(batch, np.array(intensities)) | loud).tolist():
-        readings[robot] = _reading(batch.now_ns, intensities[robot], is_loud=loud[robot])
-    return readings
-
-
 SENSOR = Sensor(
     name="sound",
     period_ns=BLOCK_NS,
     measure=_measure,
-    measure_all=_measure_all,
     aseba=AsebaFace(variables=(("mic.intensity", 1), ("mic._mean", 1)), event="mic", above="mic.threshold"),
     label="microphone",
     values=(DisplayedValue("", "%", 100 / FULL_LEVEL, full_scale=FULL_LEVEL),),

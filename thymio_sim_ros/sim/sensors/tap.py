@@ -6,16 +6,12 @@ clears it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
-
 from thymio_sim_ros.sim.commands import Tap
 from thymio_sim_ros.sim.model.readings import TapReading
 from thymio_sim_ros.sim.model.robot_constants import TAP_SPEED_M_S
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.stimuli.handling import HandlingState
 
@@ -36,25 +32,10 @@ def _is_knock(contact: Contact) -> bool:
     return contact.is_new and contact.speed_m_s > TAP_SPEED_M_S
 
 
-def _measure_all(batch: BatchSensorView) -> Sequence[TapReading | None]:
-    reported, was_falling = batch.column_state.column("taps", 0), batch.column_state.column("is_falling", first=False)
-    taps, is_falling = [handling.taps for handling in batch.states(HandlingState)], np.zeros(len(batch), dtype=bool)
-    is_falling[batch.falling] = True
-    is_tapped = reported != taps
-    for robot in batch.fallen:
-        is_tapped[robot] |= was_falling[robot] and not is_falling[robot]
-    for robot, contacts in batch.contacts.items():
-        is_tapped[robot] |= any(map(_is_knock, contacts))
-    reported[:], was_falling[:] = taps, is_falling
-    reading = TapReading(batch.now_ns, (1,))
-    return [reading if tapped else None for tapped in is_tapped.tolist()]
-
-
 SENSOR = Sensor(
     name="tap",
     period_ns=62_500_000,
     measure=_measure,
-    measure_all=_measure_all,
     wakes_on=(Tap, Contact),
     aseba=AsebaFace(variables=(("acc._tap", 1),), event="tap"),
     values=(),

@@ -1,9 +1,13 @@
-"""Sine and cosine as kernels, so that they have the same bits on every machine, compiled or not.
+"""Elementary functions as kernels, so that they have the same bits on every machine, compiled or not.
 
-The argument x is reduced to r = x - n π/2 with |r| <= π/4; the polynomials are the Taylor series of sin r and cos r,
+Sine and cosine: the argument x is reduced to r = x - n π/2 with |r| <= π/4; the polynomials are the Taylor series of sin r and cos r,
 whose first omitted term is below 1e-19. π/2 is split into three parts, of which the first two have 33 bits, so that
 n times each of them is exact up to |x| = 1e6 (the argument reduction of Cody and Waite). The error is at most one unit
 in the last place there.
+
+Exponential: exp x = 2^n exp r with |r| <= ln(2) / 2, and a Taylor series whose first omitted term is below 1e-17.
+Logarithm: x = 2^n m with m in [sqrt(1/2), sqrt(2)], and ln m = 2 artanh s with s = (m - 1) / (m + 1), |s| <= 0.172, as a
+series whose first omitted term is below 1e-18. Their errors are at most two units in the last place.
 """
 
 from __future__ import annotations
@@ -13,7 +17,7 @@ from fractions import Fraction
 
 from aseba_vm.kernel.types import kernel
 
-__all__ = ["cos", "sin"]
+__all__ = ["cos", "exp", "log", "sin"]
 
 
 def _high_bits(number: Fraction, bits: int) -> float:
@@ -35,6 +39,13 @@ _S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17 = (
 _C4, _C6, _C8, _C10, _C12, _C14, _C16, _C18 = (
     (-1.0) ** (power // 2) / math.factorial(power) for power in (4, 6, 8, 10, 12, 14, 16, 18)
 )
+
+_EXACT_LN_2 = Fraction(6931471805599453094172321214581765680755001343602552541206800094933936, 10**70)
+_LN_2 = float(_EXACT_LN_2)
+_LN_2_HIGH = _high_bits(_EXACT_LN_2, 33)
+_LN_2_LOW = float(_EXACT_LN_2 - Fraction(_LN_2_HIGH))
+_SQRT_2 = math.sqrt(2.0)
+_EXP_LIMIT = 700.0
 
 
 @kernel
@@ -78,3 +89,45 @@ def cos(x: float) -> float:
     """Cosine of x rad, for |x| up to 1e6."""
     quarters = math.floor(x * _PER_QUARTER + 0.5)
     return _sin_in_quarter(_reduced(x, quarters), quarters + 1)
+
+
+@kernel
+def _power_of_2(exponent: int) -> float:
+    """2 to a power from -1022 to 1023, exact."""
+    value = 1.0
+    for _ in range(exponent):
+        value = value * 2.0
+    for _ in range(-exponent):
+        value = value * 0.5
+    return value
+
+
+@kernel
+def exp(x: float) -> float:
+    """Exponential of x, for x within 700 of 0; beyond, that of the limit."""
+    x = min(max(x, -_EXP_LIMIT), _EXP_LIMIT)
+    twos = math.floor(x / _LN_2 + 0.5)
+    r = (x - twos * _LN_2_HIGH) - twos * _LN_2_LOW
+    total = 1.0
+    for number in range(14):  # Horner's scheme: 1 + r/1 (1 + r/2 (1 + r/3 ...))
+        total = 1.0 + r / (14 - number) * total
+    return total * _power_of_2(twos)
+
+
+@kernel
+def log(x: float) -> float:
+    """Natural logarithm of a normal number x > 0."""
+    twos = 0
+    m = x
+    while m > _SQRT_2:
+        m = m * 0.5
+        twos = twos + 1
+    while m * _SQRT_2 < 1.0:
+        m = m * 2.0
+        twos = twos - 1
+    s = (m - 1.0) / (m + 1.0)
+    q = s * s
+    total = 0.0
+    for number in range(11):
+        total = total * q + 1.0 / (23 - 2 * number)
+    return twos * _LN_2_HIGH + (twos * _LN_2_LOW + 2.0 * (s + s * q * total))
