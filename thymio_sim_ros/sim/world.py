@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.batch.robot_batch import RobotBatch
@@ -42,8 +42,7 @@ _TICK_S = TICK_NS * 1e-9
 _NO_CLEARANCE = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class StepResult:
+class StepResult(NamedTuple):
     """Result of one step: readings as (robot, sensor, reading), by robot and then by sensor name; contacts."""
 
     now_ns: int

@@ -45,9 +45,11 @@ class RobotArrays(Protocol):
 class BatchView:
     """Satisfies `BatchSensorView`."""
 
-    def __init__(self, batch: RobotArrays, robots: Sequence[Robot], user: str, before: Rows) -> None:
-        """`user` is the name of the sensor, `before` are the `rows` of the last batch."""
-        self._batch, self._robots, self._user, self._before = batch, robots, user, before
+    def __init__(self, batch: RobotArrays, robots: Sequence[Robot], number: int, before: Rows) -> None:
+        """`number` is that of the sensor, `before` are the `rows` of the last batch."""
+        self._batch, self._robots, self._before = batch, robots, before
+        self._user = robots[0].sensors[number][0].name
+        self.memories = [robot.sensors[number][1].memory for robot in robots]
         self._keys: NoiseKeys | None = None
         self._record: Record | None = None
         bodies = batch.shared.physics.robots
@@ -95,6 +97,10 @@ class BatchView:
     @property
     def tilts(self) -> Sequence[Tilt]:
         return [robot.tilt for robot in self._robots]
+
+    @property
+    def falling(self) -> Sequence[int]:
+        return [index for index, robot in enumerate(self._robots) if robot.is_falling]
 
     def record(self, kind: type[R]) -> R:
         record = kind(self.memory, len(self._robots))

@@ -49,10 +49,11 @@ class RobotBatch:
         self._views: dict[str, BatchView] = {}
         sensors = self._robots[0].sensors if self._robots else ()
         self._sensors = [sensor for sensor, _ in sensors]
+        self._sensor_names = [sensor.name for sensor in self._sensors]
         self._measure: list[Measure] = []
         for number, sensor in enumerate(self._sensors):
             if sensor.prepare_all is not None:
-                view = BatchView(self, self._robots, sensor.name, (before or {}).get(sensor.name, {}))
+                view = BatchView(self, self._robots, number, (before or {}).get(sensor.name, {}))
                 self._views[sensor.name] = view
                 self._measure.append(sensor.prepare_all(view))
             else:
@@ -90,8 +91,9 @@ class RobotBatch:
     def act(self, dt_s: float) -> None:
         """Run the actuators for one tick."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
-        for robot in self._in_order(self.shared.busy):
-            robot.act(dt_s)
+        if self.shared.busy:
+            for robot in self._in_order(self.shared.busy):
+                robot.act(dt_s)
         self._drive()
 
     def move(self, floor_support: FloorSupport) -> tuple[Contact, ...]:
@@ -108,8 +110,10 @@ class RobotBatch:
     def measure(self, due: Sequence[int]) -> ReadingTable:
         """Return the readings of the sensors with these numbers, and of those woken."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
+        if not self.shared.woken:
+            return ReadingTable(self._names, [(self._sensor_names[number], self._measure[number]()) for number in due])
         woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
-        awake: Sequence[int] = sorted({*due, *chain.from_iterable(woken.values())}) if woken else due
+        awake = sorted({*due, *chain.from_iterable(woken.values())})
         columns: list[tuple[str, Sequence[Reading | None]]] = []
         for number in awake:
             if number in due:
@@ -119,7 +123,7 @@ class RobotBatch:
                 column = [
                     robot.measure_one(number) if index in some else None for index, robot in enumerate(self._robots)
                 ]
-            columns.append((self._sensors[number].name, column))
+            columns.append((self._sensor_names[number], column))
         return ReadingTable(self._names, columns)
 
     def _one_by_one(self, number: int) -> Measure:

@@ -100,9 +100,15 @@ def _examine(grid: Grid, taps: Taps, pixels: Words, tile_x: int, tile_y: int) ->
     bottom = _pixel(cell_y, first, pixel_m, grid.origin_y[0], grid.rows[0])
     top = _pixel(cell_y + _LAST_CELL, last, pixel_m, grid.origin_y[0], grid.rows[0])
     color = _color(grid, pixels, bottom, left)
-    for row in range(bottom, top + 1):
-        for column in range(left, right + 1):
-            if _color(grid, pixels, row, column) != color:
+    rows = grid.rows[0]
+    columns = grid.columns[0]
+    if color != 0 and (left < 0 or bottom < 0 or right >= columns or top >= rows):
+        return MIXED
+    for row in range(bottom if bottom > 0 else 0, top + 1 if top < rows else rows):
+        for pixel in range(
+            row * columns + (left if left > 0 else 0), row * columns + (right + 1 if right < columns else columns)
+        ):
+            if pixels[pixel] != color:
                 return MIXED
     return color
 

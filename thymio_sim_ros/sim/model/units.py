@@ -95,9 +95,10 @@ def ground_reflectance(count: float) -> float:
     return min(1.0, max(0.0, _GROUND_MIDDLE - math.log(_GROUND_SPAN / above - 1.0) / _GROUND_SLOPE))
 
 
+@kernel
 def acceleration_to_units(acceleration_m_s2: float) -> int:
     """Return one axis of acc for m/s²: 23 for each g, within ±32 (section 7.3)."""
-    return round(max(-ACC_LIMIT, min(ACC_LIMIT, acceleration_m_s2 * (ACC_PER_G / GRAVITY_M_S2))))
+    return round(min(max(acceleration_m_s2 * (ACC_PER_G / GRAVITY_M_S2), -ACC_LIMIT), ACC_LIMIT))
 
 
 def units_to_acceleration(count: int) -> float:

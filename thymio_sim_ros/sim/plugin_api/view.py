@@ -188,6 +188,16 @@ class BatchSensorView(Protocol):
         """Tilts by robot."""
         ...
 
+    @property
+    def falling(self) -> Sequence[int]:
+        """Numbers of the robots that are in the air after an edge."""
+        ...
+
+    @property
+    def memories(self) -> Sequence[dict[str, Any]]:
+        """The `SensorView.memory` of this sensor on each robot, to which `on_wake` writes."""
+        ...
+
     def states(self, kind: type[S]) -> Sequence[S]:
         """The state of type `kind` of every robot."""
         ...

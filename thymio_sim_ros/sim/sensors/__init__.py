@@ -36,7 +36,7 @@ class Sensor:
         wakes_on: Types of commands that wake the sensor in the tick in which its robot gets one; `Contact` wakes it
             when a contact begins. A woken sensor measures in that tick, unless it has `on_wake`.
         prepare_all: Instead of `measure`: called once for all robots, returns the function that returns the readings of
-            all of them, in order. Such a sensor cannot be woken. Called again when robots are added or removed.
+            all of them, in order. Called again when robots are added or removed. Such a sensor is not woken to measure.
         on_wake: Called instead of `measure` when the sensor is woken; it usually writes to `view.memory`.
         label: Heading of its values in viewers; its name if empty.
         values: The rows that viewers show, for the words of a reading in order; None for a row for each variable,
@@ -58,8 +58,12 @@ class Sensor:
     values: tuple[DisplayedValue, ...] | None = field(default=None, hash=False)
 
     def __post_init__(self) -> None:
-        if (self.measure is None) == (self.prepare_all is None) or (self.prepare_all is not None and self.wakes_on):
-            raise ValueError(f"sensor {self.name}: expected either measure, or prepare_all and no wakes_on")
+        if (self.measure is None) == (self.prepare_all is None) or (
+            self.prepare_all is not None and self.wakes_on and self.on_wake is None
+        ):
+            raise ValueError(
+                f"sensor {self.name}: expected either measure or prepare_all, the latter without wakes_on or with on_wake"
+            )
         shown = sum(value.words for value in self.displayed)
         if shown > self.aseba.size:
             raise ValueError(f"sensor {self.name}: values show {shown} words, expected at most {self.aseba.size}")
