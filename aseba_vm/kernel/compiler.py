@@ -153,7 +153,7 @@ class _Function:
 
     def _statement(self, node: ast.stmt) -> str:
         match node:
-            case ast.Assign(targets=[target], value=value):
+            case ast.Assign(targets=[target], value=value) | ast.AnnAssign(target=target, value=ast.expr() as value):
                 return self._store(target, self._value(value))
             case ast.AugAssign(target=target, op=op, value=value):
                 left = ast.copy_location(ast.BinOp(_loaded(target), op, value), node)

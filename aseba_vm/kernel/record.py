@@ -7,7 +7,6 @@ same memory as Python reads it fastest: a memoryview, whose elements are Python'
 from __future__ import annotations
 
 import inspect
-from functools import cache
 from typing import Any, Protocol, Self
 
 from aseba_vm.kernel.types import ALIGNMENT, DTYPES, ITEM_SIZES
@@ -22,7 +21,6 @@ class ArrayMemory(Protocol):
         """Allocate an array of zeros of a type of `DTYPES`. Raises MemoryError when there is no room."""
 
 
-@cache
 def fields(record: type[Record]) -> dict[str, str]:
     """The arrays of a record class by name, and their types `Floats`, `Ints` or `Words`; in the order of the class."""
     found = {}
@@ -48,13 +46,13 @@ class Record:
             MemoryError: The memory has no room for them.
         """
         self.count, self.memory = count, memory
-        self.view = object.__new__(type(self))
-        self.view.count = count
-        self.view.view = self.view
+        view: Any = object.__new__(type(self))
+        view.count, view.view = count, view
         for name, kind in fields(type(self)).items():
             array = memory.array(count, DTYPES[kind])
             setattr(self, name, array)
-            setattr(self.view, name, memoryview(array))
+            setattr(view, name, memoryview(array))
+        self.view = view
 
     @classmethod
     def size(cls, count: int) -> int:

@@ -7,10 +7,8 @@ import math
 import pytest
 
 from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
-from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.actuators.motors import ACTUATOR, MotorState, wheel_speeds
+from thymio_sim_ros.sim.actuators.motors import ACTUATOR, wheel_speeds
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, WheelVelocities
-from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.world import World
 
 SECOND_NS = 1_000_000_000
@@ -74,30 +72,6 @@ def test_a_twist_above_the_limit_keeps_its_curve(linear: float, angular: float) 
 
 def test_wheel_velocities_are_radians_of_a_22_mm_wheel() -> None:
     assert wheel_speeds(WheelVelocities(1.0, -2.0)) == pytest.approx((0.022, -0.044))
-
-
-def test_slip_is_even_between_its_limits_and_independent_for_each_wheel() -> None:
-    state, view = MotorState(), FakeView(noise=Noise(1, "thymio", "motors"))
-    ACTUATOR.apply(state, MotorTargets(100, 100), 0)
-    factors = []
-    for _ in range(2000):
-        assert ACTUATOR.update is not None
-        ACTUATOR.update(state, view, 0.01)
-        factors.append((view.wheels.ground[0] / 0.0332, view.wheels.ground[1] / 0.0332))
-    left = [factor for factor, _ in factors]
-    assert min(left) == pytest.approx(0.973, abs=1e-3)
-    assert max(left) == pytest.approx(1.027, abs=1e-3)
-    assert sum(left) / len(left) == pytest.approx(1.0, abs=1e-3)
-    assert all(one != other for one, other in factors)
-
-
-def test_slip_never_exceeds_the_limit() -> None:
-    state, view = MotorState(), FakeView(noise=Noise(1, "thymio", "motors"))
-    ACTUATOR.apply(state, MotorTargets(600, 600), 0)
-    for _ in range(200):
-        assert ACTUATOR.update is not None
-        ACTUATOR.update(state, view, 0.01)
-        assert max(view.wheels.ground) <= 0.166
 
 
 def test_a_program_drives_by_two_variables() -> None:

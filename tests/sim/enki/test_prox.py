@@ -12,9 +12,7 @@ GRAZE_M = 1e-9
 
 
 @pytest.mark.enki("prox")
-@pytest.mark.parametrize("batch", [10**9, 1], ids=["alone", "at once"])
-def test_a_scene_reads_as_measured_in_enki_mode(monkeypatch: pytest.MonkeyPatch, scene: Scene, batch: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+def test_a_scene_reads_as_measured_in_enki_mode(scene: Scene) -> None:
     found = [_read(scene, grown_m) for grown_m in (0.0, GRAZE_M, -GRAZE_M)]
     expected = pytest.approx(scene["noiseless"], abs=2)
     assert any(words == expected for words in found), (found[0], scene["noiseless"])

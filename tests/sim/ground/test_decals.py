@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from tests.sim.ground.pictures import picture_of
 from tests.sim.images import BLACK, CLEAR, RED, WHITE, Rows, printed
 from thymio_sim_ros.sim.ground import decals
 from thymio_sim_ros.sim.ground.decals import bands, few_colors
@@ -24,7 +25,7 @@ def area(side: float) -> tuple[Point, ...]:
 
 def ground(*marks: Print | Paint, side: float = 0.5) -> Picture:
     """A gray square of a meter about the origin with marks on it."""
-    return Picture([Floor("floor", area(side), GRAY)], marks)
+    return picture_of([Floor("floor", area(side), GRAY)], marks)
 
 
 def seen(picture: Picture, *places: Point) -> list[Color | None]:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.sim.ground.pictures import picture_of
 from thymio_sim_ros.sim.ground.raster import Picture
 from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Floor, Paint
@@ -21,7 +22,7 @@ def area(left: float, bottom: float, right: float, top: float) -> tuple[Point, .
 def sheet() -> Picture:
     """A white sheet of one square meter with a black square of 20 cm at its corner."""
     floor = Floor("sheet", area(0.0, 0.0, 1.0, 1.0), WHITE)
-    return Picture([floor], [Paint("square", area(0.0, 0.0, 0.2, 0.2), BLACK)])
+    return picture_of([floor], [Paint("square", area(0.0, 0.0, 0.2, 0.2), BLACK)])
 
 
 def test_a_line_has_its_color_and_width() -> None:

@@ -43,7 +43,8 @@ def test_half_the_footprint_is_floor_at_an_edge() -> None:
 
 def test_the_count_falls_steadily_towards_an_edge() -> None:
     ground = Ground([floor(255, 0.0, 0.0, 1.0, 1.0)], [])
-    counts = [response(ground.sample(0.98 + step * 0.001, 0.5)) for step in range(40)]
+    samples = [ground.sample(0.98 + step * 0.001, 0.5) for step in range(40)]
+    counts = [response(sample.reflectance, sample.floor) for sample in samples]
     assert counts == sorted(counts, reverse=True)
     assert (round(counts[0]), counts[-1]) == (938, 0.0)
 

@@ -40,3 +40,12 @@ def test_arrays_of_another_memory_are_refused() -> None:
 def test_the_number_of_arguments_is_checked() -> None:
     with pytest.raises(KernelError, match="early: found 0 arguments, expected 1"):
         KernelMemory(1000).bind(samples.early)
+
+
+def test_memory_that_is_freed_and_allocated_again_is_zero() -> None:
+    memory = KernelMemory(1000)
+    memory.array(3, np.float64)
+    used = memory.used
+    memory.array(5, np.float64)[:] = 7.0
+    memory.used = used
+    assert memory.array(9, np.float64).tolist() == [0.0] * 9

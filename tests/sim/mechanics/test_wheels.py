@@ -3,78 +3,93 @@
 from __future__ import annotations
 
 import math
-import random
 
-import numpy as np
 import pytest
 
-from tests.sim.builders import pose_close
-from thymio_sim_ros.sim.mechanics.wheels import WheelArrays, Wheels
+from tests.sim.fake_view import FakeBody
+from thymio_sim_ros.sim.mechanics import motor_control
+from thymio_sim_ros.sim.mechanics import wheels as mechanics
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
+from thymio_sim_ros.sim.model.noise import NoiseKeys
+from thymio_sim_ros.sim.model.robot_constants import SLIP
 
 
-def rolled(left_m_s: float, right_m_s: float, *, slip: float = 1.0) -> Wheels:
-    wheels = Wheels()
-    wheels.drive((0.1, 0.1), (slip, slip), 0.166)
-    wheels.roll((left_m_s, right_m_s), 0.01)
-    return wheels
+class RollingWheels(Wheels):
+    """Wheels that a test drives and rolls, by kernels as Python runs them."""
+
+    def __init__(self) -> None:
+        self.body = FakeBody()
+        super().__init__(self.body)
+        self._keys, self._tick = NoiseKeys(self.body.memory, 1).view, [0]
+
+    def drive(self, left_m_s: float, right_m_s: float, *, is_noisy: bool = False) -> None:
+        self.want(left_m_s, right_m_s)
+        self._tick[0] += 1
+        self._keys.is_on[0] = is_noisy
+        motor_control.drive(self.body.wheels, self._keys, self._tick)
+
+    def roll(self, left_m_s: float, right_m_s: float) -> None:
+        self.body.wheels.covered[0], self.body.wheels.covered[1] = left_m_s, right_m_s
+        mechanics.roll(self.body.state, self.body.wheels)
+
+    @property
+    def ground(self) -> tuple[float, float]:
+        return self.body.wheels.ground[0], self.body.wheels.ground[1]
 
 
 def test_free_wheels_turn_as_commanded_whatever_the_slip() -> None:
-    wheels = rolled(0.102, 0.102, slip=1.02)
+    wheels = RollingWheels()
+    wheels.drive(0.1, 0.1, is_noisy=True)
+    assert wheels.ground[0] != pytest.approx(0.1, rel=1e-6)
+    wheels.roll(*wheels.ground)
     assert wheels.speeds_m_s == pytest.approx((0.1, 0.1))
     assert wheels.odometry.x_m == pytest.approx(0.001)
 
 
-@pytest.mark.parametrize(("speed_m_s", "ground_m_s"), [(0.166, 0.1615), (0.2, 0.166), (-0.2, -0.166)])
-def test_the_limit_comes_after_the_slip(speed_m_s: float, ground_m_s: float) -> None:
-    wheels = Wheels()
-    wheels.drive((speed_m_s, speed_m_s), (0.973, 0.973), 0.166)
-    assert wheels.ground[0] == pytest.approx(ground_m_s, abs=1e-4)
-    assert abs(wheels.commanded[0]) == 0.166
+def test_slip_is_uniform_between_its_limits_and_independent_for_each_wheel() -> None:
+    wheels, factors = RollingWheels(), []
+    for _ in range(2000):
+        wheels.drive(0.0332, 0.0332, is_noisy=True)
+        factors.append((wheels.ground[0] / 0.0332, wheels.ground[1] / 0.0332))
+    left = [factor for factor, _ in factors]
+    assert (min(left), max(left)) == pytest.approx(SLIP, abs=1e-3)
+    assert sum(left) / len(left) == pytest.approx(1.0, abs=1e-3)
+    assert all(one != other for one, other in factors)
+
+
+@pytest.mark.parametrize("speed_m_s", [0.166, 0.2, -0.2])
+def test_the_limit_comes_after_the_slip(speed_m_s: float) -> None:
+    wheels, seen = RollingWheels(), set()
+    for _ in range(200):
+        wheels.drive(speed_m_s, speed_m_s, is_noisy=True)
+        assert abs(wheels.ground[0]) <= 0.166
+        assert abs(wheels.body.wheels.aimed[0]) == 0.166
+        seen.add(abs(wheels.ground[0]))
+    assert max(seen) == 0.166
+    assert (len(seen) > 1) is (abs(speed_m_s) < 0.166 / SLIP[0])
 
 
 def test_blocked_wheels_stand_still() -> None:
-    wheels = rolled(0.0, 0.0)
+    wheels = RollingWheels()
+    wheels.drive(0.1, 0.1)
+    wheels.roll(0.0, 0.0)
     assert wheels.speeds_m_s == pytest.approx((0.0, 0.0))
     assert wheels.angles_rad == pytest.approx((0.0, 0.0))
 
 
 def test_wheels_that_a_push_turns_count_it() -> None:
-    wheels = Wheels()
-    wheels.roll((-0.1, -0.1), 0.01)
+    wheels = RollingWheels()
+    wheels.roll(-0.1, -0.1)
     assert wheels.odometry.x_m == pytest.approx(-0.001)
 
 
-def test_odometry_follows_arcs() -> None:
-    wheels = Wheels()
+def test_odometry_follows_arcs_and_can_be_reset() -> None:
+    wheels = RollingWheels()
     quarter = math.pi / 2 * 0.2
     way = (quarter * (1 - 0.047 / 0.2), quarter * (1 + 0.047 / 0.2))
     for _ in range(1000):
-        wheels.roll((way[0] / 10, way[1] / 10), 0.01)
+        wheels.roll(way[0] / 10, way[1] / 10)
     odometry = wheels.odometry
     assert (odometry.x_m, odometry.y_m, odometry.yaw_rad) == pytest.approx((0.2, 0.2, math.pi / 2), abs=1e-6)
-
-
-def test_many_wheels_turn_as_each_would_alone() -> None:
-    dice = random.Random(1)
-    alone, together = [Wheels() for _ in range(4)], [Wheels() for _ in range(4)]
-    arrays = WheelArrays(together)
-    for tick in range(50):
-        pairs = [(dice.uniform(-0.3, 0.3), dice.uniform(-0.3, 0.3)) for _ in alone]
-        slips = [(dice.uniform(0.9, 1.1), dice.uniform(0.9, 1.1)) for _ in alone]
-        taken = [dice.choice((0.0, 0.01)) for _ in alone]
-        for wheels, pair, slip, less in zip(alone, pairs, slips, taken, strict=True):
-            wheels.drive(pair, slip, 0.166)
-            wheels.roll((wheels.ground[0] - less, wheels.ground[1]), 0.01)
-        arrays.drive(np.array(pairs).T, np.array(slips).T, 0.166)
-        arrays.roll(arrays.ground - np.array([taken, [0.0] * 4]), 0.01)
-        if tick == 20:
-            arrays.write_back()
-            together[1].reset_odometry()
-            alone[1].reset_odometry()
-    arrays.write_back()
-    for one, other in zip(alone, together, strict=True):
-        assert other.speeds_m_s == pytest.approx(one.speeds_m_s, abs=1e-12)
-        assert other.angles_rad == pytest.approx(one.angles_rad, abs=1e-12)
-        assert pose_close(other.odometry, one.odometry, 1e-12)
-        assert (other.commanded, other.ground) == (one.commanded, one.ground)
+    wheels.reset_odometry()
+    assert wheels.odometry.x_m == wheels.odometry.yaw_rad == 0.0

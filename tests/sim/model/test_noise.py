@@ -1,22 +1,18 @@
-"""Generators that depend on seed, robot and user alone; banks that draw ahead for many of them."""
+"""Random numbers that depend on seed, robot, user, tick and number alone."""
 
 from __future__ import annotations
 
-import random
 import statistics
 
 import numpy as np
 import pytest
 
-from thymio_sim_ros.sim.model.noise import Noise, NormalBank, UniformBank
+from thymio_sim_ros.sim.model.clock import SimClock
+from thymio_sim_ros.sim.model.noise import Noise, noise_keys, normal, tick_number, uniform
 
 
 def draws(noise: Noise) -> list[float]:
     return [noise.gauss(1.0) for _ in range(5)] + [noise.uniform(0.0, 1.0) for _ in range(5)]
-
-
-def users(count: int, *, enabled: bool = True) -> list[Noise]:
-    return [Noise(1, f"robot_{index}", "ground", enabled=enabled) for index in range(count)]
 
 
 def test_the_same_key_draws_the_same() -> None:
@@ -41,52 +37,30 @@ def test_normal_numbers_are_normal() -> None:
     assert sum(abs(number) > 4.0 for number in numbers) / len(numbers) == pytest.approx(0.0455, abs=0.005)
 
 
-def test_a_bank_gives_each_user_its_own_uniform_numbers() -> None:
-    alone, together = users(3), users(3)
-    bank = UniformBank(together)
-    for count in (2, 100, 1, 77, 128):
-        expected = [[noise.uniform(0.973, 1.027) for _ in range(count)] for noise in alone]
-        assert bank.draw(0.973, 1.027, count).T.tolist() == expected
+def test_uniform_numbers_are_uniform_and_neighbors_are_independent() -> None:
+    numbers = np.array([uniform(3, 5, tick, number) for tick in range(200) for number in range(100)])
+    assert np.histogram(numbers, 10, (0.0, 1.0))[0] == pytest.approx(2000, abs=200)
+    for lag in (1, 2, 100):  # the next number in a tick, and the same one of the next tick
+        assert abs(np.corrcoef(numbers[lag:], numbers[:-lag])[0, 1]) < 0.025
 
 
-def test_a_bank_gives_each_user_its_own_normal_numbers() -> None:
-    dice = random.Random(3)
-    alone, together = users(5), users(5)
-    for noise in (*alone[:2], *together[:2]):
-        noise.gauss(1.0)
-    bank = NormalBank(together)
-    for _ in range(300):
-        turns = sorted(dice.choices(range(5), k=dice.randrange(12)))
-        expected = [alone[user].gauss(3.0) for user in turns]
-        assert bank.draw(np.array(turns, dtype=np.intp), 3.0) == pytest.approx(expected, abs=1e-12)
+def test_a_number_depends_on_its_tick_and_not_on_earlier_ones() -> None:
+    clock = SimClock()
+    often, once = Noise(1, "a", "ground", clock=clock), Noise(1, "a", "ground", clock=clock)
+    seen = set()
+    for _ in range(50):
+        clock.advance()
+        numbers = draws(often)
+        seen.update(numbers)
+    assert draws(once) == numbers
+    assert len(seen) == 50 * 10
 
 
-@pytest.mark.parametrize("used", [0, 1, 2, 127, 128, 129, 301])
-def test_what_a_bank_has_not_used_it_gives_back(used: int) -> None:
-    alone, together = users(2), users(2)
-    bank = NormalBank(together)
-    for _ in range(used):
-        bank.draw(np.array([0]), 1.0)
-    bank.release()
-    drawn = [alone[0].gauss(1.0) for _ in range(used + 400)][used:]
-    assert [together[0].gauss(1.0) for _ in range(400)] == pytest.approx(drawn, abs=1e-12)
-    assert together[1].gauss(1.0) == alone[1].gauss(1.0)
+def test_numbers_of_a_tick_do_not_overlap() -> None:
+    noise, keys = Noise(1, "a", "ground"), noise_keys(1, "a", "ground")
+    found = [noise.uniform(0.0, 1.0), noise.gauss(1.0), noise.uniform(0.0, 1.0)]
+    assert found == [uniform(*keys, 0, 0), normal(*keys, 0, 1), uniform(*keys, 0, 4)]
 
 
-@pytest.mark.parametrize("used", [0, 3, 128])
-def test_even_numbers_are_given_back_too_and_may_be_banked_again(used: int) -> None:
-    alone, together = users(2), users(2)
-    bank = UniformBank(together)
-    bank.draw(0.0, 1.0, used)
-    bank.release()
-    again = UniformBank(together)
-    expected = [noise.uniform(0.0, 1.0) for noise in alone for _ in range(used + 300)]
-    assert [number for row in again.draw(0.0, 1.0, 300).T.tolist() for number in row] == (
-        expected[used : used + 300] + expected[2 * used + 300 :]
-    )
-
-
-def test_a_bank_of_the_quiet_is_quiet() -> None:
-    quiet = users(2, enabled=False)
-    assert NormalBank(quiet).draw(np.array([0, 1]), 10.0).tolist() == [0.0, 0.0]
-    assert UniformBank(quiet).draw(0.973, 1.027, 1).tolist() == [[1.0, 1.0]]
+def test_tick_numbers_have_31_bits() -> None:
+    assert [tick_number(tick * 10_000_000) for tick in (0, 7, (1 << 31) + 3)] == [0, 7, 3]

@@ -36,9 +36,7 @@ def place_of(world: World, name: str) -> Pose:
     return next(thing.pose for thing in world.snapshot().objects if thing.name == name)
 
 
-@pytest.mark.parametrize("batch", [3, 1], ids=["one by one", "in a batch"])
-def test_an_object_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+def test_an_object_that_was_pushed_away_is_met_where_it_is() -> None:
     other = {**ROBOT, "name": "other", "x_m": 0.6, "y_m": 0.6, "yaw_rad": -math.pi / 2}
     world = quiet(crate(0.2), robots=(ROBOT, other))
     for robot, speed, seconds in (("thymio", 500, 3.0), ("thymio", -500, 2.5), ("other", 500, 3.5)):
@@ -49,12 +47,8 @@ def test_an_object_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.M
     assert place_of(world, "crate").y_m < -0.05
 
 
-@pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
 @pytest.mark.parametrize(("height_m", "is_seen"), [(0.03, False), (0.1, True)])
-def test_proximity_sensors_look_over_a_low_object(
-    monkeypatch: pytest.MonkeyPatch, batch: int, height_m: float, is_seen: bool
-) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+def test_proximity_sensors_look_over_a_low_object(height_m: float, is_seen: bool) -> None:
     assert any(measure_one(quiet(crate(0.15, height_m=height_m)), "proximity").words) == is_seen
 
 

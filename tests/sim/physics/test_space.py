@@ -10,7 +10,6 @@ import pytest
 from tests.sim.builders import FLOOR, ROBOT, box, make, pose_close, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.physics import scalar_driver
 from thymio_sim_ros.sim.world import World
 
 
@@ -112,24 +111,7 @@ def test_a_moved_robot_is_where_it_was_put_at_rest_and_touches_nothing() -> None
     assert world.robots["thymio"].twist.linear_m_s == pytest.approx(0.0, abs=1e-4)
 
 
-def test_gliding_is_what_the_engine_does(monkeypatch: pytest.MonkeyPatch) -> None:
-    def go() -> list[Pose]:
-        world = World(make([FLOOR, box(0.5, 0.0, 0.02, 1.0)]), seed=2)
-        poses = []
-        for tick in range(1500):
-            if tick % 300 == 0:
-                send(world, MotorTargets(300 - tick // 3, 200))
-            world.step()
-            poses.append(world.robots["thymio"].pose)
-        return poses
-
-    gliding = go()
-    monkeypatch.setattr(scalar_driver, "ticks_to_contact", lambda robot, broadphase, at_least, is_alone: 0)
-    for glided, record_step in zip(gliding, go(), strict=True):
-        assert pose_close(glided, record_step, 1e-9)
-
-
-def test_a_gliding_robot_that_is_moved_to_a_wall_stops_at_it() -> None:
+def test_a_driving_robot_that_is_moved_to_a_wall_stops_at_it() -> None:
     world = quiet({**box(1.0, 0.0, 0.02, 1.0), "name": "wall"})
     run(world, 1.0)
     send(world, MoveRobot(0.9, 0.0, 0.0))
@@ -139,7 +121,7 @@ def test_a_gliding_robot_that_is_moved_to_a_wall_stops_at_it() -> None:
     assert world.robots["thymio"].pose.x_m == pytest.approx(0.91, abs=0.001)
 
 
-def test_two_gliding_robots_meet() -> None:
+def test_two_driving_robots_meet() -> None:
     world = quiet(robots=(ROBOT, {**ROBOT, "name": "other", "x_m": 1.0, "yaw_rad": math.pi}))
     send(world, MotorTargets(500, 500))
     world.post("other", MotorTargets(500, 500))

@@ -100,8 +100,7 @@ def test_reset_brings_back_the_robots_of_the_playground() -> None:
     assert list(world.robots) == ["thymio"]
 
 
-def test_robots_may_come_and_go_in_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", 6)
+def test_robots_may_come_and_go_in_a_crowd() -> None:
     world = World(make([FLOOR], [{**ROBOT, "name": f"r{index}", "x_m": index * 0.2} for index in range(7)]))
     run(world, 0.1)
     world.remove("r3")

@@ -8,7 +8,7 @@ import statistics
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, make, post_wall, readings, run, send
-from tests.sim.fake_view import FakeView
+from tests.sim.fake_view import FakeView, Measurement
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, MoveRobot, Tilt
 from thymio_sim_ros.sim.model import geometry
 from thymio_sim_ros.sim.model.geometry import Pose, Twist
@@ -21,12 +21,13 @@ from thymio_sim_ros.sim.world import World
 QUARTER = math.pi / 2
 
 
-def held(roll_rad: float, pitch_rad: float, noise: Noise | None = None) -> AccelerometerReading:
+def measurement(view: FakeView) -> Measurement:
+    return Measurement(accelerometer.SENSOR, view)
+
+
+def held(roll_rad: float, pitch_rad: float) -> AccelerometerReading:
     """What a robot held at an angle reads."""
-    view = FakeView(tilt=geometry.Tilt(roll_rad, pitch_rad), now_ns=62_500_000)
-    if noise is not None:
-        view.noise = noise
-    reading = accelerometer.SENSOR.measure(view)
+    reading = measurement(FakeView(tilt=geometry.Tilt(roll_rad, pitch_rad), now_ns=62_500_000)).next()
     assert isinstance(reading, AccelerometerReading)
     return reading
 
@@ -76,9 +77,9 @@ def test_a_curve_presses_outwards() -> None:
     send(world, BodyTwist(0.08, 1.0))
     reading = readings(run(world, 1.0), "accelerometer")[-1]
     assert reading.words[0] == round(-0.08 * 1.0 / 9.81 * 23)
-    view = FakeView(twist=Twist(0.16, 8.0), memory={"speed_m_s": 0.16})
-    turning = accelerometer.SENSOR.measure(view)
-    assert turning is not None
+    felt = measurement(FakeView(twist=Twist(0.16, 8.0)))
+    felt.next()
+    turning = felt.next()
     assert turning.words == (round(-0.16 * 8.0 / 9.81 * 23), 0, 23)  # to the left, so negative
 
 
@@ -95,11 +96,8 @@ def test_a_hit_from_the_side_is_felt_sidewards() -> None:
     assert accelerometer.SENSOR.on_wake is not None
     accelerometer.SENSOR.on_wake(view)
     view.contacts = ()
-    first = accelerometer.SENSOR.measure(view)
-    view.now_ns += 62_500_000
-    second = accelerometer.SENSOR.measure(view)
-    assert first is not None
-    assert second is not None
+    felt = measurement(view)
+    first, second = felt.next(), felt.next()
     assert first.words[0] == round(0.3 / 0.0625 / 9.81 * 23)  # pushed to the right
     assert second.words[0] == 0
 
@@ -110,8 +108,7 @@ def test_hits_between_two_readings_add_up_and_what_is_touched_on_is_none() -> No
     assert accelerometer.SENSOR.on_wake is not None
     for _ in range(2):
         accelerometer.SENSOR.on_wake(view)
-    reading = accelerometer.SENSOR.measure(view)
-    assert reading is not None
+    reading = measurement(view).next()
     assert reading.words[0] == round(2 * 0.2 / 0.0625 / 9.81 * 23)
 
 
@@ -125,12 +122,10 @@ def test_being_put_elsewhere_is_no_shock_but_a_stop() -> None:
 def test_counts_are_limited() -> None:
     hard = Contact("thymio", "wall", -0.06, 0.0, 0.0, True)
     view = FakeView(twist=Twist(9.0, 0.0), contacts=(hard,))
-    reading = accelerometer.SENSOR.measure(view)
-    assert reading is not None
-    assert reading.words == (0, 32, 23)
-    view.twist, view.now_ns = Twist(-9.0, 0.0), view.now_ns + 62_500_000
-    braked = accelerometer.SENSOR.measure(view)
-    assert braked is not None
+    felt = measurement(view)
+    assert felt.next().words == (0, 32, 23)
+    view.twist = Twist(-9.0, 0.0)
+    braked = felt.next()
     assert braked.words[1] == -32
 
 
@@ -141,7 +136,11 @@ def test_a_contact_in_the_middle_of_the_robot_has_no_side() -> None:
 def test_between_two_counts_the_noise_shows() -> None:
     noise = Noise(3, "thymio", "accelerometer")
     middle, above, far = (
-        [held(-math.asin(count / 23), 0.0, noise).words[0] for _ in range(2000)] for count in (10.5, 10.6, 10.75)
+        [felt.next().words[0] for _ in range(2000)]
+        for felt in (
+            measurement(FakeView(tilt=geometry.Tilt(-math.asin(count / 23), 0.0), noise=noise))
+            for count in (10.5, 10.6, 10.75)
+        )
     )
     assert set(middle) == {10, 11}
     assert statistics.mean(middle) == pytest.approx(10.5, abs=0.05)

@@ -5,11 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
-from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.commands import MotorTargets, SetMotorModel
-from thymio_sim_ros.sim.mechanics.wheels import Wheels
-from thymio_sim_ros.sim.model import units
-from thymio_sim_ros.sim.sensors import current
 from thymio_sim_ros.sim.world import World
 
 
@@ -28,16 +24,6 @@ def test_a_wheel_that_is_held_draws_current_until_it_is_let_go() -> None:
     rest = readings(run(world, 10.0), "current")[-1].words
     assert held[:2] == pytest.approx((800, 800), abs=5)
     assert rest == (0, 0, 0, 0)
-
-
-def test_a_light_load_shows_too() -> None:
-    wheels = Wheels()
-    wheels.commanded = (units.units_to_speed(100), units.units_to_speed(100))
-    wheels.speeds_m_s = (units.units_to_speed(90), units.units_to_speed(100))
-    view = FakeView(wheels=wheels)
-    for _ in range(1000):
-        current.SENSOR.measure(view)
-    assert [round(value, 3) for value in view.memory["currents"]] == [16.0, 0.0]
 
 
 def test_motors_that_follow_at_once_again_tell_their_integrator_at_once() -> None:

@@ -6,9 +6,9 @@ import statistics
 
 import pytest
 
+from tests.sim import fake_view
 from tests.sim.builders import FLOOR, ROBOT, make, measure_one
-from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.batch.robot_batch import MIN_BATCH_ROBOTS
+from tests.sim.fake_view import FakeView, Measurement
 from thymio_sim_ros.sim.commands import SetAmbientLight
 from thymio_sim_ros.sim.ground.sampling import GroundSample
 from thymio_sim_ros.sim.model.noise import Noise
@@ -24,7 +24,7 @@ def measure(left: GroundSample, right: GroundSample, noise: Noise | None = None,
     view = FakeView(grounds={0.0115: left, -0.0115: right}, states=(EnvironmentState(ambient_light=light),))
     if noise is not None:
         view.noise = noise
-    reading = SENSOR.measure(view)
+    reading = fake_view.measure(SENSOR, view)
     assert isinstance(reading, GroundReading)
     return reading
 
@@ -41,7 +41,7 @@ def test_ambient_light_is_added_to_what_is_reflected_up_to_the_limit(light: int,
     assert measure(WHITE, BLACK, light=light).words == words
 
 
-@pytest.mark.parametrize("robots", [1, MIN_BATCH_ROBOTS])
+@pytest.mark.parametrize("robots", [1, 14])
 def test_an_operator_lights_the_ground_of_one_robot(robots: int) -> None:
     starts = [{**ROBOT, "name": f"robot{index}", "y_m": 0.13 * index} for index in range(robots)]
     world = World(make([FLOOR], starts), noise=False)
@@ -63,7 +63,9 @@ def test_without_floor_a_sensor_reads_nothing_in_spite_of_noise() -> None:
 
 def test_noise_spreads_counts_as_measured() -> None:
     noise = Noise(1, "thymio", "ground")
-    counts = [measure(GroundSample(0.44, 1.0), WHITE, noise).words[2] for _ in range(2000)]
+    view = FakeView(grounds={0.0115: GroundSample(0.44, 1.0), -0.0115: WHITE}, noise=noise)
+    measurement = Measurement(SENSOR, view)
+    counts = [measurement.next().words[2] for _ in range(2000)]
     assert statistics.mean(counts) == pytest.approx(502, abs=1)
     assert statistics.stdev(counts) == pytest.approx(10, rel=0.1)
 

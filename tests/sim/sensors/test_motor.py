@@ -5,13 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import FLOOR, make, readings, run, send
-from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.commands import (
     MotorTargets,
 )
-from thymio_sim_ros.sim.mechanics.wheels import Wheels
-from thymio_sim_ros.sim.model.readings import MotorReading
-from thymio_sim_ros.sim.sensors import motor
 from thymio_sim_ros.sim.world import World
 
 
@@ -20,12 +16,9 @@ def world() -> World:
     return World(make([FLOOR]), noise=False)
 
 
-def test_the_motor_reads_speed_pwm_and_angles() -> None:
-    wheels = Wheels()
-    wheels.drive((0.0332, -0.166), (1.0, 1.0), 0.166)
-    wheels.roll((0.0332, -0.166), 0.01)
-    reading = motor.SENSOR.measure(FakeView(wheels=wheels))
-    assert isinstance(reading, MotorReading)
+def test_the_motor_reads_speed_pwm_and_angles(world: World) -> None:
+    send(world, MotorTargets(100, -500))
+    (reading,) = readings([world.step()], "motor")
     assert reading.words == (100, -500, -160, 800)
     assert reading.velocities_rad_s == pytest.approx((0.0332 / 0.022, -0.166 / 0.022))
     assert reading.angles_rad == pytest.approx((0.000332 / 0.022, -0.00166 / 0.022))

@@ -5,14 +5,13 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import FLOOR, make, readings, run, send
-from tests.sim.fake_view import FakeView
+from tests.sim.fake_view import FakeView, measure
 from thymio_sim_ros.sim.commands import (
     BodyTwist,
     MotorTargets,
     MoveRobot,
     ResetOdometry,
 )
-from thymio_sim_ros.sim.mechanics.wheels import Wheels
 from thymio_sim_ros.sim.model.geometry import Pose, Twist
 from thymio_sim_ros.sim.model.readings import PoseReading
 from thymio_sim_ros.sim.sensors import pose
@@ -25,9 +24,7 @@ def world() -> World:
 
 
 def test_the_pose_has_odometry_and_truth() -> None:
-    wheels = Wheels()
-    view = FakeView(pose=Pose(1.0, 2.0, 3.0), twist=Twist(0.1, 0.2), wheels=wheels)
-    reading = pose.SENSOR.measure(view)
+    reading = measure(pose.SENSOR, FakeView(pose=Pose(1.0, 2.0, 3.0), twist=Twist(0.1, 0.2)))
     assert isinstance(reading, PoseReading)
     assert (reading.truth, reading.truth_twist) == (Pose(1.0, 2.0, 3.0), Twist(0.1, 0.2))
     assert (reading.odometry, reading.odometry_twist) == (Pose(0.0, 0.0, 0.0), Twist(0.0, 0.0))

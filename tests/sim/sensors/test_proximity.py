@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis.strategies import floats
 
+from tests.sim import fake_view
 from tests.sim.builders import FLOOR, ROBOT, box, make, measure_one, post_wall
-from tests.sim.fake_view import FakeView
+from tests.sim.fake_view import FakeView, Measurement
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.model.readings import ProximityReading
@@ -24,7 +25,7 @@ FRONT = 2
 
 
 def measure(view: FakeView) -> ProximityReading:
-    reading = SENSOR.measure(view)
+    reading = fake_view.measure(SENSOR, view)
     assert isinstance(reading, ProximityReading)
     return reading
 
@@ -121,14 +122,16 @@ def test_the_sensors_stand_in_the_order_of_the_firmware() -> None:
 
 def test_noise_spreads_counts_as_measured() -> None:
     noise = Noise(1, "thymio", "proximity")
-    counts = [measure(FakeView(obstacles=(wall_ahead(0.05),), noise=noise)).words[FRONT] for _ in range(2000)]
+    measurement = Measurement(SENSOR, FakeView(obstacles=(wall_ahead(0.05),), noise=noise))
+    counts = [measurement.next().words[FRONT] for _ in range(2000)]
     assert statistics.mean(counts) == pytest.approx(3366, abs=0.5)
     assert statistics.stdev(counts) == pytest.approx(robot_constants.PROXIMITY_NOISE, rel=0.1)
 
 
 def test_noise_never_leaves_the_limits() -> None:
     noise = Noise(1, "thymio", "proximity")
-    counts = [measure(FakeView(obstacles=(wall_ahead(0.0004),), noise=noise)).words[FRONT] for _ in range(200)]
+    measurement = Measurement(SENSOR, FakeView(obstacles=(wall_ahead(0.0004),), noise=noise))
+    counts = [measurement.next().words[FRONT] for _ in range(200)]
     assert max(counts) == 4505
 
 

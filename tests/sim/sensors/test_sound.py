@@ -109,11 +109,7 @@ def test_after_a_loud_block_silence_is_news() -> None:
     assert [reading and reading.words[0] for reading in measurements] == [0, 100, 0]
 
 
-@pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
-def test_steady_sound_is_measurements_61_times_a_second_only_when_it_is_loud(
-    monkeypatch: pytest.MonkeyPatch, batch: int
-) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+def test_steady_sound_is_measurements_61_times_a_second_only_when_it_is_loud() -> None:
     world = World(make([FLOOR]))
     send(world, SetNoiseLevel(100))
     assert len(readings(run(world, 10.0), "sound")) == 10

@@ -24,9 +24,7 @@ def test_a_contact_that_begins_faster_than_two_centimetres_per_second_is_a_tap(
     assert (0 if reading is None else reading.words[0]) == taps
 
 
-@pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
-def test_the_operator_s_knocks_are_read_in_the_next_tick(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+def test_the_operator_s_knocks_are_read_in_the_next_tick() -> None:
     world = World(make([FLOOR]), noise=False)
     run(world, 0.05)
     send(world, Tap())
@@ -52,9 +50,7 @@ def test_creeping_to_a_wall_is_none() -> None:
     assert any(step.contacts for step in steps)
 
 
-@pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
-def test_a_knock_on_a_robot_that_leans_on_a_wall_is_read(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+def test_a_knock_on_a_robot_that_leans_on_a_wall_is_read() -> None:
     world = World(make([FLOOR, post_wall(0.01)]), noise=False)
     send(world, MotorTargets(50, 50))
     assert run(world, 3.0)[-1].contacts
@@ -63,9 +59,7 @@ def test_a_knock_on_a_robot_that_leans_on_a_wall_is_read(monkeypatch: pytest.Mon
         assert len(readings(run(world, 0.01), "tap")) == 1
 
 
-@pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
-def test_a_landing_is_one_tap(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+def test_a_landing_is_one_tap() -> None:
     world = World(make([{**FLOOR, "size_x_m": 0.5, "size_y_m": 0.5}]), noise=False)
     send(world, MotorTargets(500, 500))
     assert len(readings(run(world, 4.0), "tap")) == 1

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from tests.sim.builders import FLOOR, make, send
-from tests.sim.fake_view import FakeView
+from tests.sim.fake_view import FakeBody, FakeView
 from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tilt
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
 from thymio_sim_ros.sim.model import geometry
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.stimuli.handling import STIMULUS, HandlingState
@@ -36,8 +37,9 @@ def test_what_the_hand_does_within_a_tick_it_does_once_and_in_order() -> None:
 
 def test_the_hand_zeroes_the_odometry() -> None:
     assert STIMULUS.update is not None
-    state, view = HandlingState(), FakeView()
-    view.wheels.roll((0.1, 0.1), 0.01)
+    body = FakeBody()
+    state, view = HandlingState(), FakeView(wheels=Wheels(body))
+    body.state.odometry_x[0], body.state.odometry_yaw[0] = 0.1, 0.2
     STIMULUS.apply(state, ResetOdometry(), 0)
     STIMULUS.update(state, view, 0.01)
     assert view.wheels.odometry == Pose(0.0, 0.0, 0.0)

@@ -11,13 +11,10 @@ from thymio_sim_ros.sim.commands import SetAmbientLight, SetGround, SetProximity
 from thymio_sim_ros.sim.model.units import proximity_distance
 from thymio_sim_ros.sim.world import World
 
-ALONE, AT_ONCE = 10**9, 1
 
-
-@pytest.fixture(params=[ALONE, AT_ONCE], ids=["alone", "at once"])
-def world(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> World:
-    """Before a wall, one by one and as a batch."""
-    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", request.param)
+@pytest.fixture
+def world() -> World:
+    """A robot before a wall."""
     return World(make([FLOOR, post_wall(0.05)], [ROBOT]), noise=False)
 
 

@@ -110,6 +110,8 @@ class RobotBatch:
     def measure(self, due: Sequence[int]) -> ReadingTable:
         """Return the readings of the sensors with these numbers, and of those woken."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
+        if not self._robots:
+            return ReadingTable((), ())
         if not self.shared.woken:
             return ReadingTable(self._names, [(self._sensor_names[number], self._measure[number]()) for number in due])
         woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}

@@ -83,7 +83,8 @@ def _pixel(cell: int, offset: float, pixel_m: float, origin: int, size: int) -> 
 def _color(grid: Grid, pixels: Words, row: int, column: int) -> int:
     """Return the color number of a pixel; 0, no floor, outside the raster."""
     if 0 <= row < grid.rows[0] and 0 <= column < grid.columns[0]:
-        return pixels[row * grid.columns[0] + column]
+        color: int = pixels[row * grid.columns[0] + column]
+        return color
     return 0
 
 
@@ -104,11 +105,12 @@ def _examine(grid: Grid, taps: Taps, pixels: Words, tile_x: int, tile_y: int) ->
     columns = grid.columns[0]
     if color != 0 and (left < 0 or bottom < 0 or right >= columns or top >= rows):
         return MIXED
+    # Outside the raster the color is 0, too.
+    left = left if left > 0 else 0
+    end = right + 1 if right < columns else columns
     for row in range(bottom if bottom > 0 else 0, top + 1 if top < rows else rows):
-        for pixel in range(
-            row * columns + (left if left > 0 else 0), row * columns + (right + 1 if right < columns else columns)
-        ):
-            if pixels[pixel] != color:
+        for column in range(left, end):
+            if pixels[row * columns + column] != color:
                 return MIXED
     return color
 

@@ -1,13 +1,14 @@
 """Elementary functions as kernels, so that they have the same bits on every machine, compiled or not.
 
-Sine and cosine: the argument x is reduced to r = x - n π/2 with |r| <= π/4; the polynomials are the Taylor series of sin r and cos r,
-whose first omitted term is below 1e-19. π/2 is split into three parts, of which the first two have 33 bits, so that
-n times each of them is exact up to |x| = 1e6 (the argument reduction of Cody and Waite). The error is at most one unit
-in the last place there.
+Sine and cosine: the argument x is reduced to r = x - n π/2 with |r| <= π/4; the polynomials are the Taylor series of
+sin r and cos r, whose first omitted term is below 1e-19. π/2 is split into three parts, of which the first two have 33
+bits, so that n times each of them is exact up to |x| = 1e6 (the argument reduction of Cody and Waite). The error is at
+most two units in the last place there, one for |x| up to 4.
 
 Exponential: exp x = 2^n exp r with |r| <= ln(2) / 2, and a Taylor series whose first omitted term is below 1e-17.
-Logarithm: x = 2^n m with m in [sqrt(1/2), sqrt(2)], and ln m = 2 artanh s with s = (m - 1) / (m + 1), |s| <= 0.172, as a
-series whose first omitted term is below 1e-18. Their errors are at most two units in the last place.
+
+Logarithm: x = 2^n m with m in [sqrt(1/2), sqrt(2)], and ln m = 2 artanh s with s = (m - 1) / (m + 1), |s| <= 0.172, as
+a series whose first omitted term is below 1e-18. The errors of both are at most two units in the last place.
 """
 
 from __future__ import annotations

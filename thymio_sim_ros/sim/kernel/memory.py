@@ -51,10 +51,13 @@ class KernelMemory:
             pages = -(-size // _PAGE)
             memory = wasmtime.Memory(self._store, wasmtime.MemoryType(wasmtime.Limits(pages, pages)))
             self._memory = memory
-            block = (ctypes.c_ubyte * (pages * _PAGE)).from_address(
+            block: Any = (ctypes.c_ubyte * (pages * _PAGE)).from_address(
                 ctypes.addressof(memory.data_ptr(self._store).contents)
             )
-            block.owner = self  # arrays keep the block alive, and so the memory
+            block.owner = (
+                self._store,
+                memory,
+            )  # arrays keep the block alive; numpy would hide a cycle from the collector
             self._bytes = np.ctypeslib.as_array(block)
             runtime.register(self)
         else:
@@ -130,7 +133,7 @@ def _as_python(argument: Argument) -> Any:
     """An argument as Python kernels read it fastest."""
     if isinstance(argument, Record):
         return argument.view
-    return memoryview(argument.reshape(-1)) if isinstance(argument, np.ndarray) else argument
+    return memoryview(argument.reshape(-1).data) if isinstance(argument, np.ndarray) else argument
 
 
 @cache

@@ -15,7 +15,7 @@ __all__ = ["EdgeFall", "list_unsafe"]
 
 @kernel
 def list_unsafe(robots: RobotState, unsafe: Ints, count: Ints) -> None:
-    """Write the standing robots that have moved by the distance to the edge found last to `unsafe`, `count[0]` of them."""
+    """Write the robots that have moved by the distance to the edge found last to `unsafe`, `count[0]` of them."""
     found = 0
     for robot in range(robots.count):
         dx = robots.x[robot] - robots.safe_x[robot]

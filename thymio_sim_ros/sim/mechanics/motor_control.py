@@ -1,7 +1,7 @@
 """Kernels: how motors follow commands (docs/spec/thymio-robot.md section 2.1).
 
-Motors of the model "ideal" follow at once. Their control loop is in its steady state: its output is the pwm of the speed
-aimed at, its integral three times that, within ±4806.
+Motors of the model "ideal" follow at once. Their control loop is in its steady state: its output is the pwm of the
+speed aimed at, its integral three times that, within ±4806.
 
 Motors of the model "firmware" have the robot's control loop. In every tick, with speed and target in Thymio units and
 the output's sign against the speed's: error = speed − target; integral += error, within ±4806; output = 5 error +
@@ -50,7 +50,7 @@ _LEAST_SLIP, _MOST_SLIP = robot_constants.SLIP
 
 @kernel
 def drive(wheels: WheelState, keys: NoiseKeys, tick: Ints) -> None:
-    """Before a tick: set the speeds of all wheels. `tick[0]` is the number of the tick, `keys` are those of the slip."""
+    """Before a tick: set the speeds of all wheels; `tick[0]` is its number, `keys` are those of the slip."""
     for wheel in range(wheels.count):
         robot = wheel >> 1
         speed = wheels.wanted[wheel]
@@ -91,7 +91,8 @@ def control(wheels: WheelState, wheel: int, target: float, speed: float) -> floa
         wheels.is_halved[wheel] = 1
     elif current < _LOW_CURRENT:
         wheels.is_halved[wheel] = 0
-    return speed + (applied / PWM_PER_SPEED_UNIT - speed) * _FOLLOWED
+    reached: float = speed + (applied / PWM_PER_SPEED_UNIT - speed) * _FOLLOWED
+    return reached
 
 
 @kernel

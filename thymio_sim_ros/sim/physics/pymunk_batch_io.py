@@ -40,7 +40,7 @@ class BodyWriter:
         self._rows, self._buffer = rows, batch.Buffer()
         self._buffer.set_float_buf(rows)
         self._function = getattr(_chipmunk_cffi.lib, "pmSpaceBodySetIteratorFuncBatched", None)
-        self._data = _data(_FORCES, self._buffer)
+        self._data = None if self._function is None else _data(_FORCES, self._buffer)
         self.choose(())
 
     def choose(self, bodies: Sequence[pymunk.Body]) -> None:

@@ -162,7 +162,7 @@ def _find_candidates(
     first: Ints,
     near: Ints,
 ) -> None:
-    """List the obstacles that each robot may detect: those of robot r are `near[first[r]]` to `near[first[r + 1] - 1]`."""
+    """List the obstacles that each robot may detect; those of robot r begin at `near[first[r]]`."""
     for row in range(obstacles.count):
         obstacles.known_x[row] = obstacles.x[row]
         obstacles.known_y[row] = obstacles.y[row]

@@ -31,18 +31,9 @@ class SharedState:
     """State that all robots of a world share."""
 
     __slots__ = (
-        "_sounds",
-        "_sounds_ns",
-        "busy",
-        "clock",
-        "ground",
-        "is_noisy",
-        "physics",
-        "proximity_model",
-        "robots",
-        "seed",
+        "_sounds", "_sounds_ns", "busy", "clock", "ground", "is_noisy", "physics", "proximity_model", "robots", "seed",
         "woken",
-    )
+    )  # fmt: skip
 
     def __init__(
         self,

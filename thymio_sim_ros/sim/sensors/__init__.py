@@ -58,12 +58,10 @@ class Sensor:
     values: tuple[DisplayedValue, ...] | None = field(default=None, hash=False)
 
     def __post_init__(self) -> None:
-        if (self.measure is None) == (self.prepare_all is None) or (
-            self.prepare_all is not None and self.wakes_on and self.on_wake is None
-        ):
-            raise ValueError(
-                f"sensor {self.name}: expected either measure or prepare_all, the latter without wakes_on or with on_wake"
-            )
+        if (self.measure is None) == (self.prepare_all is None):
+            raise ValueError(f"sensor {self.name}: expected either measure or prepare_all")
+        if self.prepare_all is not None and self.wakes_on and self.on_wake is None:
+            raise ValueError(f"sensor {self.name}: expected on_wake with wakes_on and prepare_all")
         shown = sum(value.words for value in self.displayed)
         if shown > self.aseba.size:
             raise ValueError(f"sensor {self.name}: values show {shown} words, expected at most {self.aseba.size}")

@@ -9,9 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.raycast.batch import BatchRaycaster, Fan
+from thymio_sim_ros.sim.model.robot_state import RobotState
+from thymio_sim_ros.sim.raycast.raycaster import Fan, Raycaster
 from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle, DiscObstacle, Obstacle, Surroundings
 
 ANGLES = (-0.3, -0.1, 0.0, 0.25)
@@ -42,15 +44,26 @@ def one_by_one(poses: Sequence[Pose], obstacles: Sequence[Obstacle], fan: Fan) -
     return found
 
 
-def all_at_once(caster: BatchRaycaster, poses: Sequence[Pose], fan: Fan) -> list[list[float]]:
-    sensors, distances = caster.cast(
-        np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses]).reshape(-1, 3), fan
-    )
-    found = np.full((len(poses) * fan.directions.shape[1], fan.directions.shape[2]), math.inf)
-    found[sensors] = distances
-    assert np.isfinite(distances).any(axis=1).all()
-    rows: list[list[float]] = found.tolist()
-    return rows
+class Caster:
+    """Robots and a ray caster in a memory of their own."""
+
+    def __init__(
+        self, robots: int, fixed: Sequence[Obstacle], loose: Sequence[Obstacle | None] = (), fan: Fan = FAN
+    ) -> None:
+        memory = KernelMemory(1 << 22)
+        self.robots = RobotState(memory, robots)
+        self.robots.is_standing[:] = 1
+        raycaster = Raycaster(memory, self.robots, robots, fixed, loose)
+        self.move = raycaster.move
+        self._cast, self._distances = raycaster.bind(fan)
+
+    def cast(self, poses: Sequence[Pose]) -> list[list[float]]:
+        """Distances of every ray of every sensor of every robot."""
+        places = np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses]).reshape(-1, 3).T
+        self.robots.x[:], self.robots.y[:], self.robots.yaw[:] = places
+        self._cast()
+        rows: list[list[float]] = self._distances.reshape(-1, self._distances.shape[2]).tolist()
+        return rows
 
 
 def close(one: list[list[float]], other: list[list[float]]) -> bool:
@@ -85,7 +98,7 @@ def things(dice: random.Random, count: int, side: float) -> list[Obstacle]:
 def test_random_scenes_agree_with_rays_one_by_one(seed: int) -> None:
     dice = random.Random(seed)
     obstacles, poses = things(dice, 12, 1.5), scatter(dice, dice.choice((1, 2, 15)), 1.5)
-    assert close(all_at_once(BatchRaycaster(obstacles), poses, FAN), one_by_one(poses, obstacles, FAN))
+    assert close(Caster(len(poses), obstacles).cast(poses), one_by_one(poses, obstacles, FAN))
 
 
 def test_rays_along_the_sides_of_a_box_agree() -> None:
@@ -95,59 +108,52 @@ def test_rays_along_the_sides_of_a_box_agree() -> None:
         box(Pose(0.0, 0.3, 0.0), 0.2, 0.1),
         box(Pose(-0.3, 0.2, 0.0), 0.1, 0.1),
     ]
-    found = all_at_once(BatchRaycaster(obstacles), [Pose(0.0, 0.0, 0.0)], fan)
+    found = Caster(1, obstacles, fan=fan).cast([Pose(0.0, 0.0, 0.0)])
     assert found == [pytest.approx([0.2, 0.2, math.inf, math.inf])]
 
 
 def test_while_robots_wander_what_is_near_stays_up_to_date() -> None:
     dice = random.Random(3)
     obstacles, poses = things(dice, 20, 2.0), scatter(dice, 10, 2.0)
-    caster = BatchRaycaster(obstacles)
+    caster = Caster(len(poses), obstacles)
     for _ in range(60):
         poses = [
             Pose(p.x_m + dice.uniform(-0.02, 0.03), p.y_m + dice.uniform(-0.02, 0.03), p.yaw_rad + dice.uniform(-1, 1))
             for p in poses
         ]
-        assert close(all_at_once(caster, poses, FAN), one_by_one(poses, obstacles, FAN))
+        assert close(caster.cast(poses), one_by_one(poses, obstacles, FAN))
 
 
 def test_objects_that_move_are_seen_where_they_are() -> None:
     dice = random.Random(4)
     fixed, loose, poses = things(dice, 5, 1.0), things(dice, 5, 1.0), scatter(dice, 6, 1.0)
-    caster = BatchRaycaster(fixed, loose)
+    caster = Caster(len(poses), fixed, loose)
     for step in range(5):
         loose = things(dice, 5, 1.0) if step % 2 else loose
         caster.move(dict(enumerate(loose)))
-        assert close(all_at_once(caster, poses, FAN), one_by_one(poses, [*fixed, *loose], FAN))
+        assert close(caster.cast(poses), one_by_one(poses, [*fixed, *loose], FAN))
 
 
 def test_what_is_gone_or_fallen_is_not_seen_and_sees_nothing() -> None:
     dice = random.Random(6)
     loose, poses = things(dice, 8, 1.0), scatter(dice, 6, 1.0)
-    caster = BatchRaycaster([], loose)
-    caster.move({0: None}, fallen={2})
+    caster = Caster(len(poses), [], loose)
+    caster.move({0: None})
+    caster.robots.is_standing[2] = 0
     left = [pose for index, pose in enumerate(poses) if index != 2]
-    found = all_at_once(caster, poses, FAN)
+    found = caster.cast(poses)
     assert found[4:6] == [[math.inf] * 4] * 2
     assert close(found[:4] + found[6:], one_by_one(left, loose[1:], FAN))
-    caster.move(dict(enumerate(loose)), fallen={3})
+    caster.move(dict(enumerate(loose)))
+    caster.robots.is_standing[2:4] = 1, 0
     left = [pose for index, pose in enumerate(poses) if index != 3]
-    found = all_at_once(caster, poses, FAN)
+    found = caster.cast(poses)
     assert found[6:8] == [[math.inf] * 4] * 2
     assert close(found[:6] + found[8:], one_by_one(left, loose, FAN))
-    caster.move({})
-    assert close(all_at_once(caster, poses, FAN), one_by_one(poses, loose, FAN))
-
-
-def test_two_fans_of_different_reach_may_take_turns() -> None:
-    dice = random.Random(5)
-    far = Fan([(0.0, 0.0)], [[(1.0, 0.0), (0.6, 0.8)]], range_m=0.9, height_m=0.09)
-    obstacles, poses = things(dice, 12, 1.5), scatter(dice, 6, 1.5)
-    caster = BatchRaycaster(obstacles)
-    for fan in (FAN, far, FAN):
-        assert close(all_at_once(caster, poses, fan), one_by_one(poses, obstacles, fan))
+    caster.robots.is_standing[3] = 1
+    assert close(caster.cast(poses), one_by_one(poses, loose, FAN))
 
 
 def test_without_robots_or_objects_nothing_is_seen() -> None:
-    assert all_at_once(BatchRaycaster([]), [], FAN) == []
-    assert all_at_once(BatchRaycaster([]), [Pose(0.0, 0.0, 0.0)], FAN) == [[math.inf] * 4] * 2
+    assert Caster(0, []).cast([]) == []
+    assert Caster(1, []).cast([Pose(0.0, 0.0, 0.0)]) == [[math.inf] * 4] * 2
