@@ -80,11 +80,17 @@ class Sensor:
 
 def all_sensors() -> tuple[Sensor, ...]:
     """Return all sensors, of this package and of other packages, in name order."""
-    return registry.collect(sys.modules[__name__], "SENSOR", Sensor, guard=_guarded)
+    return registry.collect(sys.modules[__name__], "SENSOR", Sensor, check=_check, guard=_guarded)
+
+
+def _check(sensor: Sensor) -> None:
+    """Raise ValueError for a sensor of another package that measures all robots at once: errors would stop the world."""
+    if sensor.prepare_all is not None:
+        raise ValueError(f"sensor {sensor.name}: found prepare_all, expected measure in a package other than this")
 
 
 def _guarded(sensor: Sensor) -> Sensor:
     """Return a sensor of another package, guarded so that its errors do not stop the world."""
+    assert sensor.measure is not None  # see `_check`
     on_wake = None if sensor.on_wake is None else guarded_sensor(sensor.name, sensor.on_wake)
-    measure = None if sensor.measure is None else guarded_sensor(sensor.name, sensor.measure)
-    return replace(sensor, measure=measure, on_wake=on_wake)
+    return replace(sensor, measure=guarded_sensor(sensor.name, sensor.measure), on_wake=on_wake)
