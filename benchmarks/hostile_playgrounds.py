@@ -1,10 +1,8 @@
 """Playgrounds made to stop the simulator, sent by one viewer while another one measures how long its calls take.
 
-Run: python benchmarks/hostile_playgrounds.py [--port PORT]. It starts `thymio-sim` with a bridge on that port,
-sends each playground as the parameter /simulator.playground, and prints: bytes, seconds until the answer,
-the longest call of the other viewer meanwhile, memory of the process at its highest so far, and the answer. The last
-line is how long Ctrl-C takes while a playground is loading. Larger texts than 4 MB do not pass the bridge;
-tests/sim/playground/test_format_detection.py measures those.
+Each playground is sent as the parameter /simulator.playground of a `thymio-sim`. The columns are: bytes, seconds until
+the answer, the longest call of the other viewer meanwhile, memory of the process at its highest so far, and the answer.
+Texts of more than 4 MB do not pass the bridge; tests/sim/playground/test_format_detection.py measures those. Needs ROS.
 """
 
 from __future__ import annotations
@@ -13,29 +11,26 @@ import argparse
 import base64
 import io
 import json
-import os
-import re
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from pathlib import Path
 
 from PIL import Image
 from websockets.sync.client import ClientConnection, connect
 
+from benchmarks.lib.processes import status_mb, suite
+from benchmarks.lib.report import Goal, Report, Table
 from thymio_sim_ros.bridge import SUBPROTOCOLS
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
 
-COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(sys.argv[1:]))"
+QUICK = {"only": "4 MB of nested", "seconds": 0.3}
 SERVICE = "/simulator/get_poses"
 NO_NAMES = b"\0\1\0\0" + bytes(4)
 START_S, ANSWER_S = 60.0, 120.0
-ALONE_S = 3.0
+MOST_CALL_S, MOST_CTRL_C_S = 0.5, 5.0
 PLAIN = '<rect width="100" height="100" fill="#888"/>'
 
 
@@ -146,12 +141,6 @@ def longest_call(viewer: Viewer, service: int, stop: threading.Event, found: lis
         stop.wait(0.02)
 
 
-def highest_mb(pid: int) -> int:
-    """Memory of a process at its highest so far."""
-    found = re.search(r"VmHWM:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())
-    return int(found[1]) // 1024 if found else 0
-
-
 def connected(port: int, stack: ExitStack) -> Viewer:
     """A viewer, once the bridge listens; the stack disconnects it."""
     deadline = time.monotonic() + START_S
@@ -167,55 +156,54 @@ def connected(port: int, stack: ExitStack) -> Viewer:
             time.sleep(0.1)
 
 
-def main() -> int:
-    """Start the nodes, attack them, end them."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--port", type=int, default=9765)
-    port = parser.parse_args().port
-    suite = subprocess.Popen(
-        [sys.executable, "-c", COMMAND, "--no-web", "--foxglove-port", str(port)],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    stack = ExitStack()
-    try:
-        other, hostile = connected(port, stack), connected(port, stack)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--only", default="", metavar="WORDS", help="playgrounds with this in their description")
+    parser.add_argument("--seconds", type=float, default=3.0, help="of calls before the first playground")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Send all playgrounds, and Ctrl-C while the last one is loading."""
+    rows: list[list[str | float]] = []
+    with suite("--no-web") as running, ExitStack() as stack:
+        pid = running.process.pid
+        other, hostile = connected(running.bridge_port, stack), connected(running.bridge_port, stack)
         service = other.service(SERVICE)
-        end = time.monotonic() + ALONE_S
-        alone = 0.0
+        alone, end = 0.0, time.monotonic() + options.seconds
         while time.monotonic() < end:
             alone = max(alone, other.call(service))
-        print(f"the longest call alone: {alone * 1000:.0f} ms; {highest_mb(suite.pid)} MB", flush=True)
-        print(f"{'playground':38} {'bytes':>10} {'answer':>8} {'calls':>8} {'memory':>8}  became", flush=True)
+        rows.append(["nothing", 0, 0, 1000 * alone, round(status_mb(pid, "VmHWM")), ""])
         for name, text in attacks().items():
-            stop, longest = threading.Event(), []  # type: tuple[threading.Event, list[float]]
-            thread = threading.Thread(target=longest_call, args=(other, service, stop, longest))
-            thread.start()
-            begin = time.monotonic()
-            try:
-                hostile.set(text)
-                became = hostile.answer()
-            except TimeoutError:
-                became = "no answer"
-            seconds = time.monotonic() - begin
-            stop.set()
-            thread.join()
-            sizes = f"{len(text):10} {seconds:6.2f} s {longest[0] * 1000:5.0f} ms {highest_mb(suite.pid):5} MB"
-            print(f"{name:38} {sizes}  {became[:150]}", flush=True)
+            if options.only in name:
+                seconds, longest, became = attack(hostile, other, service, text)
+                rows.append([name, len(text), seconds, 1000 * longest, round(status_mb(pid, "VmHWM")), became])
         hostile.set(attacks()["100 half-transparent groups"])
         time.sleep(0.5)
         begin = time.monotonic()
-        os.killpg(suite.pid, signal.SIGINT)
-        suite.wait(60.0)
-        print(f"Ctrl-C while a playground is loading: {time.monotonic() - begin:.2f} s, exit code {suite.returncode}")
-    finally:
-        if suite.poll() is None:
-            os.killpg(suite.pid, signal.SIGKILL)
-            suite.wait()
-        stack.close()
-    return 0
+        running.process.signal(signal.SIGINT)
+        code = running.process.wait()
+        ctrl_c_s = time.monotonic() - begin
+    if code:
+        raise RuntimeError(f"exit code {code} after Ctrl-C")
+    goals = [
+        Goal("longest call of the other viewer", MOST_CALL_S, max(float(row[3]) for row in rows) / 1000, "s"),
+        Goal("Ctrl-C while a playground is loading", MOST_CTRL_C_S, ctrl_c_s, "s"),
+    ]
+    return Report([Table(["playground", "bytes", "answer, s", "longest call, ms", "MB", "answer"], rows)], goals)
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def attack(hostile: Viewer, other: Viewer, service: int, text: str) -> tuple[float, float, str]:
+    """Send a playground; return the seconds until the answer, those of the longest call meanwhile, and the answer."""
+    stop, longest = threading.Event(), []  # type: tuple[threading.Event, list[float]]
+    thread = threading.Thread(target=longest_call, args=(other, service, stop, longest))
+    thread.start()
+    begin = time.monotonic()
+    try:
+        hostile.set(text)
+        became = hostile.answer()
+    except TimeoutError:
+        became = "no answer"
+    seconds = time.monotonic() - begin
+    stop.set()
+    thread.join()
+    return seconds, longest[0], became.replace("|", "\\|").replace("\n", " ")[:100]

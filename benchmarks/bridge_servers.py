@@ -1,11 +1,11 @@
-"""The bridge's server beside the vendor's: python benchmarks/foxglove_latency.py [--rounds N] [--seconds S] [--rate HZ]
+"""The bridge's server beside the servers of the vendor.
 
-Each library runs in a process of its own and sends the same stream; clients count here. Measured per scene: share of
-messages that arrived at healthy clients, latency from the call that publishes to the client's read, and CPU of the
-server's process per delivery, less what the same process needs to pace the stream without clients. The libraries take
-turns,
-and medians of the rounds are printed, so that other work on the machine meets all of them. Libraries that are not
-installed are left out (foxglove-sdk, foxglove-websocket). `foxglove_throughput.py` measures without pacing.
+Each library runs in a process of its own and sends messages of one channel; clients count here. In the first table
+the stream is paced: share of messages that arrived at healthy clients, latency from the call that publishes to the
+client's read, and CPU of the server's process per delivery, less what the same process needs to pace the stream without
+clients. In the second one it is not paced: messages per second that reached a client, and CPU per delivery; a message
+that a server drops because the client cannot follow costs time, too. The libraries take turns, and the figures are
+medians of the rounds. foxglove-sdk and foxglove-websocket are measured where they are installed.
 """
 
 from __future__ import annotations
@@ -14,24 +14,30 @@ import argparse
 import asyncio
 import importlib.util
 import json
+import math
 import socket
 import statistics
 import struct
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import astuple, dataclass
-from pathlib import Path
 
 from websockets.asyncio.client import ClientConnection, connect
 
-SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"]
+from benchmarks.lib.bridge_client import SUBPROTOCOLS, connected, frames
+from benchmarks.lib.processes import cpu_s
+from benchmarks.lib.report import Report, Table
+
+QUICK = {"rounds": 1, "seconds": 0.2, "warm_up": 0.1, "rate": 100.0}
 STAMP = struct.Struct("<Q")
 CATCH_UP_S = 0.1
-WARM_UP_S = 0.5
-"""What a connection costs at its begin is not counted."""
+SETTLE_S = 0.5
+TEXT_FRAME, BINARY_FRAME = 1, 2
+MESSAGE_DATA = 1
 STUCK_S = 10.0
 """A scene that takes this much longer than it should is given up: its server does not answer."""
 HEADER = 1 + 4 + 8  # opcode, subscription, time
@@ -84,7 +90,7 @@ def serve_ours(port: int, rate: float, size: int) -> None:
 
 
 def serve_foxglove_websocket(port: int, rate: float, size: int) -> None:
-    """The package that gave the vocabulary, in its own event loop."""
+    """The package whose constants the bridge uses, in its own event loop."""
     from foxglove_websocket.server import FoxgloveServer
 
     async def run() -> None:
@@ -161,15 +167,17 @@ async def count(connection: ClientConnection, until_s: float, latencies_ms: list
         return
 
 
-async def watch(port: int, process: int, seconds: float, healthy: int, stalled: int) -> tuple[list[list[float]], float]:
+async def watch(
+    port: int, process: int, options: argparse.Namespace, healthy: int, stalled: int
+) -> tuple[list[list[float]], float]:
     """Latencies seen by each healthy client, and the CPU seconds that the process took, once all have been served."""
     blocked = [await subscribe(port) for _ in range(stalled)]
     for connection in blocked:
         connection.transport.pause_reading()
     connections = [await subscribe(port) for _ in range(healthy)]
-    await read(connections, WARM_UP_S)
+    await read(connections, options.warm_up)
     before_s = cpu_s(process)
-    seen = await read(connections, seconds)
+    seen = await read(connections, options.seconds)
     used_s = cpu_s(process) - before_s
     for connection in (*connections, *blocked):
         connection.transport.abort()
@@ -191,8 +199,8 @@ def running(library: str, rate: float, size: int) -> Iterator[tuple[int, int]]:
     """A library's server in a process of its own: port and process id."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    command = [sys.executable, "-W", "ignore", str(Path(__file__).with_name("foxglove_latency.py"))]
-    command += ["--serve", library, "--port", str(port), "--rate", str(rate), "--size", str(size)]
+    code = "import sys; from benchmarks.bridge_servers import serve; serve(*sys.argv[1:])"
+    command = [sys.executable, "-W", "ignore", "-c", code, library, str(port), str(rate), str(size)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
         assert server.stdout is not None
         try:
@@ -203,15 +211,15 @@ def running(library: str, rate: float, size: int) -> Iterator[tuple[int, int]]:
             server.kill()
 
 
-def measure(library: str, options: argparse.Namespace, healthy: int, stalled: int, idle_us: float = 0.0) -> Result:
+def paced(library: str, options: argparse.Namespace, healthy: int, stalled: int, idle_us: float = 0.0) -> Result:
     """Run one scene; `idle_us`: CPU time per message that pacing takes."""
     with running(library, options.rate, options.size) as (port, process):
-        scene = watch(port, process, options.seconds, healthy, stalled)
+        scene = watch(port, process, options, healthy, stalled)
         try:
-            seen, used_s = asyncio.run(asyncio.wait_for(scene, WARM_UP_S + options.seconds + STUCK_S))
+            seen, used_s = asyncio.run(asyncio.wait_for(scene, options.warm_up + options.seconds + STUCK_S))
         except TimeoutError:
-            seen, used_s = [], float("nan")
-    latencies = sorted(latency for one in seen for latency in one) or [float("nan")] * 2
+            seen, used_s = [], math.nan
+    latencies = sorted(latency for one in seen for latency in one) or [math.nan] * 2
     ranks = statistics.quantiles(latencies, n=100, method="inclusive")
     deliveries = sum(len(one) for one in seen)
     sent = options.rate * options.seconds
@@ -221,41 +229,110 @@ def measure(library: str, options: argparse.Namespace, healthy: int, stalled: in
     )
 
 
-def cpu_s(process: int) -> float:
-    """CPU seconds of a process so far, as the scheduler counts them: ticks of 10 ms are wrong for short turns."""
-    tasks = Path(f"/proc/{process}/task").glob("*/schedstat")
-    return sum(int(task.read_text(encoding="ascii").split()[0]) for task in tasks) / 1e9
+class Counter:
+    """A client that counts its messages in a thread."""
+
+    def __init__(self, port: int) -> None:
+        self.count = 0
+        self._peer = connected(port)
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Leave."""
+        self._peer.shutdown(socket.SHUT_RDWR)
+        self._thread.join()
+        self._peer.close()
+
+    def _run(self) -> None:
+        for opcode, contents in frames(self._peer):
+            if opcode == BINARY_FRAME and contents[0] == MESSAGE_DATA:
+                self.count += 1
+            elif opcode == TEXT_FRAME:
+                message = json.loads(bytes(contents))
+                if message["op"] == "advertise":
+                    self._subscribe(message["channels"][0]["id"])
+
+    def _subscribe(self, channel: int) -> None:
+        text = json.dumps({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": channel}]}).encode()
+        assert len(text) < 126
+        self._peer.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
 
 
-def main() -> None:
-    """Print a table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def unpaced(library: str, size: int, clients: int, seconds: float) -> tuple[float, float]:
+    """Messages per second that reached a client, CPU µs of the server per delivery."""
+    with running(library, 0.0, size) as (port, process):
+        counters = [Counter(port) for _ in range(clients)]
+        time.sleep(SETTLE_S)
+        before_s, before = cpu_s(process), sum(counter.count for counter in counters)
+        started_s = time.monotonic()
+        time.sleep(seconds)
+        used_s, delivered = cpu_s(process) - before_s, sum(counter.count for counter in counters) - before
+        took_s = time.monotonic() - started_s
+        for counter in counters:
+            counter.close()
+    return delivered / clients / took_s, used_s * 1e6 / max(1, delivered)
+
+
+def serve(library: str, port: str, rate: str, size: str) -> None:
+    """Run a server (for a process of its own)."""
+    SERVERS[library][1](int(port), float(rate), int(size))
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--seconds", type=float, default=5.0)
-    parser.add_argument("--rate", type=float, default=1000.0, help="messages per second")
-    parser.add_argument("--size", type=int, default=1000, help="bytes per message")
-    parser.add_argument("--serve", choices=SERVERS, help=argparse.SUPPRESS)
-    parser.add_argument("--port", type=int, help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.serve:
-        SERVERS[options.serve][1](options.port, options.rate, options.size)
-        return
+    parser.add_argument("--warm-up", type=float, default=0.5, help="seconds before the measurement")
+    parser.add_argument("--rate", type=float, default=1000.0, help="messages per second of the paced stream")
+    parser.add_argument("--size", type=int, default=1000, help="bytes per message of the paced stream")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure both tables."""
     libraries = [name for name, (module, _) in SERVERS.items() if importlib.util.find_spec(module) is not None]
+    title = f"{options.rate:g} messages/s of {options.size} bytes"
+    columns = ["", "delivered, %", "p50, ms", "p99, ms", "worst p99, ms", "CPU, µs per delivery"]
+    unpaced_columns = [
+        "CPU, µs per delivery; clients and bytes",
+        *libraries,
+        *(f"{one}: messages/s" for one in libraries),
+    ]
+    return Report(
+        [
+            Table(columns, _paced_rows(libraries, options), title),
+            Table(unpaced_columns, _unpaced_rows(libraries, options), "As many messages as possible"),
+        ]
+    )
+
+
+def _paced_rows(libraries: list[str], options: argparse.Namespace) -> list[list[str | float]]:
     scenes = {"1 client": (1, 0), "10 clients": (10, 0), "1 beside a stalled one": (1, 1)}
     results: dict[tuple[str, str], list[Result]] = {}
     for _ in range(options.rounds):
-        idle_us = {library: measure(library, options, 0, 0).cpu_us for library in libraries}
+        idle_us = {library: paced(library, options, 0, 0).cpu_us for library in libraries}
         for scene, (healthy, stalled) in scenes.items():
             for library in libraries:
-                found = measure(library, options, healthy, stalled, idle_us[library])
+                found = paced(library, options, healthy, stalled, idle_us[library])
                 results.setdefault((scene, library), []).append(found)
-    print(f"{options.rate:g} messages/s of {options.size} bytes, medians of {options.rounds} rounds")
-    print(f"{'scene':24} {'library':20} {'arrived':>8} {'p50 ms':>8} {'p99 ms':>8} {'worst p99':>9} {'CPU µs':>8}")
-    for (scene, library), found in results.items():
-        arrived, p50, p99, cpu_us = (statistics.median(column) for column in zip(*map(astuple, found), strict=True))
-        worst = max(result.p99 for result in found)
-        print(f"{scene:24} {library:20} {arrived:8.1%} {p50:8.2f} {p99:8.2f} {worst:9.2f} {cpu_us:8.1f}")
+    rows: list[list[str | float]] = []
+    for (scene, library), rounds in results.items():
+        arrived, p50, p99, cpu_us = (statistics.median(column) for column in zip(*map(astuple, rounds), strict=True))
+        worst = max(result.p99 for result in rounds)
+        rows.append([f"{scene}: {library}", 100 * arrived, p50, p99, worst, cpu_us])
+    return rows
 
 
-if __name__ == "__main__":
-    main()
+def _unpaced_rows(libraries: list[str], options: argparse.Namespace) -> list[list[str | float]]:
+    rows: list[list[str | float]] = []
+    for clients in (1, 10):
+        for size in (100, 1000):
+            found: dict[str, list[tuple[float, float]]] = {library: [] for library in libraries}
+            for _ in range(options.rounds):
+                for library in libraries:
+                    found[library].append(unpaced(library, size, clients, options.seconds))
+            rates, costs = zip(
+                *(map(statistics.median, zip(*found[one], strict=True)) for one in libraries), strict=True
+            )
+            rows.append([f"{clients} × {size}", *costs, *rates])
+    return rows

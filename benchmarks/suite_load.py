@@ -1,8 +1,9 @@
-"""CPU of the whole suite with a viewer: python benchmarks/foxglove_suite.py [--seconds S] [--rounds N]
+"""CPU of the whole suite, with and without a viewer.
 
-One robot follows the line. Measured in turn, CPU seconds of the suite's process per second: without clients, and
-with a client that is subscribed to every topic of the shipped layout, to all parameters and to the graph, as if all
-panels were seen at once. CPU time is compared, since other work on the machine does not count in it.
+One robot follows the line. Measured in turn, CPU seconds of the suite's process per second: without clients, and with a
+client that is subscribed to every topic of the shipped layout, to all parameters and to the graph, as if all panels
+were open at once. CPU time is compared, because other work on the machine does not count in it. Needs ROS and the
+built page.
 """
 
 from __future__ import annotations
@@ -10,19 +11,20 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
-import os
 import re
-import socket
-import subprocess
-import sys
+import statistics
 import time
 
-from foxglove_latency import SUBPROTOCOLS, cpu_s
 from websockets.asyncio.client import ClientConnection, connect
 
+from benchmarks.lib.bridge_client import SUBPROTOCOLS
+from benchmarks.lib.processes import cpu_s, suite
+from benchmarks.lib.report import Goal, Report, Table
 from thymio_sim_ros.studio_layout import render
 
-SETTLE_S = 3.0
+QUICK = {"seconds": 1.0, "rounds": 1, "settle": 1.0}
+MOST_PERCENT = 12.0
+"""With all panels open."""
 TRANSFORMS = {"/tf", "/tf_static"}
 
 
@@ -32,11 +34,11 @@ def layout_topics(advertised: dict[str, int]) -> list[str]:
     return sorted(topic for topic in advertised if topic in named | TRANSFORMS)
 
 
-async def view(port: int, process: int, seconds: float) -> tuple[float, int, int]:
+async def view(port: int, process: int, seconds: float, settle_s: float) -> tuple[float, int, int]:
     """CPU share with all panels open, topics subscribed, messages received."""
     async with connect(f"ws://localhost:{port}", subprotocols=SUBPROTOCOLS, compression=None, max_size=None) as client:
         channels: dict[str, int] = {}
-        await receive(client, SETTLE_S, channels)
+        await receive(client, settle_s, channels)
         topics = layout_topics(channels)
         wanted = [{"id": number, "channelId": channels[topic]} for number, topic in enumerate(topics)]
         for message in (
@@ -45,14 +47,14 @@ async def view(port: int, process: int, seconds: float) -> tuple[float, int, int
             {"op": "subscribeConnectionGraph"},
         ):
             await client.send(json.dumps(message))
-        await receive(client, SETTLE_S, channels)
+        await receive(client, settle_s, channels)
         before_s, started_s = cpu_s(process), time.monotonic()
         count = await receive(client, seconds, channels)
         return (cpu_s(process) - before_s) / (time.monotonic() - started_s), len(topics), count
 
 
 async def receive(client: ClientConnection, seconds: float, channels: dict[str, int]) -> int:
-    """Read for some time, noting what is advertised; how many messages came."""
+    """Read for some time and note what is advertised; return the number of messages."""
     count = 0
     try:
         async with asyncio.timeout(seconds):
@@ -73,30 +75,28 @@ def alone(process: int, seconds: float) -> float:
     return (cpu_s(process) - before_s) / (time.monotonic() - started_s)
 
 
-def main() -> None:
-    """Print a line for each round."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
     parser.add_argument("--seconds", type=float, default=15.0)
     parser.add_argument("--rounds", type=int, default=3)
-    options = parser.parse_args()
-    with socket.create_server(("127.0.0.1", 0)) as one, socket.create_server(("127.0.0.1", 0)) as two:
-        ports = [str(free.getsockname()[1]) for free in (one, two)]
-    start = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main())"
-    command = [sys.executable, "-c", start, "--port", ports[0], "--foxglove-port", ports[1]]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ) as suite:
-        try:
-            assert suite.stdout is not None
-            while "Stop" not in (line := suite.stdout.readline()):
-                assert line, "the suite does not start"
-            time.sleep(SETTLE_S)
-            for number in range(options.rounds):
-                quiet = alone(suite.pid, options.seconds)
-                watched, topics, count = asyncio.run(view(int(ports[1]), suite.pid, options.seconds))
-                viewer = f"{topics} topics with {count / options.seconds:.0f} messages/s"
-                print(f"round {number + 1}: no client {quiet:.1%} of a core; {viewer}: {watched:.1%}", flush=True)
-        finally:
-            suite.terminate()
+    parser.add_argument("--settle", type=float, default=3.0, help="seconds between a change and the measurement")
 
 
-if __name__ == "__main__":
-    main()
+def measure(options: argparse.Namespace) -> Report:
+    """Measure both in turn."""
+    quiet, watched, rates = [], [], []
+    with suite() as running:
+        time.sleep(2 * options.settle)
+        for _ in range(options.rounds):
+            quiet.append(100 * alone(running.process.pid, options.seconds))
+            viewing = view(running.bridge_port, running.process.pid, options.seconds, options.settle)
+            share, topics, count = asyncio.run(viewing)
+            watched.append(100 * share)
+            rates.append(count / options.seconds)
+    most = statistics.median(watched)
+    rows = [
+        ["no viewer", statistics.median(quiet), min(quiet), max(quiet), 0, 0],
+        ["all panels open", most, min(watched), max(watched), topics, statistics.median(rates)],
+    ]
+    columns = ["% of a core", "median", "best", "worst", "topics", "messages/s"]
+    return Report([Table(columns, rows)], [Goal("all panels open", MOST_PERCENT, most, "% CPU")])
