@@ -35,7 +35,6 @@ from benchmarks.lib.report import Report, Table
 QUICK = {"rounds": 1, "seconds": 0.2, "warm_up": 0.1, "rate": 100.0}
 STAMP = struct.Struct("<Q")
 CATCH_UP_S = 0.1
-SETTLE_S = 0.5
 TEXT_FRAME, BINARY_FRAME = 1, 2
 MESSAGE_DATA = 1
 STUCK_S = 10.0
@@ -259,14 +258,14 @@ class Counter:
         self._peer.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
 
 
-def unpaced(library: str, size: int, clients: int, seconds: float) -> tuple[float, float]:
+def unpaced(library: str, size: int, clients: int, options: argparse.Namespace) -> tuple[float, float]:
     """Messages per second that reached a client, CPU µs of the server per delivery."""
     with running(library, 0.0, size) as (port, process):
         counters = [Counter(port) for _ in range(clients)]
-        time.sleep(SETTLE_S)
+        time.sleep(options.warm_up)
         before_s, before = cpu_s(process), sum(counter.count for counter in counters)
         started_s = time.monotonic()
-        time.sleep(seconds)
+        time.sleep(options.seconds)
         used_s, delivered = cpu_s(process) - before_s, sum(counter.count for counter in counters) - before
         took_s = time.monotonic() - started_s
         for counter in counters:
@@ -330,7 +329,7 @@ def _unpaced_rows(libraries: list[str], options: argparse.Namespace) -> list[lis
             found: dict[str, list[tuple[float, float]]] = {library: [] for library in libraries}
             for _ in range(options.rounds):
                 for library in libraries:
-                    found[library].append(unpaced(library, size, clients, options.seconds))
+                    found[library].append(unpaced(library, size, clients, options))
             rates, costs = zip(
                 *(map(statistics.median, zip(*found[one], strict=True)) for one in libraries), strict=True
             )

@@ -16,6 +16,7 @@ import argparse
 import ast
 import contextlib
 import importlib
+import os
 import subprocess
 import sys
 import tempfile
@@ -27,8 +28,8 @@ from benchmarks.lib import page, report
 
 MISSING = 77
 """Exit code, as in automake, of a benchmark that cannot run on this machine."""
-OPTIONAL = {"foxglove", "foxglove_websocket", "playwright", "rclpy", "websockets"}
-"""Modules of Python without which only some benchmarks run."""
+OWN = {"aseba_vm", "benchmarks", "tests", "thymio_sim_ros"}
+"""Packages of the repository, which are never missing: a module that they lack is a defect."""
 
 FOLDER = Path(__file__).resolve().parent.parent
 
@@ -99,9 +100,7 @@ def run(name: str, arguments: Sequence[str]) -> int:
     try:
         return _run(importlib.import_module(f"benchmarks.{name}"), name, arguments)
     except ModuleNotFoundError as error:
-        if error.name not in OPTIONAL:
-            raise
-        missing = MissingError("module", error.name)
+        missing = MissingError("module", _not_own(error))
     except MissingError as error:
         missing = error
     if {"-h", "--help"} & set(arguments):
@@ -124,14 +123,17 @@ def _run(module: ModuleType, name: str, arguments: Sequence[str]) -> int:
     if "--quick" in arguments:
         parser.set_defaults(**module.QUICK)
     options = parser.parse_args(arguments)
+    load = os.getloadavg()[0]
     with _domain():
         measured = module.measure(options)
     kept = [argument for argument in arguments if argument not in ("--json", str(options.json))]
     against = getattr(options, "against", None)
     if against is not None:
         kept = [argument if argument != str(against) else report.commit(against) for argument in kept]
-    stored = report.result(name, measured, kept, against, is_quick=options.quick)
+    stored = report.result(name, measured, kept, against, load)
     print(report.markdown(stored))
+    if measured.goals:
+        print(f"\n{report.goals_table([stored])}")
     if options.json is not None:
         report.save(options.json, stored)
     return 0
@@ -143,12 +145,19 @@ def _domain() -> Iterator[None]:
     try:
         from thymio_sim_ros.testing.ros.domain import reserved
     except ModuleNotFoundError as error:
-        if error.name not in OPTIONAL:
-            raise
+        _not_own(error)
         yield
         return
     with reserved():
         yield
+
+
+def _not_own(error: ModuleNotFoundError) -> str:
+    """Return the missing package; raise the error if it is one of the repository."""
+    package = (error.name or "").partition(".")[0]
+    if package in OWN:
+        raise error
+    return package
 
 
 def _docstring(name: str) -> str:

@@ -18,7 +18,7 @@ _MARKED = re.compile(r"(<!-- results: (?P<name>\w+) -->\n).*?(<!-- end of result
 
 
 def rendered(text: str, results: Path = RESULTS) -> str:
-    """Return the page with all tables made again. Raises FileNotFoundError for a name without a result."""
+    """Return the page with all tables made again."""
     return _MARKED.sub(lambda match: f"{match[1]}\n{_section(match['name'], results)}\n\n{match[3]}", text)
 
 
@@ -34,7 +34,8 @@ def render() -> None:
 
 def _section(name: str, results: Path) -> str:
     if name != "goals":
-        return report.markdown(report.load(results / f"{name}.json"))
-    stored = [report.load(path) for path in sorted(results.glob("*.json"))]
-    rows = [[one["benchmark"], *report.goal_row(goal)] for one in stored for goal in one["goals"]]
-    return report.markdown_table(("benchmark", *report.GOAL_COLUMNS), rows)
+        path = results / f"{name}.json"
+        if not path.is_file():
+            return f"Not stored yet: `python -m benchmarks {name}`."
+        return report.markdown(report.load(path))
+    return report.goals_table([report.load(path) for path in sorted(results.glob("*.json"))])

@@ -29,6 +29,8 @@ class Suite:
 @contextlib.contextmanager
 def suite(*arguments: str) -> Iterator[Suite]:
     """Run `thymio-sim` with these arguments while the context lasts; yields it once bridge and page listen."""
+    import rclpy  # noqa: F401  # the suite needs it
+
     page_port, bridge_port = free_port(), free_port()
     ports = ("--port", str(page_port), "--foxglove-port", str(bridge_port))
     with tempfile.TemporaryDirectory() as folder:

@@ -57,8 +57,11 @@ class Report:
     goals: Sequence[Goal] = field(default_factory=tuple)
 
 
-def result(name: str, report: Report, arguments: Sequence[str], against: Path | None, *, is_quick: bool) -> Any:
-    """Return what is stored as JSON: the report, and how, when and where it was measured."""
+def result(name: str, report: Report, arguments: Sequence[str], against: Path | None, load: float) -> Any:
+    """Return what is stored as JSON: the report, and how, when and where it was measured.
+
+    `load` is the load average before the measurement.
+    """
     return {
         "benchmark": name,
         "command": " ".join(["python -m benchmarks", name, *arguments]),
@@ -66,8 +69,7 @@ def result(name: str, report: Report, arguments: Sequence[str], against: Path | 
         "commit": commit(ROOT),
         "against": None if against is None else commit(against),
         "machine": machine(),
-        "load": round(os.getloadavg()[0], 1),
-        "is_quick": is_quick,
+        "load": round(load, 1),
         "tables": [dataclasses.asdict(table) | {"rows": _rounded(table.rows)} for table in report.tables],
         "goals": [
             dataclasses.asdict(goal) | {"measured": _rounded([[goal.measured]])[0][0], "is_reached": goal.is_reached}
@@ -85,10 +87,14 @@ def _round(value: float) -> float | None:
 
 
 def commit(checkout: Path) -> str:
-    """Return the short commit of a checkout, with "+" if files are changed; empty without git."""
-    command = ["git", "-C", str(checkout), "describe", "--always", "--abbrev=7", "--dirty=+", "--exclude=*"]
-    found = subprocess.run(command, capture_output=True, text=True, check=False)
-    return found.stdout.strip()
+    """Return the short commit of a checkout, with "+" if files are changed, apart from results; empty without git."""
+    git = ["git", "-C", str(checkout)]
+    found = subprocess.run([*git, "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True, check=False)
+    if found.returncode:
+        return ""
+    changed = [*git, "status", "--porcelain", "--", ".", ":!benchmarks/results", ":!docs"]
+    is_changed = bool(subprocess.run(changed, capture_output=True, text=True, check=False).stdout)
+    return found.stdout.strip() + "+" * is_changed
 
 
 def machine() -> str:
@@ -108,13 +114,11 @@ def machine() -> str:
 
 
 def markdown(stored: Any) -> str:
-    """Render the tables and goals of a stored result, and a line that says how they were measured."""
+    """Render the tables of a stored result, and a line that says how they were measured."""
     parts = []
     for table in stored["tables"]:
         text = markdown_table(table["columns"], table["rows"])
         parts.append(f"{table['title']}:\n\n{text}" if table["title"] else text)
-    if stored["goals"]:
-        parts.append(markdown_table(GOAL_COLUMNS, [goal_row(goal) for goal in stored["goals"]]))
     against = f", in turn with commit {stored['against']}" if stored["against"] else ""
     source = f"commit {stored['commit']}, " if stored["commit"] else ""
     load = "" if stored["load"] is None else f"; load average {stored['load']}"
@@ -122,11 +126,13 @@ def markdown(stored: Any) -> str:
     return "\n\n".join(parts)
 
 
-GOAL_COLUMNS = ("goal", "limit", "measured", "reached")
+def goals_table(stored: Sequence[Any]) -> str:
+    """Render the goals of stored results."""
+    rows = [[one["benchmark"], *_goal_row(goal)] for one in stored for goal in one["goals"]]
+    return markdown_table(("benchmark", "goal", "limit", "measured", "reached"), rows)
 
 
-def goal_row(goal: Any) -> list[Cell]:
-    """Return the row of a stored goal."""
+def _goal_row(goal: Any) -> list[Cell]:
     limit = f"{'≥' if goal['is_least'] else '≤'} {_text(goal['limit'])}{_unit(goal)}"
     measured = _text(goal["measured"])
     return [
@@ -142,9 +148,10 @@ def _unit(goal: Any) -> str:
 
 
 def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[Cell]]) -> str:
-    """Render a table; all columns but the first are aligned to the right."""
+    """Render a table; columns of numbers are aligned to the right."""
     texts = [[_text(cell) for cell in row] for row in rows]
-    marks = ["---" if column == 0 else "---:" for column in range(len(columns))]
+    numeric = [all(not text or text[0] in "0123456789-≤≥" for text in column) for column in zip(*texts, strict=True)]
+    marks = ["---:" if is_numeric else "---" for is_numeric in numeric or [False] * len(columns)]
     lines = [columns, marks, *texts]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
@@ -163,6 +170,14 @@ def load(path: Path) -> Any:
 
 
 def save(path: Path, stored: Any) -> None:
-    """Write a result, a line for each row of a table."""
-    text = json.dumps(stored, indent=1, ensure_ascii=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    """Write a result, with a line for each row of a table and for each goal."""
+    lines = ",\n".join(f"{json.dumps(key)}: {_lines(value)}" for key, value in stored.items())
+    path.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+
+
+def _lines(value: Any) -> str:
+    if isinstance(value, dict) and "rows" in value:
+        return f"{{{', '.join(f'{json.dumps(key)}: {_lines(part)}' for key, part in value.items())}}}"
+    if isinstance(value, list) and value and not isinstance(value[0], str):
+        return "[\n" + ",\n".join(map(_lines, value)) + "\n]"
+    return json.dumps(value, ensure_ascii=False)

@@ -29,7 +29,7 @@ Act = Callable[[Sequence[Any], BatchActuatorView, float], None]
 S = TypeVar("S")
 
 MIN_BATCH_ROBOTS = 14
-"""Number of robots from which on a batch is faster (measured, docs/performance.md)."""
+"""Number of robots from which on a batch is faster (measured, docs/performance-method.md)."""
 
 _NOWHERE_M = -1e6
 
