@@ -50,7 +50,7 @@ def program(lines: int = 300) -> str:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--rounds", type=int, default=15, help="rounds; the figures are their medians")
     rounds.add_against(parser)
 
 

@@ -49,8 +49,8 @@ def _timed(act: Callable[[], object]) -> float:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=200)
-    parser.add_argument("--slow-rounds", type=int, default=20, help="of functions that write files")
+    parser.add_argument("--rounds", type=int, default=200, help="rounds; the figures are their medians")
+    parser.add_argument("--slow-rounds", type=int, default=20, help="rounds of functions that write files")
 
 
 def measure(options: argparse.Namespace) -> Report:

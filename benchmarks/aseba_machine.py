@@ -143,7 +143,7 @@ LEAST_TIMES_C = {"arithmetic": 10.0, "array": 10.0, "branchy": 10.0, "subroutine
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
     parser.add_argument("--seconds", type=float, default=0.1, help="of processor time for each figure of a round")
     parser.add_argument("--words", type=int, nargs="+", default=[100, 300, 1000, 1500], help="of programs to translate")
 

@@ -177,7 +177,7 @@ def run(program: Path, options: argparse.Namespace, folder: Path) -> Figures:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--robots", type=int, default=20)
+    parser.add_argument("--robots", type=int, default=20, help="robots that run each program")
     parser.add_argument("--only", default="", metavar="WORD", help="programs with this in their names")
     parser.add_argument("--seconds", type=float, default=4.0, help="for which the programs run before the requests")
 

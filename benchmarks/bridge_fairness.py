@@ -120,7 +120,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--attacks", nargs="+", choices=[*ATTACKS, CTRL_C], default=[*ATTACKS, CTRL_C], help=about, metavar="ATTACK"
     )
-    parser.add_argument("--seconds", type=float, default=5.0, help="of each phase (default: %(default)s)")
+    parser.add_argument("--seconds", type=float, default=5.0, help="of each phase")
     parser.add_argument("--settle", type=float, default=1.0, help="seconds for the attackers to connect")
 
 

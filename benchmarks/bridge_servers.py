@@ -280,8 +280,8 @@ def serve(library: str, port: str, rate: str, size: str) -> None:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--seconds", type=float, default=5.0)
+    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
+    parser.add_argument("--seconds", type=float, default=5.0, help="seconds of each measurement")
     parser.add_argument("--warm-up", type=float, default=0.5, help="seconds before the measurement")
     parser.add_argument("--rate", type=float, default=1000.0, help="messages per second of the paced stream")
     parser.add_argument("--size", type=int, default=1000, help="bytes per message of the paced stream")

@@ -105,11 +105,11 @@ def drawing(
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=3, help="rounds; the figures are their medians")
     parser.add_argument("--seconds", type=float, default=8.0, help="for which frames are counted")
     parser.add_argument("--settle", type=float, default=2.0, help="seconds before frames are counted")
-    parser.add_argument("--robots", type=int, default=20, help="of the scene with many (default: %(default)s)")
-    parser.add_argument("--size", default="1280x720")
+    parser.add_argument("--robots", type=int, default=20, help="of the scene with many")
+    parser.add_argument("--size", default="1280x720", help="of the window, in pixels")
     names = ("auto", "fine", "medium", "simple")
     parser.add_argument("--fineness", nargs="+", choices=names, default=["simple", "auto"], help="resolutions")
 

@@ -252,7 +252,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
     every = [*TRACK, *WALLS]
     parser.add_argument("--programs", nargs="+", choices=every, default=every, metavar="PROGRAM", help=f"of {every}")
-    parser.add_argument("--seconds", type=float, default=95.0, help="of simulated time for each (default: %(default)s)")
+    parser.add_argument("--seconds", type=float, default=95.0, help="of simulated time for each")
 
 
 def measure(options: argparse.Namespace) -> Report:

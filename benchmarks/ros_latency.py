@@ -131,8 +131,8 @@ def run(robots: int, rate_hz: float, count: int) -> list[float]:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--commands", type=int, default=500)
-    parser.add_argument("--robots", type=int, default=1)
+    parser.add_argument("--commands", type=int, default=500, help="commands for each row")
+    parser.add_argument("--robots", type=int, default=1, help="robots in the world; one is commanded")
 
 
 def measure(options: argparse.Namespace) -> Report:

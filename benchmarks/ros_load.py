@@ -288,8 +288,8 @@ def summary(rounds: list[Figures]) -> list[Cell]:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--seconds", type=float, default=10.0)
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=10.0, help="seconds of each measurement")
+    parser.add_argument("--rounds", type=int, default=3, help="rounds; the figures are their medians")
     parser.add_argument("--warm-up", type=float, default=3.0, help="seconds before the measurement")
     parser.add_argument("--only", default="", metavar="WORDS", help="scenes with this in their names")
     parser.add_argument("--profile", metavar="FILE", help="write a profile of the node (its CPU time is then wrong)")

@@ -25,6 +25,7 @@ from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.world import World
 
 QUICK = {"rounds": 1, "robots": [1, 14], "steps": 33}
+ROBOTS = [1, 2, 4, 8, 10, 13, 14, 20, 50, 100, 400]
 TICKS = 3
 """Ticks of the world in a robot-step."""
 TICK_NS = 10_000_000
@@ -49,9 +50,9 @@ ENKI_RATIOS = {(100, EACH): 1.0, (400, EACH): 9.0, (100, FIRMWARE): 1.3, (400, F
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--robots", type=int, nargs="+", default=[1, 2, 4, 8, 10, 13, 14, 20, 50, 100, 400])
-    parser.add_argument("--steps", type=int, default=6600, help="robot-steps of a round (default: %(default)s)")
+    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
+    parser.add_argument("--robots", type=int, nargs="+", default=ROBOTS, help="numbers of robots")
+    parser.add_argument("--steps", type=int, default=6600, help="robot-steps of a round")
     rounds.add_against(parser)
 
 

@@ -52,7 +52,7 @@ def one_round(domain: int) -> tuple[float, float]:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
 
 
 def measure(options: argparse.Namespace) -> Report:

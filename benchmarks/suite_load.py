@@ -77,8 +77,8 @@ def alone(process: int, seconds: float) -> float:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--seconds", type=float, default=15.0)
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=15.0, help="seconds of each measurement")
+    parser.add_argument("--rounds", type=int, default=3, help="rounds; the figures are their medians")
     parser.add_argument("--settle", type=float, default=3.0, help="seconds between a change and the measurement")
 
 

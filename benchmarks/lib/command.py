@@ -78,7 +78,7 @@ def run_all(options: argparse.Namespace) -> int:
         command = [sys.executable, "-m", "benchmarks", name]
         if options.quick:
             command += ["--quick"]
-        if options.against and "add_against" in (FOLDER / f"{name}.py").read_text(encoding="utf-8"):
+        if options.against and _can_compare(name):
             command += ["--against", str(options.against)]
         with tempfile.TemporaryDirectory() as folder:
             found = Path(folder) / f"{name}.json"
@@ -109,11 +109,18 @@ def run(name: str, arguments: Sequence[str]) -> int:
     return MISSING
 
 
+class _Formatter(argparse.ArgumentDefaultsHelpFormatter, argparse.RawDescriptionHelpFormatter):
+    """Keeps the lines of the description and shows the defaults of options that have one."""
+
+    def _get_help_string(self, action: argparse.Action) -> str | None:
+        return super()._get_help_string(action) if action.default else action.help
+
+
 def _run(module: ModuleType, name: str, arguments: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(
         prog=f"python -m benchmarks {name}",
         description=module.__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=_Formatter,
     )
     quick = ", ".join(f"{key}={value}" for key, value in module.QUICK.items())
     parser.add_argument("--quick", action="store_true", help=f"all code in small sizes, within seconds ({quick})")
@@ -161,8 +168,16 @@ def _not_own(error: ModuleNotFoundError) -> str:
 
 
 def _docstring(name: str) -> str:
-    text = (FOLDER / f"{name}.py").read_text(encoding="utf-8")
-    return ast.get_docstring(ast.parse(text)) or ""
+    return ast.get_docstring(ast.parse(_source(name))) or ""
+
+
+def _can_compare(name: str) -> bool:
+    """Whether a benchmark has the option `--against`; without an import, which may need what is missing."""
+    return "rounds.add_against(parser)" in _source(name)
+
+
+def _source(name: str) -> str:
+    return (FOLDER / f"{name}.py").read_text(encoding="utf-8")
 
 
 def _summary(name: str) -> str:

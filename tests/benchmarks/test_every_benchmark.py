@@ -28,10 +28,10 @@ MARKS = {"page": pytest.mark.browser}
 EACH = [pytest.param(name, marks=MARKS.get(name, ())) for name in command.names()]
 
 
-def run(name: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run a benchmark from the root of the repository, as a user would."""
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run the command from the root of the repository, as a user would."""
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    argv = [sys.executable, "-m", "benchmarks", name, *arguments]
+    argv = [sys.executable, "-m", "benchmarks", *arguments]
     return subprocess.run(
         argv, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=WITHIN_S, check=False
     )
@@ -95,6 +95,27 @@ def test_the_page_agrees_with_the_stored_results() -> None:
 def test_the_page_has_no_table_that_is_written_by_hand() -> None:
     text = re.sub(r"<!-- results: \w+ -->.*?<!-- end of results -->", "", page.PAGE.read_text("utf-8"), flags=re.DOTALL)
     assert not [line for line in text.splitlines() if line.startswith("|")]
+
+
+@pytest.mark.process
+@pytest.mark.slow
+def test_another_checkout_is_measured_in_turn(tmp_path: Path) -> None:
+    path = tmp_path / "found.json"
+    done = run("simulator_runner", "--quick", "--against", str(ROOT), "--json", str(path))
+    assert done.returncode == 0, done.stderr
+    stored = json.loads(path.read_text(encoding="utf-8"))
+    assert stored["tables"][0]["columns"] == ["× real time", "now", "before", "ratio"]
+    assert [goal["limit"] for goal in stored["goals"]] == [2.5, 1.5, 4.0]
+
+
+@pytest.mark.process
+@pytest.mark.slow
+def test_a_quick_run_of_all_stores_nothing() -> None:
+    before = page.PAGE.read_bytes(), sorted((path, path.read_bytes()) for path in page.RESULTS.iterdir())
+    done = run("--quick", "--only", "aseba_compile", "aseba_costs")
+    assert done.returncode == 0, done.stderr
+    assert re.findall("^== .*$", done.stdout, re.MULTILINE) == ["== aseba_compile", "== aseba_costs"]
+    assert before == (page.PAGE.read_bytes(), sorted((path, path.read_bytes()) for path in page.RESULTS.iterdir()))
 
 
 @pytest.mark.process
