@@ -17,114 +17,23 @@ import json
 import math
 import socket
 import statistics
-import struct
-import subprocess
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import astuple, dataclass
 
 from websockets.asyncio.client import ClientConnection, connect
 
 from benchmarks.lib.bridge_client import SUBPROTOCOLS, connected, frames
+from benchmarks.lib.bridge_servers import SERVERS, STAMP, running
 from benchmarks.lib.processes import cpu_s
 from benchmarks.lib.report import Report, Table
 
 QUICK = {"rounds": 1, "seconds": 0.2, "warm_up": 0.1, "rate": 100.0}
-STAMP = struct.Struct("<Q")
-CATCH_UP_S = 0.1
 TEXT_FRAME, BINARY_FRAME = 1, 2
 MESSAGE_DATA = 1
 STUCK_S = 10.0
 """A scene that takes this much longer than it should is given up: its server does not answer."""
 HEADER = 1 + 4 + 8  # opcode, subscription, time
-CHANNEL = {"topic": "/t", "encoding": "cdr", "schemaName": "t", "schema": "uint8[] data", "schemaEncoding": "ros2msg"}
-
-
-# --- servers: each prints "ready" and streams until it is killed ---
-
-
-def ticks(rate: float) -> Iterator[None]:
-    """One turn per message, with absolute deadlines, for ever; rate 0: as fast as it goes."""
-    print("ready", flush=True)
-    due = time.monotonic()
-    while True:
-        if rate:
-            due = next_due(due, rate)
-            time.sleep(max(0.0, due - time.monotonic()))
-        yield
-
-
-def next_due(due: float, rate: float) -> float:
-    """The next deadline; what is more than `CATCH_UP_S` late is given up."""
-    return max(due + 1 / rate, time.monotonic() - CATCH_UP_S)
-
-
-def payload(size: int) -> bytes:
-    """The time of publishing and padding."""
-    return STAMP.pack(time.monotonic_ns()) + bytes(size - STAMP.size)
-
-
-def serve_ours(port: int, rate: float, size: int) -> None:
-    """The server of this project, fed from another thread as the node does it."""
-    from thymio_sim_ros.bridge import ServerInfo, ServerThread
-    from thymio_sim_ros.bridge.protocol import messages
-    from thymio_sim_ros.bridge.switchboard import events
-
-    class Sink:
-        def is_full(self, client: int) -> bool:
-            """Never."""
-            return False
-
-        def post(self, event: events.Event) -> None:
-            """Ignore the message."""
-
-    server = ServerThread(ServerInfo("ours", ()), Sink(), port=port)
-    channel = messages.Channel(1, CHANNEL["topic"], "cdr", "t", CHANNEL["schema"], "ros2msg")
-    server.post(events.AddChannels((channel,)))
-    for _ in ticks(rate):
-        server.publish(1, 0, payload(size))
-
-
-def serve_foxglove_websocket(port: int, rate: float, size: int) -> None:
-    """The package whose constants the bridge uses, in its own event loop."""
-    from foxglove_websocket.server import FoxgloveServer
-
-    async def run() -> None:
-        async with FoxgloveServer("127.0.0.1", port, "theirs") as server:
-            number = await server.add_channel(CHANNEL)
-            print("ready", flush=True)
-            due = time.monotonic()
-            while True:
-                if rate:
-                    due = next_due(due, rate)
-                await asyncio.sleep(max(0.0, due - time.monotonic()) if rate else 0)
-                await server.send_message(number, 0, payload(size))
-
-    asyncio.run(run())
-
-
-def serve_foxglove_sdk(port: int, rate: float, size: int) -> None:
-    """The vendor's successor."""
-    import foxglove
-
-    foxglove.start_server(host="127.0.0.1", port=port)
-    schema = foxglove.Schema(name="t", encoding="ros2msg", data=CHANNEL["schema"].encode())
-    channel = foxglove.Channel(CHANNEL["topic"], schema=schema, message_encoding="cdr")
-    for _ in ticks(rate):
-        channel.log(payload(size), log_time=0)
-
-
-SERVERS: dict[str, tuple[str, Callable[[int, float, int], None]]] = {
-    "ours": ("thymio_sim_ros", serve_ours),
-    "foxglove-websocket": ("foxglove_websocket", serve_foxglove_websocket),
-    "foxglove-sdk": ("foxglove", serve_foxglove_sdk),
-}
-
-
-# --- clients and measurement ---
 
 
 @dataclass(frozen=True)
@@ -193,23 +102,6 @@ async def read(connections: list[ClientConnection], seconds: float) -> list[list
     return seen
 
 
-@contextmanager
-def running(library: str, rate: float, size: int) -> Iterator[tuple[int, int]]:
-    """A library's server in a process of its own: port and process id."""
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    code = "import sys; from benchmarks.bridge_servers import serve; serve(*sys.argv[1:])"
-    command = [sys.executable, "-W", "ignore", "-c", code, library, str(port), str(rate), str(size)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
-        assert server.stdout is not None
-        try:
-            if server.stdout.readline() != "ready\n":
-                raise SystemExit(f"{library} does not start")
-            yield port, server.pid
-        finally:
-            server.kill()
-
-
 def paced(library: str, options: argparse.Namespace, healthy: int, stalled: int, idle_us: float = 0.0) -> Result:
     """Run one scene; `idle_us`: CPU time per message that pacing takes."""
     with running(library, options.rate, options.size) as (port, process):
@@ -271,11 +163,6 @@ def unpaced(library: str, size: int, clients: int, options: argparse.Namespace) 
         for counter in counters:
             counter.close()
     return delivered / clients / took_s, used_s * 1e6 / max(1, delivered)
-
-
-def serve(library: str, port: str, rate: str, size: str) -> None:
-    """Run a server (for a process of its own)."""
-    SERVERS[library][1](int(port), float(rate), int(size))
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -12,24 +12,20 @@ import base64
 import io
 import json
 import signal
+import textwrap
 import threading
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
 
 from PIL import Image
-from websockets.sync.client import ClientConnection, connect
 
+from benchmarks.lib.bridge_client import Peer, said
 from benchmarks.lib.processes import status_mb, suite
 from benchmarks.lib.report import Goal, Report, Table
-from thymio_sim_ros.bridge import SUBPROTOCOLS
-from thymio_sim_ros.bridge.protocol import messages as ms
-from thymio_sim_ros.bridge.protocol import wire
 
 QUICK = {"only": "4 MB of nested", "seconds": 0.3}
-SERVICE = "/simulator/get_poses"
+PARAMETER, SERVICE = "/simulator.playground", "/simulator/get_poses"
 NO_NAMES = b"\0\1\0\0" + bytes(4)
-START_S, ANSWER_S = 60.0, 120.0
+ANSWER_S = 120.0
 MOST_CALL_S, MOST_CTRL_C_S = 0.5, 5.0
 PLAIN = '<rect width="100" height="100" fill="#888"/>'
 
@@ -80,80 +76,32 @@ def attacks() -> dict[str, str]:
     }
 
 
-class Viewer:
-    """A Foxglove client; reads until the message that is wanted."""
-
-    def __init__(self, connection: ClientConnection) -> None:
-        self._connection = connection
-        self._calls = 0
-
-    def until(self, wanted: Callable[[ms.ServerMessage], bool], within_s: float) -> ms.ServerMessage:
-        """The first message that is wanted; TimeoutError."""
-        deadline = time.monotonic() + within_s
-        while True:
-            message = wire.decode_server(self._connection.recv(timeout=max(0.0, deadline - time.monotonic())))
-            if wanted(message):
-                return message
-
-    def service(self, name: str) -> int:
-        """The number of a service, once it is advertised."""
-        found: list[int] = []
-
-        def is_there(message: ms.ServerMessage) -> bool:
-            if isinstance(message, ms.AdvertiseServices):
-                found.extend(service.id for service in message.services if service.name == name)
-            return bool(found)
-
-        self.until(is_there, START_S)
-        return found[0]
-
-    def call(self, service: int) -> float:
-        """Seconds until the answer."""
-        self._calls += 1
-        begin = time.monotonic()
-        self._connection.send(wire.encode_client(ms.ServiceRequest(service, self._calls, "cdr", NO_NAMES)))
-        self.until(lambda one: isinstance(one, ms.ServiceResponse) and one.call_id == self._calls, ANSWER_S)
-        return time.monotonic() - begin
-
-    def set(self, text: str) -> None:
-        """Set the playground."""
-        parameters = (ms.Parameter("/simulator.playground", text),)
-        self._connection.send(wire.encode_client(ms.SetParameters(parameters, "set")))
-
-    def answer(self) -> str:
-        """What became of it."""
-        reported: list[str] = []
-
-        def is_last(message: ms.ServerMessage) -> bool:
-            if isinstance(message, ms.Status) and "playground" in message.message:
-                reported.append(message.message)
-            return isinstance(message, ms.ParameterValues) and message.id == "set"
-
-        self.until(is_last, ANSWER_S)
-        return reported[-1] if reported else "accepted"
+def set_playground(viewer: Peer, text: str) -> None:
+    """Set the playground."""
+    viewer.socket.sendall(said(op="setParameters", parameters=[{"name": PARAMETER, "value": text}], id="set"))
 
 
-def longest_call(viewer: Viewer, service: int, stop: threading.Event, found: list[float]) -> None:
-    """Call again and again; keeps the longest time."""
+def answer(viewer: Peer) -> str:
+    """Return the answer: the reason why the playground was refused, else "accepted". Raises TimeoutError."""
+    reasons = ["accepted"]
+    deadline = time.monotonic() + ANSWER_S
+    while True:
+        body = viewer.next(max(0.0, deadline - time.monotonic()))
+        if not body.startswith(b"{"):
+            continue
+        message = json.loads(body)
+        if message["op"] == "status" and PARAMETER in message["message"]:
+            reasons.append(message["message"].removeprefix(f"{PARAMETER}: uploaded playground: "))
+        if message["op"] == "parameterValues" and message.get("id") == "set":
+            return reasons[-1]
+
+
+def longest_call(viewer: Peer, stop: threading.Event, found: list[float]) -> None:
+    """Call again and again until `stop` is set; `found[0]` is the longest time."""
     found.append(0.0)
     while not stop.is_set():
-        found[0] = max(found[0], viewer.call(service))
+        found[0] = max(found[0], viewer.call(SERVICE, NO_NAMES))
         stop.wait(0.02)
-
-
-def connected(port: int, stack: ExitStack) -> Viewer:
-    """A viewer, once the bridge listens; the stack disconnects it."""
-    deadline = time.monotonic() + START_S
-    while True:
-        try:
-            connecting = connect(
-                f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS, max_queue=None, max_size=None, ping_interval=None
-            )
-            return Viewer(stack.enter_context(connecting))
-        except OSError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.1)
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -165,24 +113,26 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def measure(options: argparse.Namespace) -> Report:
     """Send all playgrounds, and Ctrl-C while the last one is loading."""
     rows: list[list[str | float]] = []
-    with suite("--no-web") as running, ExitStack() as stack:
+    with suite("--no-web") as running:
         pid = running.process.pid
-        other, hostile = connected(running.bridge_port, stack), connected(running.bridge_port, stack)
-        service = other.service(SERVICE)
+        other, hostile = Peer(running.bridge_port), Peer(running.bridge_port)
+        other.until(lambda: SERVICE in other.services, "service")
         alone, end = 0.0, time.monotonic() + options.seconds
         while time.monotonic() < end:
-            alone = max(alone, other.call(service))
+            alone = max(alone, other.call(SERVICE, NO_NAMES))
         rows.append(["nothing", 0, 0, 1000 * alone, round(status_mb(pid, "VmHWM")), ""])
         for name, text in attacks().items():
             if options.only in name:
-                seconds, longest, became = attack(hostile, other, service, text)
+                seconds, longest, became = attack(hostile, other, text)
                 rows.append([name, len(text), seconds, 1000 * longest, round(status_mb(pid, "VmHWM")), became])
-        hostile.set(attacks()["100 half-transparent groups"])
+        set_playground(hostile, attacks()["100 half-transparent groups"])
         time.sleep(0.5)
         begin = time.monotonic()
         running.process.signal(signal.SIGINT)
         code = running.process.wait()
         ctrl_c_s = time.monotonic() - begin
+        other.socket.close()
+        hostile.socket.close()
     if code:
         raise RuntimeError(f"exit code {code} after Ctrl-C")
     goals = [
@@ -192,18 +142,18 @@ def measure(options: argparse.Namespace) -> Report:
     return Report([Table(["playground", "bytes", "answer, s", "longest call, ms", "MB", "answer"], rows)], goals)
 
 
-def attack(hostile: Viewer, other: Viewer, service: int, text: str) -> tuple[float, float, str]:
+def attack(hostile: Peer, other: Peer, text: str) -> tuple[float, float, str]:
     """Send a playground; return the seconds until the answer, those of the longest call meanwhile, and the answer."""
     stop, longest = threading.Event(), []  # type: tuple[threading.Event, list[float]]
-    thread = threading.Thread(target=longest_call, args=(other, service, stop, longest))
+    thread = threading.Thread(target=longest_call, args=(other, stop, longest))
     thread.start()
     begin = time.monotonic()
     try:
-        hostile.set(text)
-        became = hostile.answer()
+        set_playground(hostile, text)
+        became = answer(hostile)
     except TimeoutError:
         became = "no answer"
     seconds = time.monotonic() - begin
     stop.set()
     thread.join()
-    return seconds, longest[0], became.replace("|", "\\|").replace("\n", " ")[:100]
+    return seconds, longest[0], textwrap.shorten(became.replace("|", "\\|"), 100, placeholder=" …")

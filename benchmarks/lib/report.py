@@ -151,7 +151,7 @@ def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[Cell]]) -> st
     """Render a table; columns of numbers are aligned to the right."""
     texts = [[_text(cell) for cell in row] for row in rows]
     numeric = [all(not text or text[0] in "0123456789-≤≥" for text in column) for column in zip(*texts, strict=True)]
-    marks = ["---:" if is_numeric else "---" for is_numeric in numeric or [False] * len(columns)]
+    marks = ["---", *("---:" if is_numeric else "---" for is_numeric in numeric[1:])]
     lines = [columns, marks, *texts]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
