@@ -1,8 +1,8 @@
 """Time of native functions beside what they are charged (`thymio_sim_ros/device/costs.py`).
 
 The unit is an instruction on the interpreter, in a loop that counts. Each native function is called in Python with
-arguments of one word and, where any size is allowed, of a hundred: the median of the rounds. A function that takes more
-than five times its charge is "short".
+arguments of one word and, where any size is allowed, of a hundred: the median of the rounds. The table has the
+functions that take most in proportion to their charge.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ COUNT = "var i\nvar k = 0\nwhile k == 0 do\ni = i + 1\nend"
 FIRST = 200
 """Address of the first argument: behind the robot's own variables."""
 MANY = 100
-SHORT = 5.0
 SOUND_BYTES = 1_000_000
 
 
@@ -50,22 +49,23 @@ def _timed(act: Callable[[], object]) -> float:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
     parser.add_argument("--rounds", type=int, default=200, help="rounds; the figures are their medians")
+    parser.add_argument("--top", type=int, default=20, help="rows of the table")
     parser.add_argument("--slow-rounds", type=int, default=20, help="rounds of functions that write files")
 
 
 def measure(options: argparse.Namespace) -> Report:
     """Measure all native functions."""
     unit_us = instruction_us()
-    rows = list(_rows(options, unit_us))
+    rows = sorted(_rows(options, unit_us), key=lambda row: -row[-1])[: options.top]
     title = (
-        f"An instruction takes {unit_us:.2f} µs; a sound is charged an instruction for {BYTES_PER_INSTRUCTION} bytes, "
-        f"an event {COSTS.emit}"
+        f"An instruction takes {unit_us:.2f} µs. {BYTES_PER_INSTRUCTION} bytes of a sound are charged as an instruction, "
+        f"an event as {COSTS.emit.base} instructions and {COSTS.emit.per_word} for each word"
     )
-    columns = ["native function", "words", "instructions", "charged", ""]
+    columns = ["native function", "words", "instructions", "charged", "ratio"]
     return Report([Table(columns, rows, title)])
 
 
-def _rows(options: argparse.Namespace, unit_us: float) -> Iterator[list[str | float | None]]:
+def _rows(options: argparse.Namespace, unit_us: float) -> Iterator[tuple[str, int, float, int, float]]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         device = AsebaDevice(options=DeviceOptions(card=folder / "card", settings=folder / "settings"))
@@ -95,4 +95,4 @@ def _rows(options: argparse.Namespace, unit_us: float) -> Iterator[list[str | fl
                 device.load_meter.pop()
                 machine.pop_messages()
                 taken = statistics.median(times) / unit_us
-                yield [f"`{native.name}`", size, taken, charged, "short" if taken > SHORT * charged else None]
+                yield (f"`{native.name}`", size, taken, charged, taken / charged)

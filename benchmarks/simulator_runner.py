@@ -30,8 +30,8 @@ SPEED_UP = {LINE_FOLLOWER: 2.5, IDLE: 1.5, EXPLORERS: 4.0}
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
-    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
-    parser.add_argument("--seconds", type=float, default=20.0, help="of simulated time, for all robots of a round")
+    parser.add_argument("--rounds", type=int, default=7, help="rounds; the figures are their medians")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of simulated time, for all robots of a round")
     rounds.add_against(parser)
 
 
