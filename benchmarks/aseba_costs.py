@@ -58,7 +58,7 @@ def measure(options: argparse.Namespace) -> Report:
     unit_us = instruction_us()
     rows = sorted(_rows(options, unit_us), key=lambda row: -row[-1])[: options.top]
     title = (
-        f"An instruction takes {unit_us:.2f} µs. {BYTES_PER_INSTRUCTION} bytes of a sound are charged as an instruction, "
+        f"An instruction takes {unit_us:.2f} µs; {BYTES_PER_INSTRUCTION} bytes of a sound are charged as one, "
         f"an event as {COSTS.emit.base} instructions and {COSTS.emit.per_word} for each word"
     )
     columns = ["native function", "words", "instructions", "charged", "ratio"]
