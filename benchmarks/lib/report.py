@@ -8,6 +8,7 @@ import json
 import math
 import os
 import platform
+import re
 import subprocess
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +21,9 @@ PACKAGES = ("numpy", "pymunk", "wasmtime")
 """Packages whose version affects the figures."""
 
 Cell = str | float | int | None
+
+_NUMBER = re.compile(r"([≤≥] )?-?[\d.]*( to [\d.]+)?( (×|%|% CPU|[kmµ]?[sB]))?")
+"""A number or a range, perhaps with a limit's sign and a unit; or nothing."""
 
 
 @dataclass(frozen=True)
@@ -150,8 +154,8 @@ def _unit(goal: Any) -> str:
 def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[Cell]]) -> str:
     """Render a table; columns of numbers are aligned to the right."""
     texts = [[_text(cell) for cell in row] for row in rows]
-    numeric = [all(not text or text[0] in "0123456789-≤≥" for text in column) for column in zip(*texts, strict=True)]
-    marks = ["---", *("---:" if is_numeric else "---" for is_numeric in numeric[1:])]
+    are_numbers = [all(map(_NUMBER.fullmatch, column)) for column in zip(*texts, strict=True)]
+    marks = ["---", *("---:" if is_right else "---" for is_right in are_numbers[1:])]
     lines = [columns, marks, *texts]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
