@@ -25,7 +25,7 @@ from rclpy.signals import SignalHandlerOptions
 from benchmarks.lib.processes import child
 from benchmarks.lib.report import Goal, Report, Table
 from benchmarks.lib.scenes import grid
-from benchmarks.ros_load import GAP_M, NODE, START_S, spin_until_interrupted
+from benchmarks.ros_load import GAP_M, NODE, QUIET, START_S, spin_until_interrupted
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 
 QUICK = {"commands": 5}
@@ -117,7 +117,7 @@ def run(robots: int, rate_hz: float, count: int) -> list[float]:
         world = Path(folder) / "load.json"
         world.write_text(grid(robots, GAP_M), encoding="utf-8")
         values = (f"playground:={world}", f"odom_max_rate:={rate_hz}")
-        simulator = [NODE, "--ros-args", *(part for value in values for part in ("-p", value))]
+        simulator = [NODE, *QUIET, *(part for value in values for part in ("-p", value))]
         with child(*(simulator if rate_hz else [ECHOING])):
             asker, pauses = Asker(robots), random.Random(1)
             asker.meet()

@@ -50,6 +50,7 @@ QUICK = {"seconds": 1.0, "rounds": 1, "warm_up": 0.5, "only": "1 robot, 10 Hz, 1
 GAP_M = 0.4
 SPEED_M_S, TURN_RAD_S = 0.05, 1.0
 START_S = 120.0
+QUIET = ["--ros-args", "--log-level", "warn"]
 NODE = "import sys; from thymio_sim_ros.ros.simulator.node import main; sys.exit(main())"
 PROFILED = "import sys; from benchmarks.ros_load import profiled; profiled(sys.argv[1], sys.argv[2:])"
 SENDER = "import sys; from benchmarks.ros_load import send; send(*sys.argv[1:])"
@@ -233,7 +234,7 @@ def run(scene: Scene, options: argparse.Namespace) -> Figures:
         if scene.rate_hz:
             rates = ("sensor_rate", "odom_max_rate", "clock_rate")
             values += [f"{name}:={scene.rate_hz}" for name in rates]
-        arguments = ["--ros-args", *(part for value in values for part in ("-p", value))]
+        arguments = [*QUIET, *(part for value in values for part in ("-p", value))]
         start = [PROFILED, options.profile] if options.profile else [NODE]
         with child(*start, *arguments) as pid:
             driver = Driver(scene.robots)
