@@ -38,7 +38,7 @@ run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NA
 # Tests of single modules, without ROS, browser, sockets or other processes: about 80 s of processor time, shared by two
 # workers. Tests of the servers, vectors, physics and batches take minutes: `make test`.
 QUICK := test_imports.py test_errors.py test_citations.py test_loading.py \
-    aseba_vm/frontend aseba_vm/machine aseba_vm/cli cli device/editor device/firmware device/programs runlog \
+    aseba_vm/frontend aseba_vm/machine aseba_vm/cli benchmarks cli device/editor device/firmware device/programs runlog \
     sim/actuators sim/model sim/sensors testing
 check: lint $(VENV)/.ready-test  ## lint and quick tests (no ROS, browser, sockets, other processes), within a minute
 	@$(PYTHON) -m pytest -n 2 -q -m 'not process and not browser and not ros and not slow' \

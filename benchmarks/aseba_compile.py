@@ -1,18 +1,22 @@
-"""Time of the compiler for a program of 300 lines: median, best and worst of the rounds, as a table and as JSON.
+"""Time of the compiler, all passes, for a program of 300 lines that nearly fills a Thymio.
 
-python benchmarks/aseba_compile.py --rounds 15 --json compile.json
+Processor time; median, best and worst of the rounds. `--against PATH` measures another checkout in turn.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
+import contextlib
 import statistics
 import time
-from pathlib import Path
+from collections.abc import Callable
 
 from aseba_vm import compile
 from aseba_vm.targets import THYMIO_II
+from benchmarks.lib import rounds
+from benchmarks.lib.report import Report, Table
+
+QUICK = {"rounds": 1}
 
 _BODY = """\
 onevent ping
@@ -36,7 +40,7 @@ onevent ping
 
 
 def program(lines: int = 300) -> str:
-    """Return a program of about that many lines, as pupils write them."""
+    """Return a program of about so many lines, as pupils write them."""
     head = "var state = 0\nvar speed = 100\nvar delta = 3\nvar offset = -2\nvar low = 0\nvar i\nvar values[5]\n\n"
     halt = "sub halt\n    motor.left.target = 0\n    motor.right.target = 0\n\n"
     blocks = (lines - head.count("\n") - halt.count("\n")) // (_BODY.count("\n") + 1)
@@ -44,32 +48,32 @@ def program(lines: int = 300) -> str:
     return head + halt + "\n".join(parts)
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description="Time of the compiler for a program of 300 lines.")
-    parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
-    options = parser.parse_args()
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--rounds", type=int, default=15, help="rounds; the figures are their medians")
+    rounds.add_against(parser)
+
+
+def compiler() -> Callable[[], float]:
+    """Return what compiles the program and returns the milliseconds (for a worker)."""
     source = program()
     events = [("pong", 2), *((f"ping{n}", 0) for n in range(40))]
-    times = []
-    for _ in range(options.rounds):
-        begun = time.perf_counter()
-        compiled = compile(source, THYMIO_II, events)
-        times.append(1000 * (time.perf_counter() - begun))
-    figures = {
-        "lines": source.count("\n"),
-        "words": len(compiled.words),
-        "rounds": options.rounds,
-        "median_ms": round(statistics.median(times), 2),
-        "best_ms": round(min(times), 2),
-        "worst_ms": round(max(times), 2),
-    }
-    for name, value in figures.items():
-        print(f"{name:10} {value}")
-    if options.json is not None:
-        options.json.write_text(json.dumps(figures) + "\n", encoding="utf-8")
+
+    def run() -> float:
+        begun = time.process_time()
+        compile(source, THYMIO_II, events)
+        return 1000 * (time.process_time() - begun)
+
+    return run
 
 
-if __name__ == "__main__":
-    main()
+def measure(options: argparse.Namespace) -> Report:
+    """Measure the checkouts in turn."""
+    with contextlib.ExitStack() as stack:
+        runs = {
+            side: rounds.started(stack, checkout, "aseba_compile:compiler")
+            for side, checkout in rounds.sides(options).items()
+        }
+        times = rounds.in_turn(runs, options.rounds)
+    rows = [[side, statistics.median(found), min(found), max(found)] for side, found in times.items()]
+    return Report([Table(["ms", "median", "best", "worst"], rows)])

@@ -1,10 +1,8 @@
-"""What natives take, beside what they are charged (`thymio_sim_ros/device/costs.py`).
+"""Time of native functions beside what they are charged (`thymio_sim_ros/device/costs.py`).
 
-    PYTHONPATH=. python benchmarks/aseba_costs.py [--rounds 200]
-
-The unit is an instruction on the interpreter, in a loop that counts. Each native is called in Python with arguments of
-one word and, where it takes any number, of a hundred: the median of the rounds. "short" are natives that take more than
-five times their charge.
+The unit is an instruction on the interpreter, in a loop that counts. Each native function is called in Python with
+arguments of one word and, where any size is allowed, of a hundred: the median of the rounds. The table has the
+functions that take most in proportion to their charge.
 """
 
 from __future__ import annotations
@@ -13,23 +11,24 @@ import argparse
 import statistics
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from aseba_vm import VirtualMachine, compile
 from aseba_vm.jit.tiering import INTERPRETER
 from aseba_vm.machine.native_call import Signature
 from aseba_vm.targets import THYMIO_II
+from benchmarks.lib.report import Report, Table
 from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION, COSTS
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DeviceOptions
 
+QUICK = {"rounds": 1, "slow_rounds": 1}
 COUNT = "var i\nvar k = 0\nwhile k == 0 do\ni = i + 1\nend"
 FIRST = 200
 """Address of the first argument: behind the robot's own variables."""
 MANY = 100
-SHORT = 5.0
 SOUND_BYTES = 1_000_000
 
 
@@ -47,10 +46,26 @@ def _timed(act: Callable[[], object]) -> float:
     return (time.perf_counter() - begin) * 1e6
 
 
-def measure(rounds: int) -> None:
-    """Print the table."""
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--rounds", type=int, default=200, help="rounds; the figures are their medians")
+    parser.add_argument("--top", type=int, default=20, help="rows of the table")
+    parser.add_argument("--slow-rounds", type=int, default=20, help="rounds of functions that write files")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure all native functions."""
     unit_us = instruction_us()
-    print(f"an instruction: {unit_us:.3f} us")
+    rows = sorted(_rows(options, unit_us), key=lambda row: -row[-1])[: options.top]
+    title = (
+        f"An instruction takes {unit_us:.2f} µs; {BYTES_PER_INSTRUCTION} bytes of a sound are charged as one, "
+        f"an event as {COSTS.emit.base} instructions and {COSTS.emit.per_word} for each word"
+    )
+    columns = ["native function", "words", "instructions", "charged", "ratio"]
+    return Report([Table(columns, rows, title)])
+
+
+def _rows(options: argparse.Namespace, unit_us: float) -> Iterator[tuple[str, int, float, int, float]]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         device = AsebaDevice(options=DeviceOptions(card=folder / "card", settings=folder / "settings"))
@@ -59,6 +74,7 @@ def measure(rounds: int) -> None:
         machine = device._vm
         for number, native in enumerate(target().natives):
             signature = Signature.of(native, COSTS.of(native.name))
+            is_slow = "flash" in native.name or "sound." in native.name
             for size in (1, MANY) if native.free_sizes else (1,):
                 addresses, end = [], FIRST
                 for parameter in native.parameters:
@@ -68,9 +84,9 @@ def measure(rounds: int) -> None:
                 if end > len(machine.variables):
                     continue
                 times = []
-                for _ in range(rounds if "flash" not in native.name and "sound." not in native.name else 20):
+                for _ in range(options.slow_rounds if is_slow else options.rounds):
                     machine.variables[FIRST:end] = [1] * (end - FIRST)
-                    device.body.wanted = ""
+                    device.services.requested = ""
                     machine.extra_cost = 0
                     times.append(_timed(lambda: machine.invoke(number, 0, popped)))  # noqa: B023  # called at once
                 charged = 1 + signature.call_cost(popped) + machine.extra_cost
@@ -79,17 +95,4 @@ def measure(rounds: int) -> None:
                 device.load_meter.pop()
                 machine.pop_messages()
                 taken = statistics.median(times) / unit_us
-                mark = "  short" if taken > SHORT * charged else ""
-                print(f"{native.name:24s} {size:4d} words {taken:9.0f} instructions, charged {charged:6d}{mark}")
-    print(f"bytes of a sound for an instruction: {BYTES_PER_INSTRUCTION}; an event: {COSTS.emit}")
-
-
-def main() -> None:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=200)
-    measure(parser.parse_args().rounds)
-
-
-if __name__ == "__main__":
-    main()
+                yield (f"`{native.name}`", size, taken, charged, taken / charged)

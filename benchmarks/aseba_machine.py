@@ -1,21 +1,18 @@
 """How fast events run: interpreted, translated, and on the reference's C machine where Debian's package is installed.
 
-    python benchmarks/aseba_machine.py [--rounds 5] [--json]
-
 Each program runs an event again and again in turn on every engine; the figure is the median of the rounds, in millions
-of instructions per second of processor time, and its ratio to the plain interpreter (and to the C machine).
+of instructions per second of processor time, and its ratio to the plain interpreter (and to the C machine, where
+Debian's package `aseba` and cc are installed). All engines must end with the same variables.
 """
 
 from __future__ import annotations
 
 import argparse
 import ctypes
-import json
 import os
 import shutil
 import statistics
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -32,6 +29,9 @@ from aseba_vm.jit.wasm_host import WasmHost
 from aseba_vm.machine.data_memory import Variables
 from aseba_vm.machine.native_call import Signature
 from aseba_vm.targets import THYMIO_II
+from benchmarks.lib.report import Goal, Report, Table
+
+QUICK = {"rounds": 1, "seconds": 0.01, "words": [100]}
 
 BEHAVIOUR = """
 var speed = 200
@@ -137,25 +137,44 @@ ROOT = os.environ.get("ASEBA_ROOT", "")
 PROX = 0xFFFE - [event.name for event in THYMIO_II.local_events].index("prox")
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--json", action="store_true", help="print JSON only")
-    arguments = parser.parse_args()
+LEAST_TIMES_C = {"arithmetic": 10.0, "array": 10.0, "branchy": 10.0, "subroutines": 10.0, "behaviour": 1.2}
+"""Least speed of WebAssembly in units of the C machine's."""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
+    parser.add_argument("--seconds", type=float, default=0.1, help="of processor time for each figure of a round")
+    parser.add_argument("--words", type=int, nargs="+", default=[100, 300, 1000, 1500], help="of programs to translate")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure all programs on all engines."""
     engines = [INTERPRETER, PYTHON, *([WASM] if is_available() else [])]
-    report = {name: _measure(source, engines, arguments.rounds) for name, source in PROGRAMS.items()}
-    report["translation"] = {
-        f"{words} words, {name}": _translation_time(words, is_wasm=name == WASM)
-        for name in engines[1:]
-        for words in (100, 300, 1000, 1500)
-    }
-    sys.stdout.write(json.dumps(report, indent=None if arguments.json else 1) + "\n")
-    if not arguments.json:
-        sys.stdout.write(_table(report))
+    found = {name: _measure(source, engines, options) for name, source in PROGRAMS.items()}
+    columns = ["M instructions/s", "per event", *engines, "C", *(f"{name} × C" for name in engines[1:])]
+    rows = [
+        [
+            name,
+            row["instructions"],
+            *(row.get(engine) for engine in (*engines, "C")),
+            *(row[engine] / row["C"] if "C" in row else None for engine in engines[1:]),
+        ]
+        for name, row in found.items()
+    ]
+    times = [
+        [name, *(_translation_time(words, is_wasm=name == WASM) for words in options.words)] for name in engines[1:]
+    ]
+    translation = Table(["translation, ms; words:", *map(str, options.words)], times)
+    goals = [
+        Goal(f"{name}, {WASM}, to the C machine", limit, found[name][WASM] / found[name]["C"], "×", is_least=True)
+        for name, limit in LEAST_TIMES_C.items()
+        if "C" in found[name] and WASM in found[name]
+    ]
+    return Report([Table(columns, rows), translation], goals)
 
 
-def _measure(source: str, engines: list[str], rounds: int) -> dict[str, float]:
+def _measure(source: str, engines: list[str], options: argparse.Namespace) -> dict[str, float]:
     """Return millions of instructions per second by engine."""
     program = compile(source, THYMIO_II)
     runners: dict[str, Callable[[], int]] = {name: _runner(program.words, name) for name in engines}
@@ -163,24 +182,24 @@ def _measure(source: str, engines: list[str], rounds: int) -> dict[str, float]:
     speeds: dict[str, list[float]] = {name: [] for name in runners}
     if not _same_variables(program.words):
         raise RuntimeError("the machines disagree")
-    for _ in range(rounds):
+    for _ in range(options.rounds):
         for name, runner in runners.items():
-            speeds[name].append(_speed(runner, per_event))
+            speeds[name].append(_speed(runner, per_event, options.seconds))
         native = _c_runner(program.words, per_event, 1000)
         if native is not None:
-            speeds.setdefault("C", []).append(_speed(native, 1000 * per_event))
+            speeds.setdefault("C", []).append(_speed(native, 1000 * per_event, options.seconds))
     return {"instructions": per_event, **{name: statistics.median(values) for name, values in speeds.items()}}
 
 
-def _speed(runner: Callable[[], int], per_event: int) -> float:
-    """Run events for a tenth of a second."""
+def _speed(runner: Callable[[], int], per_event: int, seconds: float) -> float:
+    """Run events for so long at least."""
     repeat = 1
     while True:
         begun = time.process_time()
         for _ in range(repeat):
             runner()
         spent = time.process_time() - begun
-        if spent > 0.1:
+        if spent > seconds:
             return per_event * repeat / spent / 1e6
         repeat *= 2
 
@@ -349,20 +368,3 @@ def _same_variables(words: tuple[int, ...]) -> bool:
     library.prepare((ctypes.c_uint16 * len(words))(*words), len(words))
     library.event(PROX, 3)
     return list(library.variables()[0 : len(machine.variables)]) == machine.variables
-
-
-def _table(report: dict[str, dict[str, float]]) -> str:
-    lines = []
-    for name in PROGRAMS:
-        row = report[name]
-        lines.append(f"{name}, {row['instructions']} instructions per event")
-        for engine, speed in row.items():
-            if engine != "instructions":
-                against = f"{speed / row['C']:8.3f} x C" if "C" in row else ""
-                lines.append(f"  {engine:12} {speed:10.2f} M/s {speed / row[INTERPRETER]:8.2f} x plain {against}")
-    lines += [f"translation of {what}: {spent} ms" for what, spent in report["translation"].items()]
-    return "\n".join(lines) + "\n"
-
-
-if __name__ == "__main__":
-    main()

@@ -1,27 +1,22 @@
 """Programs without an end on a class of robots: what still answers, and how fast.
 
-    PYTHONPATH=. python benchmarks/aseba_runaway.py [--robots 20] [--only WORD] [--port 9210] [--json FILE]
-
 Every program of `tests/data/runaway` runs on all robots of a `thymio-sim` of its own, with page and bridge. Then, in
 this order: `aseba/get_variables`, the program of one robot set by a parameter, a parameter by the bridge, and
 `aseba/stop` of five robots are called, each timed; "acts" is the time until `_aseba/status` says that the robot has
-stopped. "factor" is the simulated time per second of wall time meanwhile, "status" whether a robot says that its
-program is too fast. Last is the time from Ctrl-C to the end of the process. Limits: 1 s for each answer, 5 s for the
-end; the exit code tells.
+stopped. "factor" is the simulated time per second of wall time meanwhile, "reported" whether a robot reports that its
+program is too fast. "end" is the time from Ctrl-C to the end of the process. Needs ROS and the built page.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import os
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -36,19 +31,22 @@ from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 from websockets.sync.client import connect
 
-from benchmarks.ros_load import playground
+from benchmarks.lib.processes import suite
+from benchmarks.lib.report import ROOT, Goal, Report, Table
+from benchmarks.lib.scenes import grid
 from thymio_sim_ros.ros.interface import qos
 
-PROGRAMS = Path(__file__).resolve().parent.parent / "tests" / "data" / "runaway"
-MAIN = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main())"
-START_S, RUN_S, ANSWER_S, END_S = 90.0, 4.0, 30.0, 30.0
+QUICK = {"robots": 2, "only": "deques", "seconds": 0.5}
+PROGRAMS = ROOT / "tests" / "data" / "runaway"
+START_S, ANSWER_S = 90.0, 30.0
 MOST_ANSWER_S, MOST_END_S = 1.0, 5.0
+GAP_M = 0.4
 STOPPED = 5
 
 
 @dataclass
 class Figures:
-    """Seconds; `stop` and `acts` are the longest of `STOPPED` robots."""
+    """Figures of one program, in s; `stop` and `acts` are the longest of `STOPPED` robots."""
 
     program: str
     start: float = 0.0
@@ -59,15 +57,7 @@ class Figures:
     acts: float = 0.0
     end: float = 0.0
     factor: float = 0.0
-    status: str = ""
-    code: int | None = None
-    errors: list[str] = field(default_factory=list)
-
-    @property
-    def is_good(self) -> bool:
-        """Whether all limits are kept."""
-        answers = (self.get, self.source, self.bridge, self.stop, self.acts)
-        return max(answers) <= MOST_ANSWER_S and self.end <= MOST_END_S and self.code == 0 and not self.errors
+    reported: bool = False
 
 
 class Class:
@@ -133,83 +123,78 @@ def ask_bridge(port: int) -> float:
     return time.monotonic() - begin
 
 
-def measure(program: Path, robots: int, port: int, folder: Path) -> Figures:
-    """Run one program on all robots, and everything that is asked of them meanwhile."""
+def run(program: Path, options: argparse.Namespace, folder: Path) -> Figures:
+    """Run one program on all robots, and everything that is requested meanwhile. Raises RuntimeError for a fault."""
     figures = Figures(program.stem)
+    robots = options.robots
     world = folder / "class.json"
-    world.write_text(playground(robots))
-    log = folder / f"{program.stem}.log"
-    ports = ["--port", str(port), "--foxglove-port", str(port + 1)]
-    folders = ["--card", str(folder / program.stem / "card"), "--settings", str(folder / program.stem / "settings")]
-    command = [sys.executable, "-c", MAIN, "--playground", str(world), "--program", str(program), *ports, *folders]
+    world.write_text(grid(robots, GAP_M))
+    folders = ["--card", str(folder / "card"), "--settings", str(folder / "settings")]
     begin = time.monotonic()
-    with log.open("w") as output:
-        process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
-    pupils = Class(robots)
-    try:
-        pupils.until(
-            lambda: (
-                len(pupils.states) == robots
-                and pupils.now_s > 0.0
-                and all(client.service_is_ready() for client in (*pupils.stops.values(), *pupils.gets.values()))
-            ),
-            START_S,
-        )
-        figures.start = time.monotonic() - begin
-        simulated = pupils.now_s
-        figures.factor = -simulated
-        waited = pupils.until(lambda: False, RUN_S)
-        figures.factor = (pupils.now_s - simulated) / waited
-        figures.status = next((text for name in pupils.stops if (text := pupils.state(name, "overload"))), "")
-        request = GetParameters.Request(names=["motor.left.target"])
-        figures.get = max(pupils.call(pupils.gets[f"r{number}"], request) for number in range(min(robots, STOPPED)))
-        source = Parameter("robots.r0.script.source", value="motor.left.target = 7").to_parameter_msg()
-        figures.source = pupils.call(pupils.set, SetParametersAtomically.Request(parameters=[source]))
-        figures.bridge = ask_bridge(port + 1)
-        for number in range(1, min(robots, STOPPED + 1)):
-            name = f"r{number}"
-            begin = time.monotonic()
-            figures.stop = max(figures.stop, pupils.call(pupils.stops[name], Trigger.Request()))
-            pupils.until(lambda name=name: pupils.state(name, "state") == "stopped", ANSWER_S)  # type: ignore[misc]
-            figures.acts = max(figures.acts, time.monotonic() - begin)
-        begin = time.monotonic()
-        os.killpg(process.pid, signal.SIGINT)
+    with suite("--playground", str(world), "--program", str(program), *folders) as running:
+        pupils = Class(robots)
         try:
-            figures.code = process.wait(END_S)
-        except subprocess.TimeoutExpired:
-            figures.errors.append("Ctrl-C is dead")
-        figures.end = time.monotonic() - begin
-    finally:
-        pupils.close()
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-    figures.errors += [line for line in log.read_text().splitlines() if "Traceback" in line or "fault of ours" in line]
+            pupils.until(
+                lambda: (
+                    len(pupils.states) == robots
+                    and pupils.now_s > 0.0
+                    and all(client.service_is_ready() for client in (*pupils.stops.values(), *pupils.gets.values()))
+                ),
+                START_S,
+            )
+            figures.start = time.monotonic() - begin
+            simulated = pupils.now_s
+            waited = pupils.until(lambda: False, options.seconds)
+            figures.factor = (pupils.now_s - simulated) / waited
+            figures.reported = any(pupils.state(name, "overload") for name in pupils.stops)
+            request = GetParameters.Request(names=["motor.left.target"])
+            figures.get = max(pupils.call(pupils.gets[f"r{number}"], request) for number in range(min(robots, STOPPED)))
+            source = Parameter("robots.r0.script.source", value="motor.left.target = 7").to_parameter_msg()
+            figures.source = pupils.call(pupils.set, SetParametersAtomically.Request(parameters=[source]))
+            figures.bridge = ask_bridge(running.bridge_port)
+            for number in range(1, min(robots, STOPPED + 1)):
+                name = f"r{number}"
+                begin = time.monotonic()
+                figures.stop = max(figures.stop, pupils.call(pupils.stops[name], Trigger.Request()))
+                pupils.until(lambda name=name: pupils.state(name, "state") == "stopped", ANSWER_S)  # type: ignore[misc]
+                figures.acts = max(figures.acts, time.monotonic() - begin)
+            begin = time.monotonic()
+            running.process.signal(signal.SIGINT)
+            try:
+                code = running.process.wait()
+            except subprocess.TimeoutExpired:
+                raise RuntimeError(f"{program.stem}: Ctrl-C has no effect") from None
+            figures.end = time.monotonic() - begin
+        finally:
+            pupils.close()
+        faults = [
+            line for line in running.process.output.splitlines() if "Traceback" in line or "fault of ours" in line
+        ]
+    if code or faults:
+        raise RuntimeError(f"{program.stem}: exit code {code} {'; '.join(faults)}")
     return figures
 
 
-def main() -> int:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--robots", type=int, default=20)
-    parser.add_argument("--only", default="")
-    parser.add_argument("--port", type=int, default=9210)
-    parser.add_argument("--json", type=Path)
-    options = parser.parse_args()
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--robots", type=int, default=20, help="robots that run each program")
+    parser.add_argument("--only", default="", metavar="WORD", help="programs with this in their names")
+    parser.add_argument("--seconds", type=float, default=4.0, help="for which the programs run before the requests")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure all programs."""
     found = []
-    heads = ("get", "source", "bridge", "stop", "acts", "end", "factor", "start")
-    print(f"{'program':16s}" + "".join(f"{head:>8s}" for head in heads) + "  status")
     for program in sorted(path for path in PROGRAMS.glob("*.aesl") if options.only in path.stem):
         with tempfile.TemporaryDirectory() as folder:
-            figures = measure(program, options.robots, options.port, Path(folder))
-        found.append(figures)
-        cells = "".join(f"{getattr(figures, head):8.2f}" for head in heads)
-        mark = "" if figures.is_good else f"  TOO SLOW {figures.code} {'; '.join(figures.errors[:3])}"
-        print(f"{figures.program:16s}{cells}  {'says' if figures.status else '-'}{mark}", flush=True)
-    if options.json:
-        options.json.write_text(json.dumps([asdict(figures) for figures in found], indent=1))
-    return 0 if all(figures.is_good for figures in found) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+            found.append(run(program, options, Path(folder)))
+    heads = ("get", "source", "bridge", "stop", "acts", "end", "start", "factor")
+    rows = [
+        [f"`{one.program}`", *(getattr(one, head) for head in heads), "yes" if one.reported else "no"] for one in found
+    ]
+    answers = [max(one.get, one.source, one.bridge, one.stop, one.acts) for one in found]
+    goals = [
+        Goal("slowest answer", MOST_ANSWER_S, max(answers), "s"),
+        Goal("slowest end after Ctrl-C", MOST_END_S, max(one.end for one in found), "s"),
+    ]
+    return Report([Table(["seconds", *heads, "reported"], rows)], goals)

@@ -1,10 +1,8 @@
 """Playgrounds made to stop the simulator, sent by one viewer while another one measures how long its calls take.
 
-Run: python benchmarks/hostile_playgrounds.py [--port PORT]. It starts `thymio-sim` with a bridge on that port,
-sends each playground as the parameter /simulator.playground, and prints: bytes, seconds until the answer,
-the longest call of the other viewer meanwhile, memory of the process at its highest so far, and the answer. The last
-line is how long Ctrl-C takes while a playground is loading. Larger texts than 4 MB do not pass the bridge;
-tests/sim/playground/test_format_detection.py measures those.
+Each playground is sent as the parameter /simulator.playground of a `thymio-sim`. The columns are: bytes, seconds until
+the answer, the longest call of the other viewer meanwhile, memory of the process at its highest so far, and the answer.
+Texts of more than 4 MB do not pass the bridge; tests/sim/playground/test_format_detection.py measures those. Needs ROS.
 """
 
 from __future__ import annotations
@@ -13,29 +11,22 @@ import argparse
 import base64
 import io
 import json
-import os
-import re
 import signal
-import subprocess
-import sys
+import textwrap
 import threading
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
-from pathlib import Path
 
 from PIL import Image
-from websockets.sync.client import ClientConnection, connect
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS
-from thymio_sim_ros.bridge.protocol import messages as ms
-from thymio_sim_ros.bridge.protocol import wire
+from benchmarks.lib.bridge_client import Peer, said
+from benchmarks.lib.processes import status_mb, suite
+from benchmarks.lib.report import Goal, Report, Table
 
-COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(sys.argv[1:]))"
-SERVICE = "/simulator/get_poses"
+QUICK = {"only": "4 MB of nested", "seconds": 0.3}
+PARAMETER, SERVICE = "/simulator.playground", "/simulator/get_poses"
 NO_NAMES = b"\0\1\0\0" + bytes(4)
-START_S, ANSWER_S = 60.0, 120.0
-ALONE_S = 3.0
+ANSWER_S = 120.0
+MOST_CALL_S, MOST_CTRL_C_S = 0.5, 5.0
 PLAIN = '<rect width="100" height="100" fill="#888"/>'
 
 
@@ -85,137 +76,84 @@ def attacks() -> dict[str, str]:
     }
 
 
-class Viewer:
-    """A Foxglove client; reads until the message that is wanted."""
-
-    def __init__(self, connection: ClientConnection) -> None:
-        self._connection = connection
-        self._calls = 0
-
-    def until(self, wanted: Callable[[ms.ServerMessage], bool], within_s: float) -> ms.ServerMessage:
-        """The first message that is wanted; TimeoutError."""
-        deadline = time.monotonic() + within_s
-        while True:
-            message = wire.decode_server(self._connection.recv(timeout=max(0.0, deadline - time.monotonic())))
-            if wanted(message):
-                return message
-
-    def service(self, name: str) -> int:
-        """The number of a service, once it is advertised."""
-        found: list[int] = []
-
-        def is_there(message: ms.ServerMessage) -> bool:
-            if isinstance(message, ms.AdvertiseServices):
-                found.extend(service.id for service in message.services if service.name == name)
-            return bool(found)
-
-        self.until(is_there, START_S)
-        return found[0]
-
-    def call(self, service: int) -> float:
-        """Seconds until the answer."""
-        self._calls += 1
-        begin = time.monotonic()
-        self._connection.send(wire.encode_client(ms.ServiceRequest(service, self._calls, "cdr", NO_NAMES)))
-        self.until(lambda one: isinstance(one, ms.ServiceResponse) and one.call_id == self._calls, ANSWER_S)
-        return time.monotonic() - begin
-
-    def set(self, text: str) -> None:
-        """Set the playground."""
-        parameters = (ms.Parameter("/simulator.playground", text),)
-        self._connection.send(wire.encode_client(ms.SetParameters(parameters, "set")))
-
-    def answer(self) -> str:
-        """What became of it."""
-        reported: list[str] = []
-
-        def is_last(message: ms.ServerMessage) -> bool:
-            if isinstance(message, ms.Status) and "playground" in message.message:
-                reported.append(message.message)
-            return isinstance(message, ms.ParameterValues) and message.id == "set"
-
-        self.until(is_last, ANSWER_S)
-        return reported[-1] if reported else "accepted"
+def set_playground(viewer: Peer, text: str) -> None:
+    """Set the playground."""
+    viewer.socket.sendall(said(op="setParameters", parameters=[{"name": PARAMETER, "value": text}], id="set"))
 
 
-def longest_call(viewer: Viewer, service: int, stop: threading.Event, found: list[float]) -> None:
-    """Call again and again; keeps the longest time."""
+def answer(viewer: Peer) -> str:
+    """Return the answer: the reason why the playground was refused, else "accepted". Raises TimeoutError."""
+    reasons = ["accepted"]
+    deadline = time.monotonic() + ANSWER_S
+    while True:
+        body = viewer.next(max(0.0, deadline - time.monotonic()))
+        if not body.startswith(b"{"):
+            continue
+        message = json.loads(body)
+        if message["op"] == "status" and PARAMETER in message["message"]:
+            reasons.append(message["message"].removeprefix(f"{PARAMETER}: uploaded playground: "))
+        if message["op"] == "parameterValues" and message.get("id") == "set":
+            return reasons[-1]
+
+
+def longest_call(viewer: Peer, stop: threading.Event, found: list[float]) -> None:
+    """Call again and again until `stop` is set; `found[0]` is the longest time."""
     found.append(0.0)
     while not stop.is_set():
-        found[0] = max(found[0], viewer.call(service))
+        found[0] = max(found[0], viewer.call(SERVICE, NO_NAMES))
         stop.wait(0.02)
 
 
-def highest_mb(pid: int) -> int:
-    """Memory of a process at its highest so far."""
-    found = re.search(r"VmHWM:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())
-    return int(found[1]) // 1024 if found else 0
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--only", default="", metavar="WORDS", help="playgrounds with this in their description")
+    parser.add_argument("--seconds", type=float, default=3.0, help="of calls before the first playground")
 
 
-def connected(port: int, stack: ExitStack) -> Viewer:
-    """A viewer, once the bridge listens; the stack disconnects it."""
-    deadline = time.monotonic() + START_S
-    while True:
-        try:
-            connecting = connect(
-                f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS, max_queue=None, max_size=None, ping_interval=None
-            )
-            return Viewer(stack.enter_context(connecting))
-        except OSError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.1)
-
-
-def main() -> int:
-    """Start the nodes, attack them, end them."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--port", type=int, default=9765)
-    port = parser.parse_args().port
-    suite = subprocess.Popen(
-        [sys.executable, "-c", COMMAND, "--no-web", "--foxglove-port", str(port)],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    stack = ExitStack()
-    try:
-        other, hostile = connected(port, stack), connected(port, stack)
-        service = other.service(SERVICE)
-        end = time.monotonic() + ALONE_S
-        alone = 0.0
+def measure(options: argparse.Namespace) -> Report:
+    """Send all playgrounds, and Ctrl-C while the last one is loading."""
+    rows: list[list[str | float]] = []
+    with suite("--no-web") as running:
+        pid = running.process.pid
+        other, hostile = Peer(running.bridge_port), Peer(running.bridge_port)
+        other.until(lambda: SERVICE in other.services, "service")
+        alone, end = 0.0, time.monotonic() + options.seconds
         while time.monotonic() < end:
-            alone = max(alone, other.call(service))
-        print(f"the longest call alone: {alone * 1000:.0f} ms; {highest_mb(suite.pid)} MB", flush=True)
-        print(f"{'playground':38} {'bytes':>10} {'answer':>8} {'calls':>8} {'memory':>8}  became", flush=True)
+            alone = max(alone, other.call(SERVICE, NO_NAMES))
+        rows.append(["nothing", 0, 0, 1000 * alone, round(status_mb(pid, "VmHWM")), ""])
         for name, text in attacks().items():
-            stop, longest = threading.Event(), []  # type: tuple[threading.Event, list[float]]
-            thread = threading.Thread(target=longest_call, args=(other, service, stop, longest))
-            thread.start()
-            begin = time.monotonic()
-            try:
-                hostile.set(text)
-                became = hostile.answer()
-            except TimeoutError:
-                became = "no answer"
-            seconds = time.monotonic() - begin
-            stop.set()
-            thread.join()
-            sizes = f"{len(text):10} {seconds:6.2f} s {longest[0] * 1000:5.0f} ms {highest_mb(suite.pid):5} MB"
-            print(f"{name:38} {sizes}  {became[:150]}", flush=True)
-        hostile.set(attacks()["100 half-transparent groups"])
+            if options.only in name:
+                seconds, longest, became = attack(hostile, other, text)
+                rows.append([name, len(text), seconds, 1000 * longest, round(status_mb(pid, "VmHWM")), became])
+        set_playground(hostile, attacks()["100 half-transparent groups"])
         time.sleep(0.5)
         begin = time.monotonic()
-        os.killpg(suite.pid, signal.SIGINT)
-        suite.wait(60.0)
-        print(f"Ctrl-C while a playground is loading: {time.monotonic() - begin:.2f} s, exit code {suite.returncode}")
-    finally:
-        if suite.poll() is None:
-            os.killpg(suite.pid, signal.SIGKILL)
-            suite.wait()
-        stack.close()
-    return 0
+        running.process.signal(signal.SIGINT)
+        code = running.process.wait()
+        ctrl_c_s = time.monotonic() - begin
+        other.socket.close()
+        hostile.socket.close()
+    if code:
+        raise RuntimeError(f"exit code {code} after Ctrl-C")
+    goals = [
+        Goal("longest call of the other viewer", MOST_CALL_S, max(float(row[3]) for row in rows) / 1000, "s"),
+        Goal("Ctrl-C while a playground is loading", MOST_CTRL_C_S, ctrl_c_s, "s"),
+    ]
+    return Report([Table(["playground", "bytes", "answer, s", "longest call, ms", "MB", "answer"], rows)], goals)
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def attack(hostile: Peer, other: Peer, text: str) -> tuple[float, float, str]:
+    """Send a playground; return the seconds until the answer, those of the longest call meanwhile, and the answer."""
+    stop, longest = threading.Event(), []  # type: tuple[threading.Event, list[float]]
+    thread = threading.Thread(target=longest_call, args=(other, stop, longest))
+    thread.start()
+    begin = time.monotonic()
+    try:
+        set_playground(hostile, text)
+        became = answer(hostile)
+    except TimeoutError:
+        became = "no answer"
+    seconds = time.monotonic() - begin
+    stop.set()
+    thread.join()
+    return seconds, longest[0], textwrap.shorten(became.replace("|", "\\|"), 100, placeholder=" …")

@@ -1,9 +1,8 @@
-"""The page's server under attack: what a page load costs meanwhile, and what the server takes, as a table.
-
-python benchmarks/page_server.py
+"""The page's server under attack: how long a page load takes meanwhile, and what the server uses.
 
 The server is the executable `web_ui` in a process of its own, with the usual limit of 1024 open files. Attackers
-connect from 127.0.0.2, the page is loaded from 127.0.0.1 and from the address of the attackers. Linux only.
+connect from 127.0.0.2, the page is loaded from 127.0.0.1 and from the address of the attackers. Linux only. Needs ROS
+and the built page.
 """
 
 from __future__ import annotations
@@ -23,10 +22,17 @@ from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import rclpy  # noqa: F401  # the server needs it
+
+from benchmarks.lib.command import MissingError
+from benchmarks.lib.report import Report, Table
+from tests.processes import free_port
+from thymio_sim_ros import resources
+
+QUICK = {"browsers": [3], "held": 0.2}
 ATTACKER, VISITOR = "127.0.0.2", "127.0.0.1"
 DEADLINE_S = 30.0
 _ASSET = re.compile(rb'(?:src|href)="\./([^"]+)"')
-_HELD_S = 12.0
 _OPEN_FILES = 1024
 
 
@@ -119,53 +125,59 @@ async def held(port: int, count: int, begin: bytes, *, is_read: bool = True) -> 
             one.close()
 
 
-async def attack(server: Server, name: str, count: int, begin: bytes, *, is_read: bool = True) -> None:
-    """Hold connections, load the page meanwhile, and print a row."""
+Row = list[str | float | None]
+
+
+async def attack(server: Server, name: str, count: int, begin: bytes, held_s: float, *, is_read: bool = True) -> Row:
+    """Hold connections and load the page meanwhile; return a row."""
     async with held(server.port, count, begin, is_read=is_read):
         own, same = await load(server.port, VISITOR), await load(server.port, ATTACKER)
         cost = server.cost
-        await asyncio.sleep(_HELD_S)
+        await asyncio.sleep(held_s)
         later = server.cost
-    row(name, f"{_said(own)}, same address {_said(same)}", cost, later)
+    return [name, _ms(own), _ms(same), _cost(cost), _cost(later)]
 
 
-async def many_browsers(server: Server, count: int) -> None:
-    """So many page loads at once."""
+async def many_browsers(server: Server, count: int) -> Row:
+    """Load the page so many times at once; return a row."""
     begin = time.perf_counter()
     loads = await asyncio.gather(*(load(server.port, VISITOR) for _ in range(count)))
     whole = sum(one.is_whole for one in loads)
-    row(f"{count} page loads at once", f"{whole} whole in {time.perf_counter() - begin:.2f} s", server.cost)
+    if whole < count:
+        return [f"{count} page loads at once: only {whole} are whole", None, None, _cost(server.cost), None]
+    return [f"{count} page loads at once", 1000 * (time.perf_counter() - begin), None, _cost(server.cost), None]
 
 
-def _said(one: Load) -> str:
-    return f"{one.seconds * 1000:.0f} ms" if one.is_whole else f"NOT SERVED ({one.seconds:.0f} s)"
+def _ms(one: Load) -> float | str:
+    return one.seconds * 1000 if one.is_whole else "not served"
 
 
-def row(name: str, result: str, *costs: tuple[int, int, int, int]) -> None:
-    """Print a line of the table."""
-    reported = " → ".join("/".join(str(value) for value in cost) for cost in costs)
-    print(f"| {name} | {result} | {reported} |", flush=True)
+def _cost(cost: tuple[int, int, int, int]) -> str:
+    return " / ".join(str(value) for value in cost)
 
 
-async def measure(server: Server, page: str) -> None:
-    """All attacks, one after the other."""
+async def run(server: Server, page: str, options: argparse.Namespace) -> list[Row]:
+    """Run all attacks, one after the other."""
     end = time.monotonic() + DEADLINE_S
     while not (await load(server.port, VISITOR)).is_whole:
         if time.monotonic() > end:
-            raise SystemExit("the server does not answer; is the page built?")
+            raise RuntimeError("the server does not answer")
         await asyncio.sleep(0.2)
-    print("| attack | page load | threads/files/MB/bytes of log, at once → 12 s later |\n|---|---|---|")
-    row("none", _said(await load(server.port, VISITOR)), server.cost)
-    await many_browsers(server, 30)
-    await many_browsers(server, 180)
-    await attack(server, "300 half requests", 300, b"GET / HTTP/1.1\r\nHost: localhost\r\n")
-    await attack(server, "1000 silent connections", 1000, b"")
+    rows: list[Row] = [["nothing", _ms(await load(server.port, VISITOR)), None, _cost(server.cost), None]]
+    rows += [await many_browsers(server, count) for count in options.browsers]
     whole = f"GET {page} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode()
-    await attack(server, "600 that ask and do not read", 600, whole * 8, is_read=False)
     slow = b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000\r\n\r\nx"
-    await attack(server, "300 slow bodies", 300, slow)
-    await attack(server, "300 that pipeline", 300, whole * 300)
-    row("none, afterwards", _said(await load(server.port, VISITOR)), server.cost)
+    attacks = {
+        "300 half requests": (300, b"GET / HTTP/1.1\r\nHost: localhost\r\n", True),
+        "1000 silent connections": (1000, b"", True),
+        "600 clients that request and do not read": (600, whole * 8, False),
+        "300 slow bodies": (300, slow, True),
+        "300 pipelining clients": (300, whole * 300, True),
+    }
+    for name, (count, begin, is_read) in attacks.items():
+        if options.only in name:
+            rows.append(await attack(server, name, count, begin, options.held, is_read=is_read))
+    return [*rows, ["nothing, afterwards", _ms(await load(server.port, VISITOR)), None, _cost(server.cost), None]]
 
 
 @contextlib.contextmanager
@@ -179,22 +191,22 @@ def running(port: int) -> Iterator[Server]:
             server.end()
 
 
-def main() -> None:
-    """Run and print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--port", type=int, default=9245)
-    port = parser.parse_args().port
-    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
-    from thymio_sim_ros import resources
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--only", default="", metavar="WORDS", help="attacks with this in their names")
+    parser.add_argument("--browsers", type=int, nargs="+", default=[30, 180], help="page loads at once")
+    parser.add_argument("--held", type=float, default=12.0, help="seconds that connections are held")
 
+
+def measure(options: argparse.Namespace) -> Report:
+    """Run all attacks on one server."""
     folder = resources.page()
     if folder is None:
-        raise SystemExit(resources.PAGE_BUILD_HINT)
+        raise MissingError("file", "web_ui/dist/index.html")
+    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
     largest = max((folder / "assets").iterdir(), key=lambda path: path.stat().st_size)
-    with running(port) as server:
-        asyncio.run(measure(server, f"/assets/{largest.name}"))
-
-
-if __name__ == "__main__":
-    main()
+    with running(free_port()) as server:
+        rows = asyncio.run(run(server, f"/assets/{largest.name}", options))
+    title = "The server: threads / open files / MB / bytes of log, at once and when the connections have been held"
+    return Report([Table(["attack", "page load, ms", "same address", "server", "later"], rows, title)])

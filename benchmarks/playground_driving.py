@@ -1,11 +1,10 @@
-"""How programs drive a robot in the reference's playground and in this simulator: edge crossings and near readings.
-
-Run: PYTHONPATH=. python benchmarks/playground_driving.py [--seconds N] [PROGRAM ...]
-Needs `asebaplayground` (Debian package `aseba`) and `xvfb-run`; the playground runs in real time.
+"""How programs drive a robot in Aseba's own playground and in this simulator: edge crossings and near readings.
 
 The same program is loaded over the network into a live playground, and into this simulator with several models. Two
 variants reproduce what was found in the reference: "grid" samples the sensors in steps of 30 ms; "memory" keeps the
 last distance of a proximity ray that no longer hits anything while another ray of its sensor hits (docs/robot.md).
+"near" and "seen" are shares of the readings above 3000 and above 0. The playground runs in real time. Needs
+`asebaplayground` (Debian package `aseba`) and `xvfb-run`.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ import contextlib
 import dataclasses
 import math
 import os
+import shutil
 import signal
 import socket
 import struct
@@ -28,6 +28,9 @@ from unittest import mock
 
 from PIL import Image, ImageDraw
 
+from benchmarks.lib.command import MissingError
+from benchmarks.lib.report import Report, Table
+from tests.processes import free_port
 from thymio_sim_ros import loading
 from thymio_sim_ros.device.layout import PLAYGROUND
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
@@ -38,7 +41,7 @@ from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_HALF_CONE_RAD as 
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors, proximity
 
-PORT = 33790
+QUICK = {"seconds": 4.0, "programs": ["in proportion"]}
 STEP_NS = 30_000_000
 SET_BYTECODE, RUN, FIRST_SYSTEM_MESSAGE = 0xA001, 0xA003, 0x8000
 CHUNK_WORDS = 200
@@ -137,16 +140,15 @@ def draw_track(path: Path) -> None:
     picture.resize((1000, 800)).save(path)
 
 
-def summary(reports: Sequence[Sequence[int]]) -> str:
-    """Crossings per minute, and the share of readings above 3000 and above 0."""
-    first, last = reports[SKIPPED], reports[-1]
+def figures(reports: Sequence[Sequence[int]]) -> list[float]:
+    """Return the crossings per minute, and the percentages of readings above 3000 and above 0."""
+    first, last = reports[min(SKIPPED, len(reports) - 2)], reports[-1]
     samples, crossings, near, seen = (after - before for before, after in zip(first[:4], last[:4], strict=True))
-    shares = f"{near * 100 / samples:5.1f} % near {seen * 100 / samples:5.1f} % seen"
-    return f"{crossings * 600 / samples:6.0f} crossings/min {shares}"
+    return [crossings * 600 / samples, near * 100 / samples, seen * 100 / samples]
 
 
 @contextlib.contextmanager
-def reference(world: Path) -> Iterator[socket.socket]:
+def reference(world: Path, port: int) -> Iterator[socket.socket]:
     """A connection to the robot of a live playground with this world."""
     with subprocess.Popen(
         ["xvfb-run", "-a", "asebaplayground", str(world)],
@@ -155,16 +157,16 @@ def reference(world: Path) -> Iterator[socket.socket]:
         start_new_session=True,
     ) as process:
         try:
-            yield connected(time.monotonic() + START_S)
+            yield connected(port, time.monotonic() + START_S)
         finally:
             os.killpg(process.pid, signal.SIGTERM)
 
 
-def connected(deadline: float) -> socket.socket:
-    """A connection to the playground, which needs some seconds; OSError when it does not come up."""
+def connected(port: int, deadline: float) -> socket.socket:
+    """A connection to the playground, which needs some seconds; OSError if it does not start."""
     while True:
         try:
-            return socket.create_connection(("127.0.0.1", PORT))
+            return socket.create_connection(("127.0.0.1", port))
         except OSError:
             if time.monotonic() > deadline:
                 raise
@@ -172,7 +174,7 @@ def connected(deadline: float) -> socket.socket:
 
 
 def drive_reference(connection: socket.socket, program: ThymioProgram, seconds: float) -> list[Sequence[int]]:
-    """What the program reports from the playground in so many seconds."""
+    """Return what the program reports from the playground in so many seconds."""
 
     def send(kind: int, *words: int) -> None:
         connection.sendall(struct.pack(f"<HHH{len(words)}H", 2 * len(words), 0, kind, *words))
@@ -235,7 +237,7 @@ def remembering() -> Sensor:
 
 
 def drive_here(world: Playground, program: ThymioProgram, seconds: float, variant: str) -> list[Sequence[int]]:
-    """What the program reports from this simulator."""
+    """Return what the program reports from this simulator."""
     options, on_grid, with_memory = VARIANTS[variant]
     sensors = tuple(remembering() if with_memory and sensor.name == "proximity" else sensor for sensor in all_sensors())
     with contextlib.ExitStack() as stack:
@@ -246,28 +248,33 @@ def drive_here(world: Playground, program: ThymioProgram, seconds: float, varian
         return [event.args for _ in runner.steps(seconds) for _, event in runner.emitted]
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("programs", nargs="*", metavar="PROGRAM", help=f"of {', '.join([*TRACK, *WALLS])}")
-    parser.add_argument("--seconds", type=float, default=95.0, help="of simulated time for each (default: %(default)s)")
-    options = parser.parse_args()
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    every = [*TRACK, *WALLS]
+    parser.add_argument("--programs", nargs="+", choices=every, default=every, metavar="PROGRAM", help=f"of {every}")
+    parser.add_argument("--seconds", type=float, default=95.0, help="of simulated time for each")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Drive with all programs."""
+    for needed in ("asebaplayground", "xvfb-run"):
+        if shutil.which(needed) is None:
+            raise MissingError("program", needed)
+    rows: list[list[str | float]] = []
     with tempfile.TemporaryDirectory() as folder:
         draw_track(Path(folder) / "track.png")
         for name, steering in {**TRACK, **WALLS}.items():
-            if options.programs and name not in options.programs:
+            if name not in options.programs:
                 continue
+            port = free_port()
             path = Path(folder) / "driving.playground"
-            path.write_text((TRACK_WORLD if name in TRACK else WALLS_WORLD).format(port=PORT))
+            path.write_text((TRACK_WORLD if name in TRACK else WALLS_WORLD).format(port=port))
             text = PROGRAM.format(steering=steering)
-            print(name)
-            with reference(path) as connection, connection:
+            with reference(path, port) as connection, connection:
                 reports = drive_reference(connection, load_program(text, name, PLAYGROUND), options.seconds)
-            print(f"  {'reference':20}{summary(reports)}", flush=True)
+            rows.append([f"{name}: reference", *figures(reports)])
             _, world = loading.load_playground(str(path))
             for variant in VARIANTS:
                 reports = drive_here(world, load_program(text, name), options.seconds, variant)
-                print(f"  {variant:20}{summary(reports)}", flush=True)
-
-
-if __name__ == "__main__":
-    main()
+                rows.append([f"{name}: {variant}", *figures(reports)])
+    return Report([Table(["", "crossings per minute", "near, %", "seen, %"], rows)])

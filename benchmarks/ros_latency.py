@@ -1,18 +1,14 @@
-"""From `cmd_vel` to the first odometry that shows it, between processes: p50, p90, p99 and the longest, in ms.
+"""From `cmd_vel` to the first odometry that shows it, between processes: quantiles in ms.
 
-Run: PYTHONPATH=. python benchmarks/ros_latency.py [--commands N] [--robots N] [--json FILE].
-A command that comes at any moment takes effect in the tick that follows, at most 10 ms later; what is beyond is the way
-there and back. Two ways to send odometry are measured: with every tick, and at the usual 20 Hz, where the next message
-alone takes up to 50 ms. Other work on the machine lengthens the tail: the load is printed, and what the way alone
-takes, through a node that echoes.
+A command that comes at any moment takes effect in the tick that follows, at most 10 ms later; the rest is the way there
+and back. Two ways to send odometry are measured: with every tick, and at the usual 20 Hz, where the next message alone
+takes up to 50 ms. Other work on the machine lengthens the tail: a node that echoes shows what the way alone takes.
+Needs ROS.
 """
 
 from __future__ import annotations
 
 import argparse
-import contextlib
-import json
-import os
 import random
 import statistics
 import tempfile
@@ -24,17 +20,23 @@ from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 
-from benchmarks.ros_load import DOMAIN, NODE, START_S, playground, process
+from benchmarks.lib.processes import child
+from benchmarks.lib.report import Goal, Report, Table
+from benchmarks.lib.scenes import grid
+from benchmarks.ros_load import GAP_M, NODE, QUIET, START_S, spin_until_interrupted
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 
+QUICK = {"commands": 5}
 SPEEDS_M_S = (0.05, 0.1)
 CHANGED_M_S = 0.01
 PAUSE_S = (0.06, 0.12)
 LOST_S = 5.0
 ECHO = "an echo, no simulator"
 ECHOING = "import sys; from benchmarks.ros_latency import echo; echo()"
-RATES = {ECHO: 0.0, "every tick": -1.0, "20 Hz": 20.0}
+EVERY_TICK = "every tick"
+RATES = {ECHO: 0.0, EVERY_TICK: -1.0, "20 Hz": 20.0}
 ALLOWED_MS = 12.0
 """One tick and 2 ms: at most this in 99 of 100 with odometry in every tick."""
 
@@ -42,7 +44,7 @@ ALLOWED_MS = 12.0
 def echo() -> None:
     """Answer each command with odometry of its speed."""
     context = Context()
-    rclpy.init(args=[], context=context)
+    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
     node = Node("echo", context=context, enable_rosout=False, start_parameter_services=False)
     publisher = node.create_publisher(Odometry, "/odom", 10)
     answer = Odometry()
@@ -52,15 +54,11 @@ def echo() -> None:
         publisher.publish(answer)
 
     node.create_subscription(Twist, "/cmd_vel", take, 1)
-    executor = make_executor(context)
-    executor.add_node(node)
-    with contextlib.suppress(KeyboardInterrupt):
-        while context.ok():
-            executor.spin_once(timeout_sec=0.1)
+    spin_until_interrupted(node, context)
 
 
 class Asker:
-    """The other process: tells a robot speeds in turn, and waits for the odometry that shows each."""
+    """The other process: commands two speeds in turn, and waits for the odometry that shows each."""
 
     def __init__(self, robots: int) -> None:
         self.context = Context()
@@ -113,14 +111,14 @@ class Asker:
         self.context.try_shutdown()
 
 
-def measure(robots: int, rate_hz: float, count: int) -> list[float]:
+def run(robots: int, rate_hz: float, count: int) -> list[float]:
     """Milliseconds of each command; pauses between them are random, so that they come at any phase of a tick."""
     with tempfile.TemporaryDirectory() as folder:
         world = Path(folder) / "load.json"
-        world.write_text(playground(robots), encoding="utf-8")
+        world.write_text(grid(robots, GAP_M), encoding="utf-8")
         values = (f"playground:={world}", f"odom_max_rate:={rate_hz}")
-        simulator = [NODE, "--ros-args", *(part for value in values for part in ("-p", value))]
-        with process(*(simulator if rate_hz else [ECHOING])):
+        simulator = [NODE, *QUIET, *(part for value in values for part in ("-p", value))]
+        with child(*(simulator if rate_hz else [ECHOING])):
             asker, pauses = Asker(robots), random.Random(1)
             asker.meet()
             waits = []
@@ -131,32 +129,19 @@ def measure(robots: int, rate_hz: float, count: int) -> list[float]:
     return waits[2:]  # the first ones fill caches and templates
 
 
-def main() -> None:
-    """Print a table, and all figures as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--commands", type=int, default=500)
-    parser.add_argument("--robots", type=int, default=1)
-    parser.add_argument("--json", type=Path)
-    chosen = parser.parse_args()
-    os.environ.update(ROS_DOMAIN_ID=str(DOMAIN), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
-    found = []
-    print("| odometry | p50, ms | p90 | p99 | longest | load |\n|---|---:|---:|---:|---:|---:|")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--commands", type=int, default=500, help="commands for each row")
+    parser.add_argument("--robots", type=int, default=1, help="robots in the world; one is commanded")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure the echo and both rates."""
+    rows, goals = [], []
     for name, rate_hz in RATES.items():
-        waits = sorted(measure(chosen.robots if rate_hz else 1, rate_hz, chosen.commands))
-        one = {
-            "odometry": name,
-            "p50_ms": round(statistics.median(waits), 1),
-            "p90_ms": round(waits[int(0.9 * len(waits))], 1),
-            "p99_ms": round(waits[int(0.99 * len(waits))], 1),
-            "longest_ms": round(waits[-1], 1),
-            "load": round(os.getloadavg()[0], 1),
-        }
-        found.append(one)
-        print("|", " | ".join(str(value) for value in one.values()), "|", flush=True)
-    print(json.dumps({"allowed_ms": ALLOWED_MS, "robots": chosen.robots, "figures": found}))
-    if chosen.json is not None:
-        chosen.json.write_text(json.dumps(found, indent=2), encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()
+        waits = sorted(run(options.robots if rate_hz else 1, rate_hz, options.commands))
+        p99 = waits[int(0.99 * len(waits))]
+        rows.append([name, statistics.median(waits), waits[int(0.9 * len(waits))], p99, waits[-1]])
+        if name == EVERY_TICK:
+            goals.append(Goal("99th percentile, every tick", ALLOWED_MS, p99, "ms"))
+    return Report([Table(["odometry; ms", "p50", "p90", "p99", "longest"], rows)], goals)

@@ -1,17 +1,15 @@
 """CPU time of the simulator node while robots drive in circles: a process of its own, subscribers in another.
 
-Run: PYTHONPATH=. python benchmarks/ros_load.py [--seconds S] [--rounds N] [--only WORD] [--profile FILE] [--json FILE].
 Percentages are CPU seconds of the node's process, with all threads of DDS, for each simulated second, of one core: the
 median of the rounds, and the best. The factor is what `/diagnostics` reported as achieved, on average; below 1 time
-was lost, by the simulator or by other work. "Start" is the CPU time until all robots listen. Other work on the machine
-makes everything dearer, by caches alone two to three times: the load is printed too.
+was lost, by the simulator or by other work. "start" is the CPU time until all robots listen. Other work on the machine
+makes everything slower, by its use of caches alone two to three times.
 
-"Floor" is what a bare loop takes that sends ready bytes on as many topics at the same rate to the same listener, right
-after: what is left is the simulator's own.
+"floor" is what a bare loop takes that sends constant bytes on as many topics at the same rate to the same listener,
+right after: the rest is the simulator's own.
 
-"All topics" are those of `topics`: all of every robot, /tf and /clock; "13 topics" those that
-docs/spec/ros-packaging.md section 9 counts: nine Range, odometry, transforms, joints, Imu. All that is regular is sent
-at the scene's rate, the clock too.
+"all topics" are all of every robot, /tf and /clock; "13 topics" those of docs/spec/ros-packaging.md section 9: nine
+Range, odometry, transforms, joints, Imu. All periodic topics are sent at the scene's rate, the clock too. Needs ROS.
 """
 
 from __future__ import annotations
@@ -19,8 +17,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import cProfile
-import json
-import os
 import signal
 import statistics
 import subprocess
@@ -28,7 +24,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,16 +37,20 @@ from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Range
 
+from benchmarks.lib.processes import child, cpu_s, status_mb
+from benchmarks.lib.report import Cell, Goal, Report, Table
+from benchmarks.lib.scenes import grid
 from thymio_sim_ros.ros import generate_ros_docs
 from thymio_sim_ros.ros.compat import dds_profile, tf2_messages
 from thymio_sim_ros.ros.interface import qos, sensor_topics
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor, run_node
 from thymio_sim_ros.ros.simulator.node import Simulator
 
-DOMAIN = int(os.environ.get("ROS_DOMAIN_ID", "80"))
+QUICK = {"seconds": 1.0, "rounds": 1, "warm_up": 0.5, "only": "1 robot, 10 Hz, 13"}
 GAP_M = 0.4
 SPEED_M_S, TURN_RAD_S = 0.05, 1.0
-START_S, WARM_UP_S = 120.0, 3.0
+START_S = 120.0
+QUIET = ["--ros-args", "--log-level", "warn"]
 NODE = "import sys; from thymio_sim_ros.ros.simulator.node import main; sys.exit(main())"
 PROFILED = "import sys; from benchmarks.ros_load import profiled; profiled(sys.argv[1], sys.argv[2:])"
 SENDER = "import sys; from benchmarks.ros_load import send; send(*sys.argv[1:])"
@@ -94,26 +93,13 @@ SCENES = (
 )
 
 
-def playground(robots: int) -> str:
-    """Robots on a square floor, so far apart that none sees another."""
-    side = 1
-    while side * side < robots:
-        side += 1
-    size = side * GAP_M + 1.0
-    places = [((index % side) * GAP_M, (index // side) * GAP_M) for index in range(robots)]
-    middle = (side - 1) * GAP_M / 2
-    floor = {"kind": "rectangle", "name": "ground", "size_x_m": size, "size_y_m": size, "color": "#ffffff"}
-    starts = [{"name": f"r{i}", "x_m": x - middle, "y_m": y - middle} for i, (x, y) in enumerate(places)]
-    return json.dumps({"format": 1, "title": "Load", "shapes": [floor], "robots": starts})
-
-
 def topics(robots: int, heard: str, *, only_regular: bool = False) -> Iterator[tuple[type, str]]:
-    """Every topic that is listened to; or those of them on which nothing has to happen first."""
+    """Every topic that is listened to; or those of them whose messages need no event first."""
     spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
     for space in spaces:
         for sensor in generate_ros_docs.own_sensors():
             for row in sensor_topics.rows_of(sensor):
-                if only_regular and not sensor_topics.is_regular(sensor, row):
+                if only_regular and not sensor_topics.is_periodic(sensor, row):
                     continue
                 if heard == ALL or row.type is Range or row.topic in ("odom", "joint_states", "imu"):
                     yield row.type, f"{space}/{row.topic}"
@@ -125,15 +111,21 @@ def topics(robots: int, heard: str, *, only_regular: bool = False) -> Iterator[t
 def listen(arguments: list[str]) -> None:
     """Subscribe to topics of so many robots, and take what comes."""
     context = Context()
-    rclpy.init(args=[], context=context)
+    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
     node = Node("listener", context=context, enable_rosout=False, start_parameter_services=False)
     for kind, topic in topics(int(arguments[0]), arguments[1]):
         node.create_subscription(kind, topic, lambda _data: None, qos.SENSOR, raw=True)
+    spin_until_interrupted(node, context)
+
+
+def spin_until_interrupted(node: Node, context: Context) -> None:
+    """Execute callbacks until SIGINT; the context must leave signals alone."""
+    ended: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _frame: ended.append(number))
     executor = make_executor(context)
     executor.add_node(node)
-    with contextlib.suppress(KeyboardInterrupt):
-        while context.ok():
-            executor.spin_once(timeout_sec=0.1)
+    while not ended:
+        executor.spin_once(timeout_sec=0.1)
 
 
 def send(robots: str, heard: str, rate_hz: str, seconds: str) -> None:
@@ -169,33 +161,6 @@ def profiled(path: str, arguments: list[str]) -> None:
     profile.runcall(run_node, simulator, context, lambda: bool(ended))
     profile.dump_stats(path)
     simulator.close()
-
-
-@contextmanager
-def process(*arguments: str) -> Iterator[int]:
-    """A process while it is wanted; its id."""
-    child = subprocess.Popen([sys.executable, "-c", *arguments], stdout=subprocess.DEVNULL, process_group=0)
-    try:
-        yield child.pid
-    finally:
-        child.send_signal(signal.SIGINT)
-        try:
-            child.wait(10.0)
-        except subprocess.TimeoutExpired:
-            child.kill()
-            child.wait()
-
-
-def cpu_s(pid: int) -> float:
-    """CPU seconds that the threads of a process have used, as the scheduler counts them."""
-    tasks = Path(f"/proc/{pid}/task").glob("*/schedstat")
-    return sum(int(task.read_text(encoding="ascii").split()[0]) for task in tasks) / 1e9
-
-
-def memory_mb(pid: int) -> float:
-    """Resident memory of a process."""
-    pages = int(Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 class Driver:
@@ -260,28 +225,28 @@ class Figures:
     start_s: float
 
 
-def measure(scene: Scene, seconds: float, profile: str | None) -> Figures:
+def run(scene: Scene, options: argparse.Namespace) -> Figures:
     """One round of a scene."""
     with tempfile.TemporaryDirectory() as folder:
         world = Path(folder) / "load.json"
-        world.write_text(playground(scene.robots), encoding="utf-8")
+        world.write_text(grid(scene.robots, GAP_M), encoding="utf-8")
         values = [f"playground:={world}"]
         if scene.rate_hz:
             rates = ("sensor_rate", "odom_max_rate", "clock_rate")
             values += [f"{name}:={scene.rate_hz}" for name in rates]
-        arguments = ["--ros-args", *(part for value in values for part in ("-p", value))]
-        start = [PROFILED, profile] if profile else [NODE]
-        with process(*start, *arguments) as pid:
+        arguments = [*QUIET, *(part for value in values for part in ("-p", value))]
+        start = [PROFILED, options.profile] if options.profile else [NODE]
+        with child(*start, *arguments) as pid:
             driver = Driver(scene.robots)
             driver.go()
             start_s = cpu_s(pid)
             with contextlib.ExitStack() as listening:
                 if scene.heard != NOTHING:
-                    listening.enter_context(process(LISTENER, str(scene.robots), scene.heard))
+                    listening.enter_context(child(LISTENER, str(scene.robots), scene.heard))
                     driver.until_heard([topic for _, topic in topics(scene.robots, scene.heard)])
-                figures = _watch(driver, pid, seconds)
+                figures = _watch(driver, pid, options.seconds, options.warm_up)
             driver.close()
-    return Figures(**figures, floor_percent=_floor(scene, seconds), start_s=start_s)
+    return Figures(**figures, floor_percent=_floor(scene, options.seconds), start_s=start_s)
 
 
 def _floor(scene: Scene, seconds: float) -> float | None:
@@ -290,12 +255,12 @@ def _floor(scene: Scene, seconds: float) -> float | None:
         return None
     arguments = (str(scene.robots), scene.heard)
     command = [sys.executable, "-c", SENDER, *arguments, str(scene.rate_hz), str(seconds)]
-    with process(LISTENER, *arguments):
+    with child(LISTENER, *arguments):
         return float(subprocess.run(command, capture_output=True, text=True, check=True, timeout=START_S).stdout)
 
 
-def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, float]:
-    driver.spin(WARM_UP_S)
+def _watch(driver: Driver, pid: int, seconds: float, warm_up_s: float) -> dict[str, float]:
+    driver.spin(warm_up_s)
     driver.factors.clear()
     begin, before = time.monotonic(), cpu_s(pid)
     driver.spin(seconds)
@@ -304,50 +269,41 @@ def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, float]:
     return {
         "cpu_percent": 100 * used / (passed * factor),
         "factor": factor,
-        "memory_mb": memory_mb(pid),
+        "memory_mb": status_mb(pid, "VmRSS"),
     }
 
 
-def summary(scene: Scene, rounds: list[Figures]) -> dict[str, object]:
-    """What the rounds of a scene say together."""
+def summary(rounds: list[Figures]) -> list[Cell]:
+    """Return the cells of a scene: CPU, best, floor, factor, memory, CPU time of the start."""
     percents = [one.cpu_percent for one in rounds]
     floors = [one.floor_percent for one in rounds if one.floor_percent is not None]
-    return {
-        "scene": scene.name,
-        "median": round(statistics.median(percents), 2),
-        "best": round(min(percents), 2),
-        "floor": round(statistics.median(floors), 2) if floors else None,
-        "most": scene.most_percent,
-        "factor": round(statistics.median(one.factor for one in rounds), 3),
-        "memory_mb": round(max(one.memory_mb for one in rounds)),
-        "start_s": round(statistics.median(one.start_s for one in rounds), 1),
-        "load": round(os.getloadavg()[0], 1),
-    }
+    return [
+        statistics.median(percents),
+        min(percents),
+        statistics.median(floors) if floors else None,
+        statistics.median(one.factor for one in rounds),
+        round(max(one.memory_mb for one in rounds)),
+        statistics.median(one.start_s for one in rounds),
+    ]
 
 
-def main() -> None:
-    """Print a table, and all figures as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=10.0)
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--only", default="", help="scenes with this in their names")
-    parser.add_argument("--profile", help="file for a profile of the node (the CPU time then tells nothing)")
-    parser.add_argument("--json", type=Path)
-    chosen = parser.parse_args()
-    os.environ.update(ROS_DOMAIN_ID=str(DOMAIN), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
-    found = []
-    print("| scene | CPU %, median | best | floor | at most | factor | MB | start, CPU s | load |")
-    print("|---|---:|---:|---:|---:|---:|---:|---:|---:|")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--seconds", type=float, default=10.0, help="seconds of each measurement")
+    parser.add_argument("--rounds", type=int, default=3, help="rounds; the figures are their medians")
+    parser.add_argument("--warm-up", type=float, default=3.0, help="seconds before the measurement")
+    parser.add_argument("--only", default="", metavar="WORDS", help="scenes with this in their names")
+    parser.add_argument("--profile", metavar="FILE", help="write a profile of the node (its CPU time is then wrong)")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure all scenes."""
+    rows, goals = [], []
     for scene in SCENES:
-        if chosen.only in scene.name:
-            rounds = [measure(scene, chosen.seconds, chosen.profile) for _ in range(chosen.rounds)]
-            one = summary(scene, rounds)
-            found.append(one)
-            print("|", " | ".join("" if value is None else str(value) for value in one.values()), "|", flush=True)
-    print(json.dumps(found))
-    if chosen.json is not None:
-        chosen.json.write_text(json.dumps(found, indent=2), encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()
+        if options.only in scene.name:
+            cells = summary([run(scene, options) for _ in range(options.rounds)])
+            rows.append([scene.name, *cells])
+            if scene.most_percent is not None:
+                goals.append(Goal(scene.name, scene.most_percent, cells[0], "% CPU"))
+    columns = ["", "CPU, %", "best", "floor", "factor", "MB", "start, CPU s"]
+    return Report([Table(columns, rows)], goals)

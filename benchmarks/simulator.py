@@ -1,45 +1,64 @@
-"""Robot-steps a second, ours and Enki's, on the same scene in turn.
+"""The world alone: processor time per robot-step, beside Enki and beside an earlier checkout.
 
-    python benchmarks/simulator.py [--rounds 5] [--robots 1 10 100 400] [--json FILE]
+A robot-step is 30 ms of one robot: three steps of physics, then the sensors, of which "every step" and "10 Hz" measure
+the seven proximity and two ground sensors every 30 ms, as Enki does, or at the rate of the robot's firmware. "9 rays"
+is "every step" with the proximity model `cone`. "all" runs every sensor of the robot at its rate and reads every
+reading. Everything runs in turn on the same scene, each in a process of its own; the figure is the median of the
+rounds.
 
-A robot-step is 30 ms of one robot, as Aseba Playground has it: three steps of physics, seven proximity and two ground
-sensors. "every step" senses every 30 ms as Enki does, "10 Hz" at the rate of the robot's firmware; "all" runs all
-sensors of the robot at their rates and looks at every reading. Processor time of one thread, median of the rounds.
-Without Debian's `libenki-dev` or g++ only ours is measured.
+Enki is measured where Debian's `libenki-dev` and g++ are installed. `--against PATH` measures another checkout, too.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import statistics
-import sys
+import contextlib
+import itertools
 import time
 from collections.abc import Callable
-from pathlib import Path
+from typing import Any
 
-from simulator_enki import Enki, driver
-from simulator_scene import dense_scene, targets
-
+from benchmarks.lib import rounds
+from benchmarks.lib.report import Cell, Goal, Report, Table
+from benchmarks.lib.scenes import dense_scene, targets
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.model.clock import TICK_NS
-from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
 
+QUICK = {"rounds": 1, "robots": [1, 14], "steps": 33}
+ROBOTS = [1, 2, 4, 8, 10, 13, 14, 20, 50, 100, 400]
 TICKS = 3
-"""Ticks of our world in a step of 30 ms."""
+"""Ticks of the world in a robot-step."""
+TICK_NS = 10_000_000
+BURST = 33
+"""Steps between new targets, a second: no robot leans on a wall for long."""
 SENSED = ("proximity", "ground")
-MODES: dict[str, dict[str, object]] = {
+MODES: dict[str, dict[str, Any]] = {
     "every step": {"periods_ns": dict.fromkeys(SENSED, TICKS * TICK_NS)},
-    "9 rays": {"periods_ns": dict.fromkeys(SENSED, TICKS * TICK_NS), "proximity_model": "cone"},
     "10 Hz": {"periods_ns": dict.fromkeys(SENSED, 100_000_000)},
+    "9 rays": {"periods_ns": dict.fromkeys(SENSED, TICKS * TICK_NS), "proximity_model": "cone"},
     "all": {},
 }
+EACH, FIRMWARE, RAYS, ALL = MODES
+ENKI = "Enki"
+LIMITS_US = {1: 100.0, 10: 30.0}
+"""Most microseconds per robot-step, "every step", by the number of robots."""
+SPEED_UP = {20: 2.0}
+"""Least speed-up of "all" to the other checkout."""
+ENKI_RATIOS = {(100, EACH): 1.0, (400, EACH): 9.0, (100, FIRMWARE): 1.3, (400, FIRMWARE): 13.0}
+"""Least speed in units of Enki's."""
 
 
-def ours(scene: Playground, mode: str) -> Callable[[int], float]:
-    """Runs new targets and so many steps of 30 ms; gives the seconds of processor time."""
-    world = World(scene, **MODES[mode])  # type: ignore[arg-type]  # the table's values are of several types
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
+    parser.add_argument("--robots", type=int, nargs="+", default=ROBOTS, help="numbers of robots")
+    parser.add_argument("--steps", type=int, default=6600, help="robot-steps of a round")
+    rounds.add_against(parser)
+
+
+def world_of(count: int, mode: str) -> Callable[[int], float]:
+    """Return what sets new targets, runs so many steps and returns the seconds of processor time (for a worker)."""
+    world = World(dense_scene(count), **MODES[mode])
     dice = targets()
 
     def run(steps: int) -> float:
@@ -48,7 +67,7 @@ def ours(scene: Playground, mode: str) -> Callable[[int], float]:
         begun = time.process_time()
         for _ in range(steps * TICKS):
             result = world.step()
-            if mode == "all":
+            if mode == ALL:
                 for _reading in result.readings:
                     pass
         return time.process_time() - begun
@@ -56,49 +75,79 @@ def ours(scene: Playground, mode: str) -> Callable[[int], float]:
     return run
 
 
-def measure(count: int, rounds: int) -> dict[str, float]:
-    """Microseconds per robot-step, by mode and for Enki."""
-    scene = dense_scene(count)
-    runs = {mode: ours(scene, mode) for mode in MODES}
-    program = driver()
-    peer = Enki(program, scene) if program is not None else None
-    if peer is not None:
-        runs["Enki"] = peer.run
-    steps = max(33, 6600 // count)
-    spent: dict[str, list[float]] = {name: [] for name in runs}
-    for turn in range(rounds + 1):
-        for name, run in runs.items():
-            # fresh targets every second, so that no robot leans on a wall for long
-            seconds = sum(run(33) for _ in range(steps // 33))
-            if turn > 0:  # the first warms up
-                spent[name].append(seconds / (steps // 33 * 33) / count * 1e6)
-    if peer is not None:
-        peer.close()
-    return {name: statistics.median(values) for name, values in spent.items()}
+def measure_count(count: int, options: argparse.Namespace) -> dict[tuple[str, str], float]:
+    """Return microseconds per robot-step, by (mode, side) and for (Enki, Enki)."""
+    from benchmarks.lib import enki  # other checkouts lack what it imports
+
+    bursts = max(1, options.steps // count // BURST)
+    with contextlib.ExitStack() as stack:
+        runs: dict[tuple[str, str], Callable[[int], float]] = {
+            (mode, side): rounds.started(stack, checkout, "simulator:world_of", count, mode)
+            for mode in MODES
+            for side, checkout in rounds.sides(options).items()
+        }
+        driver = enki.driver()
+        if driver is not None:
+            peer = enki.Enki(driver, dense_scene(count))
+            stack.callback(peer.close)
+            runs[ENKI, ENKI] = peer.run
+
+        def burst(run: Callable[[int], float]) -> Callable[[], float]:
+            return lambda: sum(run(BURST) for _ in range(bursts)) / (bursts * BURST * count) * 1e6
+
+        return rounds.medians(rounds.in_turn({key: burst(run) for key, run in runs.items()}, options.rounds))
 
 
-def table(report: dict[str, dict[str, float]]) -> str:
-    """For people."""
-    lines = [f"{'robots':>6}  {'mode':<12}{'us per robot-step':>18}{'x real time':>12}{'x Enki':>8}"]
-    for count, row in report.items():
-        for name, micros in row.items():
-            ratio = f"{row['Enki'] / micros:8.2f}" if "Enki" in row else ""
-            lines.append(f"{count:>6}  {name:<12}{micros:18.2f}{30_000 / micros / int(count):12.1f}{ratio}")
-    return "\n".join(lines) + "\n"
+def measure(options: argparse.Namespace) -> Report:
+    """Measure every number of robots."""
+    found = {count: measure_count(count, options) for count in options.robots}
+    heads = [str(count) for count in options.robots]
+    tables = [Table(["microseconds per robot-step, robots:", *heads], list(_rows(found)))]
+    ratios = [
+        [mode, *(_ratio(row, (ENKI, ENKI), (mode, rounds.NOW)) for row in found.values())] for mode in (EACH, FIRMWARE)
+    ]
+    if any(ratios[0][1:]):
+        tables.append(Table(["× the speed of Enki, robots:", *heads], ratios))
+    if options.against:
+        speedups = [
+            [mode, *(_ratio(row, (mode, rounds.BEFORE), (mode, rounds.NOW)) for row in found.values())]
+            for mode in MODES
+        ]
+        tables.append(Table(["× the speed of the other commit, robots:", *heads], speedups))
+    return Report(tables, _goals(found))
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--robots", type=int, nargs="+", default=[1, 10, 100, 400])
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there")
-    arguments = parser.parse_args()
-    report = {str(count): measure(count, arguments.rounds) for count in arguments.robots}
-    sys.stdout.write(table(report))
-    if arguments.json is not None:
-        arguments.json.write_text(json.dumps(report, indent=1) + "\n")
+def _rows(found: dict[int, dict[tuple[str, str], float]]) -> Any:
+    for key in next(iter(found.values())):
+        mode, side = key
+        yield [mode if side != rounds.BEFORE else f"{mode}, {side}", *(row[key] for row in found.values())]
 
 
-if __name__ == "__main__":
-    main()
+def _ratio(row: dict[tuple[str, str], float], slow: tuple[str, str], fast: tuple[str, str]) -> Cell:
+    return row[slow] / row[fast] if slow in row else None
+
+
+def _goals(found: dict[int, dict[tuple[str, str], float]]) -> list[Goal]:
+    now, before = rounds.NOW, rounds.BEFORE
+    goals = [
+        Goal(f"{_robots(count)}, every step, per robot-step", limit, found[count][EACH, now], "µs")
+        for count, limit in LIMITS_US.items()
+        if count in found
+    ]
+    totals = [count * row[EACH, now] for count, row in sorted(found.items())]
+    if len(totals) > 1:
+        least = min(after / less for less, after in itertools.pairwise(totals))
+        goals.append(Goal("time of a step with more robots ÷ with fewer, at least", 1.0, least, "×", is_least=True))
+    for count, limit in SPEED_UP.items():
+        if count in found and (ALL, before) in found[count]:
+            ratio = _ratio(found[count], (ALL, before), (ALL, now))
+            goals.append(Goal(f"{_robots(count)}, all sensors, to the other commit", limit, ratio, "×", is_least=True))
+    for (count, mode), limit in ENKI_RATIOS.items():
+        if count in found and (ENKI, ENKI) in found[count]:
+            ratio = _ratio(found[count], (ENKI, ENKI), (mode, now))
+            goals.append(Goal(f"{_robots(count)}, {mode}, to Enki", limit, ratio, "×", is_least=True))
+    return goals
+
+
+def _robots(count: int) -> str:
+    return "one robot" if count == 1 else f"{count} robots"

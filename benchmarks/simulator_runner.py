@@ -1,62 +1,75 @@
-"""How much faster than real time robots run without ROS, with their programs and all their sensors.
+"""World, devices and programs without ROS: how many times real time they run, beside an earlier checkout.
 
-    python benchmarks/simulator_runner.py [--rounds 5] [--json FILE]
-
-One robot follows the line with its program, with the optional WebAssembly engine where wasmtime is installed; or it
-drives there without a program. Twenty robots explore between boxes, each with a program. Processor time of one
-thread, median of the rounds.
+One robot drives on the line without a program, or follows it with its program; twenty robots explore between boxes,
+each with its program; all sensors run. Processor time of one thread; the checkouts take turns, each scene in a process
+of its own, and the figure is the median of the rounds. `--against PATH` measures another checkout, too.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import statistics
-import sys
+import contextlib
 import time
-from pathlib import Path
+from collections.abc import Callable
 
-from simulator_scene import dense_scene
-
+from benchmarks.lib import rounds
+from benchmarks.lib.report import ROOT, Goal, Report, Table
+from benchmarks.lib.scenes import dense_scene
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MotorTargets
 
-BEHAVIOURS = Path(__file__).parents[1] / "thymio_sim_ros" / "device" / "firmware" / "behaviors"
+QUICK = {"rounds": 1, "seconds": 1.0}
+BEHAVIORS = ROOT / "thymio_sim_ros" / "device" / "firmware" / "behaviors"
+LINE = ROOT / "playgrounds" / "line.json"
+
+IDLE, LINE_FOLLOWER, EXPLORERS = "one robot, no program", "one robot follows the line", "20 robots explore"
+SPEED_UP = {LINE_FOLLOWER: 2.5, IDLE: 1.5, EXPLORERS: 4.0}
+"""Least speed-up to the other checkout."""
 
 
-def runners() -> dict[str, Runner]:
-    """What is measured, by what it is called."""
-    _, line = load_playground("line")
-    driving = Runner(line)
-    driving.post("thymio", MotorTargets(200, 150))
-    return {
-        "one robot, no program": driving,
-        "one robot follows the line": Runner(line, read_program(str(BEHAVIOURS / "line_follower.aesl"))),
-        "20 robots explore": Runner(dense_scene(20), read_program(str(BEHAVIOURS / "explorer.aesl"))),
-    }
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--rounds", type=int, default=7, help="rounds; the figures are their medians")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of simulated time, for all robots of a round")
+    rounds.add_against(parser)
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there")
-    arguments = parser.parse_args()
-    factors: dict[str, list[float]] = {}
-    measured = runners()
-    for turn in range(arguments.rounds + 1):
-        for name, runner in measured.items():
-            seconds = 20.0 / len(runner.world.robots)
-            begun = time.process_time()
-            runner.run(seconds)
-            if turn > 0:  # the first warms up
-                factors.setdefault(name, []).append(seconds / (time.process_time() - begun))
-    report = {name: round(statistics.median(values), 1) for name, values in factors.items()}
-    sys.stdout.write("".join(f"{name:<30}{factor:8.1f} x real time\n" for name, factor in report.items()))
-    if arguments.json is not None:
-        arguments.json.write_text(json.dumps(report, indent=1) + "\n")
+def runner_of(scene: str, robot_seconds: float) -> Callable[[], float]:
+    """Return what runs a scene for so long and returns how many times real time that was (for a worker)."""
+    if scene == EXPLORERS:
+        runner = Runner(dense_scene(20), read_program(str(BEHAVIORS / "explorer.aesl")))
+    elif scene == LINE_FOLLOWER:
+        runner = Runner(load_playground(str(LINE))[1], read_program(str(BEHAVIORS / "line_follower.aesl")))
+    else:
+        runner = Runner(load_playground(str(LINE))[1])
+        runner.post("thymio", MotorTargets(200, 150))
+    seconds = robot_seconds / len(runner.world.robots)
+
+    def run() -> float:
+        begun = time.process_time()
+        runner.run(seconds)
+        return seconds / (time.process_time() - begun)
+
+    return run
 
 
-if __name__ == "__main__":
-    main()
+def measure(options: argparse.Namespace) -> Report:
+    """Measure all scenes in turn."""
+    sides = rounds.sides(options)
+    with contextlib.ExitStack() as stack:
+        runs = {
+            (scene, side): rounds.started(stack, checkout, "simulator_runner:runner_of", scene, options.seconds)
+            for scene in SPEED_UP
+            for side, checkout in sides.items()
+        }
+        factors = rounds.medians(rounds.in_turn(runs, options.rounds))
+    if rounds.BEFORE not in sides:
+        return Report([Table(["", "× real time"], [[scene, factors[scene, rounds.NOW]] for scene in SPEED_UP])])
+    ratios = {scene: factors[scene, rounds.NOW] / factors[scene, rounds.BEFORE] for scene in SPEED_UP}
+    rows = [[scene, *(factors[scene, side] for side in sides), ratios[scene]] for scene in SPEED_UP]
+    goals = [
+        Goal(f"{scene}, to the other commit", limit, ratios[scene], "×", is_least=True)
+        for scene, limit in SPEED_UP.items()
+    ]
+    return Report([Table(["× real time", *sides, "ratio"], rows)], goals)

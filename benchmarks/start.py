@@ -1,12 +1,12 @@
 """From the start of `thymio-sim` to its first odometry message in another process: wall and CPU seconds.
 
-Run: python benchmarks/start.py [ROUNDS]. Discovery between processes is part of it and varies by itself
-(a participant seen late costs up to some seconds), hence the median of several rounds.
+Discovery between processes is part of it and varies by itself (a participant seen late costs up to some seconds), hence
+the median of several rounds. Needs ROS.
 """
 
 from __future__ import annotations
 
-import json
+import argparse
 import resource
 import signal
 import statistics
@@ -19,9 +19,11 @@ from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.node import Node
 
+from benchmarks.lib.report import Report, Table
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 from thymio_sim_ros.testing.ros.domain import reserved
 
+QUICK = {"rounds": 1}
 COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(['--headless']))"
 
 
@@ -48,24 +50,20 @@ def one_round(domain: int) -> tuple[float, float]:
     return seen[0] - begin, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def main() -> None:
-    """Print the rounds and their medians as JSON."""
-    rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add options."""
+    parser.add_argument("--rounds", type=int, default=5, help="rounds; the figures are their medians")
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure the rounds."""
     measured = []
-    for _ in range(rounds):
+    for _ in range(options.rounds):
         with reserved() as domain:  # no test that runs meanwhile hears this suite
             measured.append(one_round(domain))
     walls, cpus = zip(*measured, strict=True)
-    print(
-        json.dumps(
-            {
-                "first_odometry_wall_s": [round(wall, 2) for wall in walls],
-                "median_wall_s": round(statistics.median(walls), 2),
-                "median_cpu_s": round(statistics.median(cpus), 2),
-            }
-        )
-    )
-
-
-if __name__ == "__main__":
-    main()
+    rows = [
+        [name, statistics.median(found), min(found), max(found)]
+        for name, found in (("first odometry, s", walls), ("CPU of the suite, s", cpus))
+    ]
+    return Report([Table(["", "median", "best", "worst"], rows)])

@@ -17,7 +17,7 @@ __all__ = ["banner", "qr_code", "startup_notice"]
 _NONE = "none (started without it)"
 _HUNDRED_ROBOTS_S = 67.0
 """Start time of a hundred robots in one process, where DDS compares each of their topics with all others; it grows with
-the square of their number (measured, docs/performance.md)."""
+the square of their number (measured, docs/performance-method.md)."""
 _LONG_START_S = 5.0
 
 

@@ -3,8 +3,8 @@
 By default Fast DDS compares every endpoint with all others of its process and allocates memory for a hundred messages
 of each: a hundred robots took 19 s of CPU time and 770 MB. With `alone.xml` the endpoints of a process do not match
 each other, which is correct for a node that does not subscribe to its own topics, and memory is allocated on demand:
-3.4 s and 450 MB (measured, docs/performance.md). Other DDS implementations do not read the file, and a profile of the
-user has priority.
+3.4 s and 450 MB (measured, docs/performance-method.md). Other DDS implementations do not read the file, and a profile
+of the user has priority.
 """
 
 from __future__ import annotations

@@ -84,7 +84,7 @@ def all_sensors() -> tuple[Sensor, ...]:
 
 
 def _check(sensor: Sensor) -> None:
-    """Raise ValueError for a sensor of another package that measures all robots at once: errors would stop the world."""
+    """Raise ValueError for a sensor of another package with `prepare_all`, whose errors would stop the world."""
     if sensor.prepare_all is not None:
         raise ValueError(f"sensor {sensor.name}: found prepare_all, expected measure in a package other than this")
 

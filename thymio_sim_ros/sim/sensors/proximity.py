@@ -17,7 +17,7 @@ An operator can override counts (`stimuli/sensor_override.py`).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from aseba_vm.kernel.types import Floats, Ints, kernel
 from thymio_sim_ros.sim.model import robot_constants, units
@@ -45,6 +45,8 @@ _FAR = math.inf
 _RAYS = {"default": 3, "enki": 3, "cone": 9}
 _HALF_CONE_RAD = robot_constants.PROXIMITY_HALF_CONE_RAD
 _COS_CONE = math.cos(_HALF_CONE_RAD)
+_DISTANCES_M = (math.inf, *map(units.proximity_distance, range(1, PROXIMITY_FULL + 1)))
+"""The distance of a wall across the axis, by count."""
 _ANGLES_RAD = {
     model: tuple(-_HALF_CONE_RAD + 2 * _HALF_CONE_RAD * ray / (count - 1) for ray in range(count))
     for model, count in _RAYS.items()
@@ -134,17 +136,12 @@ def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
         now_ns, found, chosen = batch.now_ns, counts.tolist(), [override.proximity for override in overrides]
 
         def make(robot: int) -> ProximityReading:
-            words = overridden(found[robot], chosen[robot])
-            return ProximityReading(now_ns, tuple(words), _ranges(words))
+            words = tuple(overridden(found[robot], chosen[robot]))
+            return ProximityReading(now_ns, words, tuple([_DISTANCES_M[word] for word in words]))
 
         return LazyReadings(len(batch), make)
 
     return measure
-
-
-def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
-    """Return the distances in m for counts; inf for 0."""
-    return tuple([units.proximity_distance(count) if count else math.inf for count in counts])
 
 
 SENSOR = Sensor(

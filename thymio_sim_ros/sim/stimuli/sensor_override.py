@@ -19,13 +19,13 @@ class SensorOverrideState:
     ground: tuple[int, ...] = ()
 
 
-def overridden(measured: Sequence[int], override: Sequence[int]) -> list[int]:
+def overridden(measured: Sequence[int], override: Sequence[int]) -> Sequence[int]:
     """Return the counts of sensors: the override where there is one, otherwise the measured value.
 
     `override` is empty or has one count per sensor.
     """
     if not override:
-        return list(measured)
+        return measured
     return [own if other < 0 else other for own, other in zip(measured, override, strict=True)]
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import atexit
 import shutil
 import subprocess
 import tempfile
 from functools import cache
 from pathlib import Path
 
-from simulator_scene import side_m
-
+from benchmarks.lib.scenes import side_m
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.primitives import Box
 from thymio_sim_ros.sim.playground.reader import Playground
@@ -21,11 +21,13 @@ _TEXELS = 512
 
 @cache
 def driver() -> Path | None:
-    """The compiled driver; None where headers, library or compiler are missing."""
+    """Return the compiled driver; None where headers, library or compiler are missing."""
     compiler = shutil.which("g++")
     if compiler is None or not _HEADER.is_file():
         return None
-    program = Path(tempfile.mkdtemp()) / "enki"
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder)
+    program = Path(folder) / "enki"
     command = [compiler, "-O2", "-w", "-o", str(program), str(_SOURCE), "-lenki"]
     return program if subprocess.run(command, check=False).returncode == 0 else None
 
@@ -35,11 +37,11 @@ class Enki:
 
     def __init__(self, program: Path, scene: Playground) -> None:
         self._process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1)
-        self._tell(_describe(scene))
+        self._send(_describe(scene))
 
     def run(self, steps: int) -> float:
-        """New targets, then so many steps; seconds of processor time."""
-        self._tell(f"{steps}\n")
+        """Set new targets and run so many steps; return the seconds of processor time."""
+        self._send(f"{steps}\n")
         assert self._process.stdout is not None
         return float(self._process.stdout.readline())
 
@@ -47,14 +49,14 @@ class Enki:
         """End the process."""
         self._process.communicate()
 
-    def _tell(self, text: str) -> None:
+    def _send(self, text: str) -> None:
         assert self._process.stdin is not None
         self._process.stdin.write(text)
         self._process.stdin.flush()
 
 
 def _describe(scene: Playground) -> str:
-    """The driver's input: side and ground, then things and robots, in cm."""
+    """Return the driver's input: side and ground, then objects and robots, in cm."""
     side = side_m(len(scene.robots))
     ground = Ground(scene.floors, scene.paints)
     step = side / _TEXELS

@@ -1,4 +1,4 @@
-"""Attacks on the bridge for `bridge_fairness.py`, run as: python benchmarks/bridge_attacks.py NAME PORT
+"""Attacks on the bridge for `bridge_fairness.py`, run as: python -m benchmarks.lib.bridge_attacks NAME PORT
 
 An attack is a generator of bytes that its clients send again and again.
 """
@@ -14,10 +14,11 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 
-from bridge_peer import BINARY, PING, PONG, TEXT, Peer, frame, request, said
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.serialization import serialize_message
+
+from benchmarks.lib.bridge_client import BINARY, PING, PONG, TEXT, Peer, frame, request, said
 
 POSES = "/simulator/get_poses"
 FRAME_BYTES = 4 * 1000 * 1000

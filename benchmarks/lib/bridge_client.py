@@ -2,18 +2,70 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import json
+import os
 import socket
 import struct
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
-from foxglove_throughput import connected, frame_at
-
+SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"]
 ANSWER_S = 20.0
 START_S = 60.0
 TEXT, BINARY, PING, PONG = 0x81, 0x82, 0x89, 0x8A
+
+
+def connected(port: int) -> socket.socket:
+    """A connection after its handshake, of which no byte of a frame is read."""
+    while True:
+        try:
+            peer = socket.create_connection(("127.0.0.1", port))
+            break
+        except ConnectionRefusedError:
+            time.sleep(0.05)
+    key = base64.b64encode(os.urandom(16)).decode()
+    peer.sendall(
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        + f"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}\r\n".encode()
+        + f"Sec-WebSocket-Protocol: {', '.join(SUBPROTOCOLS)}\r\n\r\n".encode()
+    )
+    answer = bytearray()
+    while not answer.endswith(b"\r\n\r\n"):
+        answer += peer.recv(1)
+    return peer
+
+
+def frames(peer: socket.socket) -> Iterator[tuple[int, memoryview]]:
+    """Opcode and bytes of each frame, until the connection ends."""
+    data = b""
+    while True:
+        start, view = 0, memoryview(data)
+        while (found := frame_at(data, start)) is not None:
+            begin, end = found
+            yield data[start] & 0x0F, view[begin:end]
+            start = end
+        try:
+            more = peer.recv(1 << 18)
+        except OSError:
+            return
+        if not more:
+            return
+        data = data[start:] + more
+
+
+def frame_at(data: bytes, start: int) -> tuple[int, int] | None:
+    """Where the contents of the frame lie; None: it is not complete."""
+    if len(data) < start + 2:
+        return None
+    size, begin = data[start + 1], start + 2
+    if size >= 126:
+        begin += 2 if size == 126 else 8
+        if len(data) < begin:
+            return None
+        size = int.from_bytes(data[start + 2 : begin], "big")
+    return (begin, begin + size) if begin + size <= len(data) else None
 
 
 def frame(kind: int, body: bytes) -> bytes:

@@ -47,7 +47,7 @@ int main() {
         world.addObject(object);
     }
     uint32_t dice = 1;
-    const auto target = [&dice] {  // the commands of benchmarks/simulator_scene.py
+    const auto target = [&dice] {  // the commands of benchmarks/lib/scenes.py
         dice = dice * 1664525u + 1013904223u;
         return static_cast<double>((dice >> 16) % 601) - 100.0;
     };

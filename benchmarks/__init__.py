@@ -1,0 +1,1 @@
+"""Benchmarks: one module for each, run by `python -m benchmarks` (docs/performance-method.md)."""

@@ -1,0 +1,1 @@
+"""What several benchmarks use; modules in this folder are no benchmarks."""
