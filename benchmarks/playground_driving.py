@@ -38,6 +38,7 @@ from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import world as world_module
 from thymio_sim_ros.sim.model.readings import ProximityReading
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_HALF_CONE_RAD as HALF_CONE_RAD
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors, proximity
 
@@ -210,6 +211,9 @@ class Grid:
         return [number for number, period_ns in periods if now_ns // period_ns > (now_ns - STEP_NS) // period_ns]
 
 
+MODEL = PROXIMITY_MODELS.index("enki")
+
+
 def remembering() -> Sensor:
     """The proximity sensor of model "enki", for one robot, whose rays keep old distances."""
     kept = [[math.inf] * 3 for _ in proximity.PROXIMITY_POSES]
@@ -229,11 +233,11 @@ def remembering() -> Sensor:
                 counts.append(0)
                 continue
             kept[number] = [new if new < math.inf else old for new, old in zip(distances, kept[number], strict=True)]
-            value = proximity.response(kept[number], "enki") + view.noise.gauss(proximity.PROXIMITY_NOISE)
+            value = proximity.response(kept[number], 0, 3, (), MODEL) + view.noise.gauss(proximity.PROXIMITY_NOISE)
             counts.append(round(max(0.0, min(4505.0, value))))
         return ProximityReading(view.now_ns, tuple(counts), (math.inf,) * len(counts))
 
-    return dataclasses.replace(proximity.SENSOR, measure=measure, measure_all=None)
+    return dataclasses.replace(proximity.SENSOR, measure=measure, prepare_all=None)
 
 
 def drive_here(world: Playground, program: ThymioProgram, seconds: float, variant: str) -> list[Sequence[int]]:
