@@ -59,8 +59,8 @@ def test_a_sound_that_is_replaced_has_not_finished() -> None:
 
 def test_the_robot_s_own_sound_plays_note_after_note() -> None:
     command = PlaySystemSound(3)
-    column_state = [play([command], ticks * BLOCK_NS + 10_000_000).note for ticks in (0, 7, 20)]
-    assert [note.frequency_hz for note in column_state if note] == [330, 440, 660]
+    notes = [play([command], ticks * BLOCK_NS + 10_000_000).note for ticks in (0, 7, 20)]
+    assert [note.frequency_hz for note in notes if note] == [330, 440, 660]
     assert play([command], 27 * BLOCK_NS + 10_000_000).finished == 1
 
 

@@ -66,9 +66,9 @@ class LoudspeakerState:
         """Return the level near the robot; 0 is silent."""
         return SPEAKER_SHARE * self.sounding_level
 
-    def play(self, column_state: tuple[Note, ...], samples: bytes, now_ns: int) -> None:
+    def play(self, notes: tuple[Note, ...], samples: bytes, now_ns: int) -> None:
         """Start to play notes or samples; without either, be silent."""
-        self.note, self._waiting = (column_state[0], column_state[1:]) if column_state else (None, ())
+        self.note, self._waiting = (notes[0], notes[1:]) if notes else (None, ())
         self.samples = samples
         self.began_ns = now_ns
         self.changes += 1
@@ -95,9 +95,9 @@ class LoudspeakerState:
         self.changes += 1
         self._measure(now_ns)
 
-    def _next(self, column_state: tuple[Note, ...], now_ns: int) -> None:
-        self.finished += not column_state
-        self.play(column_state, b"", now_ns)
+    def _next(self, notes: tuple[Note, ...], now_ns: int) -> None:
+        self.finished += not notes
+        self.play(notes, b"", now_ns)
 
     def _measure(self, now_ns: int) -> None:
         first = (now_ns - self.began_ns) // SAMPLE_NS

@@ -107,7 +107,7 @@ def obstacle_of(solid: Solid) -> Obstacle:
 
 
 class Surroundings:
-    """The obstacles around a robot. Batches compute equal values with `raycast.batch`."""
+    """The obstacles around a robot, for sensors that measure robot by robot; `raycast.rays` has kernels for all."""
 
     __slots__ = ("_obstacles",)
 
