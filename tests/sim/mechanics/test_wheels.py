@@ -26,7 +26,7 @@ class RollingWheels(Wheels):
         self.want(left_m_s, right_m_s)
         self._tick[0] += 1
         self._keys.is_on[0] = is_noisy
-        motor_control.drive(self.body.wheels, self._keys, self._tick)
+        motor_control.drive(self.body.wheels, self._keys, self._tick, [0])
 
     def roll(self, left_m_s: float, right_m_s: float) -> None:
         self.body.wheels.covered[0], self.body.wheels.covered[1] = left_m_s, right_m_s

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import pymunk
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, box, make, pose_close, run, send
-from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
+from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.physics.contact import SUB_STEPS
 from thymio_sim_ros.sim.world import World
 
 
@@ -128,3 +130,37 @@ def test_two_driving_robots_meet() -> None:
     contacts = [contact for step in run(world, 3.0) for contact in step.contacts]
     assert contacts[0].is_new
     assert world.robots["thymio"].pose.x_m == pytest.approx(0.42, abs=0.01)
+
+
+def test_while_nothing_can_move_the_engine_rests(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = []
+    step = pymunk.Space.step
+
+    def counted(space: pymunk.Space, dt: float) -> None:
+        steps.append(dt)
+        step(space, dt)
+
+    monkeypatch.setattr(pymunk.Space, "step", counted)
+
+    def stepped(seconds: float) -> bool:
+        steps.clear()
+        run(world, seconds)
+        return len(steps) == round(seconds / 0.01) * SUB_STEPS
+
+    light = {**box(0.2, 0.5, 0.05, 0.05), "name": "light", "mass_kg": 0.02}
+    world = quiet({**box(0.31, 0.0, 0.02, 1.0), "name": "wall"}, light)
+    run(world, 0.5)
+    assert not stepped(1.0)
+    assert steps == []
+    send(world, MotorTargets(200, 200))
+    assert stepped(0.5)
+    send(world, MotorTargets(0, 0))
+    run(world, 0.5)
+    assert not stepped(0.1)
+    send(world, MoveRobot(0.0, 0.0, 1.0))
+    assert not stepped(0.1)
+    assert steps  # a robot that was placed may touch something
+    world.post("light", MoveObject(-1.0, 0.0, 0.0))
+    send(world, MoveRobot(-0.5, 0.0, 0.0))
+    run(world, 0.5)
+    assert not stepped(0.1)

@@ -6,12 +6,15 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import chain
 from typing import Any, TypeVar
 
+from aseba_vm.kernel.types import Ints, kernel
 from thymio_sim_ros.sim.batch.batch_view import BatchView, Rows, keys_of
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport
-from thymio_sim_ros.sim.mechanics import motor_control, wheels
+from thymio_sim_ros.sim.mechanics import motor_control
 from thymio_sim_ros.sim.mechanics.edge_fall import list_unsafe
+from thymio_sim_ros.sim.mechanics.wheels import roll
 from thymio_sim_ros.sim.model.noise import tick_number
 from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
 from thymio_sim_ros.sim.raycast.raycaster import Fan, Raycaster, Values
@@ -24,6 +27,13 @@ Measure = Callable[[], Sequence[Reading | None]]
 
 _SLIP_USER = "motors"
 """Name under which wheels draw the random numbers of their slip."""
+
+
+@kernel
+def finish_tick(robots: RobotState, wheels: WheelState, unsafe: Ints, count: Ints) -> None:
+    """After a tick: roll the wheels, and list the robots that may have left the floor."""
+    roll(robots, wheels)
+    list_unsafe(robots, unsafe, count)
 
 
 class RobotBatch:
@@ -42,9 +52,8 @@ class RobotBatch:
         self.tick = memory.array(1, "int32")
         self._unsafe, self._unsafe_count = memory.array(bodies.state.count, "int32"), memory.array(1, "int32")
         slip = keys_of(memory, self._robots, _SLIP_USER, shared, bodies.state.count)
-        self._drive = memory.bind(motor_control.drive, bodies.wheels, slip, self.tick)
-        self._roll = memory.bind(wheels.roll, bodies.state, bodies.wheels)
-        self._list_unsafe = memory.bind(list_unsafe, bodies.state, self._unsafe, self._unsafe_count)
+        self._drive = memory.bind(motor_control.drive, bodies.wheels, slip, self.tick, bodies.moving)
+        self._finish_tick = memory.bind(finish_tick, bodies.state, bodies.wheels, self._unsafe, self._unsafe_count)
         self._raycaster: Raycaster | None = None
         self._views: dict[str, BatchView] = {}
         sensors = self._robots[0].sensors if self._robots else ()
@@ -99,8 +108,7 @@ class RobotBatch:
     def move(self, floor_support: FloorSupport) -> tuple[Contact, ...]:
         """Move all bodies by a tick; robots without floor under their origin fall. Returns the contacts."""
         contacts = self.shared.physics.step()
-        self._roll()
-        self._list_unsafe()
+        self._finish_tick()
         # A robot is checked again only when it has moved by the distance to the edge that was found last.
         if self._unsafe_count[0]:
             for index in self._unsafe[: self._unsafe_count[0]].tolist():

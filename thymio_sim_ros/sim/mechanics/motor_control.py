@@ -49,8 +49,12 @@ _LEAST_SLIP, _MOST_SLIP = robot_constants.SLIP
 
 
 @kernel
-def drive(wheels: WheelState, keys: NoiseKeys, tick: Ints) -> None:
-    """Before a tick: set the speeds of all wheels; `tick[0]` is its number, `keys` are those of the slip."""
+def drive(wheels: WheelState, keys: NoiseKeys, tick: Ints, moving: Ints) -> None:
+    """Before a tick: set the speeds of all wheels, and `moving[0]` to whether one of them is not 0.
+
+    `tick[0]` is the number of the tick, `keys` are those of the slip.
+    """
+    moving[0] = 0
     for wheel in range(wheels.count):
         robot = wheel >> 1
         speed = wheels.wanted[wheel]
@@ -60,6 +64,8 @@ def drive(wheels: WheelState, keys: NoiseKeys, tick: Ints) -> None:
         if keys.is_on[robot] == 1:
             share = uniform(keys.key_1[robot], keys.key_2[robot], tick[0], wheel & 1)
             slip = _LEAST_SLIP + (_MOST_SLIP - _LEAST_SLIP) * share
+        if speed != 0.0:
+            moving[0] = 1
         wheels.aimed[wheel] = min(max(speed, -_LIMIT_M_S), _LIMIT_M_S)
         wheels.ground[wheel] = min(max(speed * slip, -_LIMIT_M_S), _LIMIT_M_S)
 

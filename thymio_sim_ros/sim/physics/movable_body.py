@@ -12,7 +12,6 @@ from typing import Any
 
 import pymunk
 
-from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Disc, Solid
 from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE
@@ -24,15 +23,10 @@ __all__ = ["AT_REST_M_S", "MovableBody"]
 _GRAVITY_M_S2 = 9.81
 AT_REST_M_S = 1e-6
 """Slower than this, at its rim too, is at rest."""
-_FAST_M_S = 2.0 * robot_constants.MAX_SPEED_M_S
-"""Faster than this, robots must not rely on it."""
 
 
 class MovableBody:
-    """One movable solid. Invariant: `pose` is the body's after the last tick; it changes only when it moves.
-
-    `is_fast` when it may hit a robot that has not looked round for a while (`quiet.OBJECT_SPEED_FACTOR`).
-    """
+    """One movable solid. Invariant: `pose` is the body's after the last tick; it changes only when it moves."""
 
     __slots__ = (
         "_moved",
@@ -40,7 +34,6 @@ class MovableBody:
         "_solid",
         "body",
         "is_fallen",
-        "is_fast",
         "is_moving",
         "joints",
         "pose",
@@ -54,7 +47,7 @@ class MovableBody:
         load = solid.load
         assert load is not None
         self._solid = solid
-        self.is_moving = self.is_fast = self.is_fallen = False
+        self.is_moving = self.is_fallen = False
         self._obstacle: Obstacle | None = None
         outline = solid.outline
         self.reach_m = outline.reach_m
@@ -101,7 +94,7 @@ class MovableBody:
 
     def fall(self) -> None:
         """Fall: nothing touches or sees it until `place`."""
-        self.is_fallen, self.is_moving, self.is_fast = True, False, False
+        self.is_fallen, self.is_moving = True, False
         self._moved.add(self)
 
     def end_tick(self) -> None:
@@ -113,7 +106,6 @@ class MovableBody:
     def finish_sub_step(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
         """Update pose and flags from the state of the body (m, rad, s); stop it below `AT_REST_M_S`."""
         speed = math.hypot(vx, vy)
-        self.is_fast = speed > _FAST_M_S
         speed += abs(spin) * self.reach_m
         self.is_moving = speed > AT_REST_M_S
         if not self.is_moving and speed > 0.0:
@@ -122,7 +114,7 @@ class MovableBody:
             self._set_pose(Pose(x_m, y_m, angle))
 
     def _stop(self) -> None:
-        self.is_moving = self.is_fast = False
+        self.is_moving = False
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 
     def _set_pose(self, pose: Pose) -> None:

@@ -27,7 +27,8 @@ class RobotBodies:
     """The robots of a space. pymunk owns poses and velocities; `state` and `wheels` are what the last tick ended with.
 
     A robot that has fallen is not in the space. `memory` holds the records; sensors allocate their arrays behind them,
-    from `first_free` on. All three are replaced when more robots come than there is room for.
+    from `first_free` on. `moving[0]` is set by what drives the wheels: whether one turns. All these are replaced when
+    more robots come than there is room for.
     """
 
     def __init__(self, space: pymunk.Space, bodies: int, obstacles: int, robots: int) -> None:
@@ -41,10 +42,10 @@ class RobotBodies:
         """
         self._space, self._others, self._obstacles = space, bodies, obstacles
         self._robots: list[RobotBody] = []
+        self._reader = BodyReader(space)
+        self._order = -1
         self._held: dict[RobotBody, None] = {}
         """Robots that are in contact or were in this tick."""
-        self.reader = BodyReader(space)
-        self._order = -1
         self._allocate(max(1, robots))
 
     def __iter__(self) -> Iterator[RobotBody]:
@@ -101,6 +102,11 @@ class RobotBodies:
             if not robot.touching:
                 del self._held[robot]
 
+    @property
+    def are_still(self) -> bool:
+        """Whether no wheel turns and no robot touches anything."""
+        return self.moving[0] == 0 and not self._held
+
     def push(self) -> None:
         """Before a sub-step: write speeds, or in contact forces, to the bodies."""
         self._push()
@@ -129,14 +135,14 @@ class RobotBodies:
         return tuple(contact for robot in touching for contact in robot.touching.values())
 
     def _read(self) -> None:
-        reader = self.reader
+        reader = self._reader
         reader.read()
         if reader.order != self._order:
             self._order = reader.order
             standing = [robot for robot in self._robots if not robot.is_fallen]
             rows = reader.rows([robot.body for robot in standing])
             self._rows[[robot.index for robot in standing]] = rows
-        self._bodies[: len(reader.state)] = reader.state
+        self._poses[: len(reader.state)] = reader.state
 
     def _attach(self) -> None:
         for index, robot in enumerate(self._robots):
@@ -160,11 +166,12 @@ class RobotBodies:
         )
         self.memory = memory
         self.state, self.wheels = RobotState(memory, count), WheelState(memory, 2 * count)
-        orders, self._bodies, self._rows, self._earlier = (memory.array(*shape) for shape in shapes)
+        orders, self._poses, self._rows, self._earlier = (memory.array(*shape) for shape in shapes)
+        self.moving = memory.array(1, "int32")
         self.first_free = memory.used
         self._writer = BodyWriter(orders)
         self._order = -1
         records = self.state, self.wheels
         self._push = memory.bind(driving.push, *records, orders)
-        self._read_motion = memory.bind(driving.read_motion, *records, self._rows, self._bodies, self._earlier)
-        self._read_poses = memory.bind(driving.read_poses, *records, self._rows, self._bodies)
+        self._read_motion = memory.bind(driving.read_motion, *records, self._rows, self._poses, self._earlier)
+        self._read_poses = memory.bind(driving.read_poses, *records, self._rows, self._poses)

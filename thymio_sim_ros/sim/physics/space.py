@@ -131,6 +131,7 @@ class Physics:
         if was_fallen:
             self._list_movers()
         self._broadphase.invalidate_movers()
+        self._was_still = False
 
     @property
     def objects(self) -> tuple[MovableBody | DoorBody, ...]:
@@ -139,6 +140,9 @@ class Physics:
 
     def step(self) -> tuple[Contact, ...]:
         """Advance by one tick; returns the contacts at its end, by robot and in the order in which they began."""
+        was_still, self._was_still = self._was_still, self._is_still
+        if was_still and self._was_still:
+            return ()
         self._broadphase.invalidate_movers()
         self._door_controller.begin_tick(self._broadphase)
         self.robots.begin_tick()
@@ -151,6 +155,15 @@ class Physics:
             movable.end_tick()
         self._door_controller.end_tick(self._space)
         return self.robots.contacts()
+
+    @property
+    def _is_still(self) -> bool:
+        """Whether nothing has moved in the last tick and nothing will in the next."""
+        return (
+            self.robots.are_still
+            and self._door_controller.are_still
+            and not any(movable.is_moving for movable in self._movables.values())
+        )
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """Return the obstacles within `reach_m` of a robot's origin that are at least `height_m` high.
@@ -178,7 +191,8 @@ class Physics:
         return Surroundings(near)
 
     def _list_movers(self) -> None:
-        """Update the list of moving bodies in the broadphase."""
+        """Update the list of moving bodies in the broadphase: a body has come or gone."""
+        self._was_still = False
         movers: list[Mover] = [robot for robot in self.robots if not robot.is_fallen]
         movers += [movable for movable in self._movables.values() if not movable.is_fallen]
         self._broadphase.replace_movers([*movers, *self.doors.values()])
