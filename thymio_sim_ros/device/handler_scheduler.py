@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from aseba_vm import VirtualMachine
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.event_queue import EventQueue, GlobalEvent
 from thymio_sim_ros.device.firmware.services import FirmwareServices
 from thymio_sim_ros.device.local_events import FIRST_LOCAL_EVENT, LocalEvents
@@ -32,13 +33,17 @@ class HandlerScheduler:
         network_events: NetworkEvents,
         services: FirmwareServices,
         meter: LoadMeter,
+        due: DueTime,
     ) -> None:
-        """`services` have the number of the robot, `meter` the costs of native calls and events."""
+        """`services` have the number of the robot, `meter` the costs of native calls and events.
+
+        Periods of timers to be read make `due` now.
+        """
         self.event = ""
         """Name of the event of the last handler started, or INIT."""
         self._vm, self._queue, self._variables = vm, queue, variables
         self._local_events, self._network_events = local_events, network_events
-        self._services, self._meter = services, meter
+        self._services, self._meter, self._due = services, meter, due
         self._handler_start = 0
         """Value of `vm.instructions` at the start of the handler."""
         self._periods = vm.target.addresses["timer.period"]
@@ -69,6 +74,7 @@ class HandlerScheduler:
         """
         if not self.is_busy:
             return
+        self._variables.refresh()
         self._variables.count_write()
         vm, queue, meter = self._vm, self._queue, self._meter
         handler_budget = queue.policy.handler_budget
@@ -104,6 +110,7 @@ class HandlerScheduler:
     def invalidate_timer_periods(self) -> None:
         """Make the next `run` read the periods of the timers, even if no event is pending."""
         self._are_periods_read = False
+        self._due.set_now()
 
     def reset(self) -> None:
         """Drop all pending events, stop all timers, and note that the initialization starts."""

@@ -7,7 +7,7 @@ give the same readings bit for bit. One thread may use a world; nothing here loc
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -116,6 +116,8 @@ class World:
         )
         self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
+        self._wanted: Collection[str] | None = None
+        """The sensors wanted in the last step."""
         for start in self.playground.robots:
             self._add(start)
         self._posted: list[tuple[str, Command]] = []
@@ -192,8 +194,15 @@ class World:
         self._posted = [(name, command) for name, command in self._posted if name != robot]
         self._batch = RobotBatch(self._robots.values(), self._shared, rows)
 
-    def step(self) -> StepResult:
-        """Advance the world by one tick."""
+    def step(self, sensors: Collection[str] | None = None) -> StepResult:
+        """Advance the world by one tick.
+
+        `sensors`: names of the sensors whose readings are wanted; None: all. Of the others, those that are stateless do
+        not measure. The run is the same, and so are all readings, whatever is wanted. A recorder wants all.
+        """
+        wanted = None if self.recorder is not None else sensors
+        if wanted is not self._wanted:
+            self._select(wanted)
         self._apply_commands()
         self._batch.act(_TICK_S)
         contacts = self._move_bodies()
@@ -202,6 +211,22 @@ class World:
         if self.recorder is not None:
             self.recorder.record_step((now_ns, tuple(result.readings), contacts))
         return result
+
+    def read(self, robot: str, sensor: str) -> Reading | None:
+        """Return what a stateless sensor measures now. Raises KeyError for an unknown robot or sensor."""
+        return self._batch.read(self._robots[robot], sensor)
+
+    def _select(self, wanted: Collection[str] | None) -> None:
+        self._wanted = wanted
+        self._schedule.select(
+            None
+            if wanted is None
+            else {
+                number
+                for number, sensor in enumerate(self._sensors)
+                if sensor.name in wanted or not sensor.is_stateless
+            }
+        )
 
     def snapshot(self) -> Snapshot:
         """Return the visible state of the world now."""

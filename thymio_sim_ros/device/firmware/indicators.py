@@ -58,6 +58,10 @@ class Indicators:
             is_measured: returns whether a sensor has written an address since the reset.
         """
         self._addresses, self._is_measured = addresses, is_measured
+        self.addresses = tuple(
+            addresses[name][0] for make in INDICATORS for name in make().variables if name in addresses
+        )
+        """Addresses of the variables that they show."""
         self._buttons = [addresses[name][0] for name in ButtonsIndicator.variables]
         self._spans = _memory_spans(addresses)
         self._pressed = [0] * len(self._buttons)

@@ -50,6 +50,7 @@ class RobotBatch:
         sensors = self._robots[0].sensors if self._robots else ()
         self._sensors = [sensor for sensor, _ in sensors]
         self._sensor_names = [sensor.name for sensor in self._sensors]
+        self._numbers = {sensor.name: number for number, sensor in enumerate(self._sensors)}
         self._measure: list[Measure] = []
         for number, sensor in enumerate(self._sensors):
             if sensor.prepare_all is not None:
@@ -125,6 +126,12 @@ class RobotBatch:
                 ]
             columns.append((self._sensor_names[number], column))
         return ReadingTable(self._names, columns)
+
+    def read(self, robot: Robot, sensor: str) -> Reading | None:
+        """Return what a stateless sensor of one robot measures now. Raises KeyError for an unknown sensor."""
+        number = self._numbers[sensor]
+        self.tick[0] = tick_number(self.shared.clock.now_ns)
+        return self._measure[number]()[self._order[robot]]
 
     def _one_by_one(self, number: int) -> Measure:
         """Return a function that measures a sensor of all robots, one after the other."""
