@@ -104,6 +104,7 @@ class World:
         self._clock = SimClock()
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers, len(self.playground.robots))
+        self._movables = tuple(self._physics.movables.values())
         self._robots: dict[str, Robot] = {}
         self._shared = SharedState(
             self._clock,
@@ -275,6 +276,8 @@ class World:
             self.recorder.record(self._clock.now_ns // TICK_NS, event)
 
     def _apply_commands(self) -> None:
+        if not self._posted:
+            return
         posted, self._posted = self._posted, []
         for name, command in posted:
             if isinstance(command, MoveObject):
@@ -286,7 +289,7 @@ class World:
 
     def _move_bodies(self) -> tuple[Contact, ...]:
         contacts = self._batch.move(self._floor_support)
-        for movable in self._physics.movables.values():
+        for movable in self._movables:
             if movable.is_moving:
                 self._drop_over_edge(movable)
         for contact in contacts:

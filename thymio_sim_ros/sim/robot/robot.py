@@ -31,6 +31,7 @@ class SharedState:
     """State that all robots of a world share."""
 
     __slots__ = (
+        "_audible",
         "_sounds",
         "_sounds_ns",
         "busy",
@@ -62,24 +63,31 @@ class SharedState:
         """Robots with plug-ins to update in the next tick."""
         self.woken: dict[Robot, None] = {}
         """Robots with a sensor that was woken."""
+        self._audible: dict[Robot, None] = {}
+        """Robots that may make a sound."""
         self._sounds: list[Sound] = []
         self._sounds_ns = -1
 
     def forget(self, robot: Robot) -> None:
         """Forget a robot that has left the world."""
-        self.busy.pop(robot, None)
-        self.woken.pop(robot, None)
+        for robots in (self.busy, self.woken, self._audible):
+            robots.pop(robot, None)
+
+    def add_audible(self, robot: Robot) -> None:
+        """Note that a robot may make a sound from now on."""
+        self._audible[robot] = None
 
     def sounds(self) -> list[Sound]:
         """Return all sounds now; they are computed once per tick."""
         now_ns = self.clock.now_ns
         if self._sounds_ns != now_ns:
-            self._sounds_ns = now_ns
-            self._sounds = [
-                Sound(robot.pose.x_m, robot.pose.y_m, level)
-                for robot in self.robots.values()
-                for level in robot.sound_levels(now_ns)
-            ]
+            self._sounds_ns, self._sounds = now_ns, []
+            if self._audible:
+                for robot in [robot for robot in self.robots.values() if robot in self._audible]:
+                    levels = robot.sound_levels(now_ns)
+                    self._sounds += [Sound(robot.pose.x_m, robot.pose.y_m, level) for level in levels]
+                    if not levels and not robot.may_sound:
+                        del self._audible[robot]
         return self._sounds
 
 
@@ -193,6 +201,9 @@ class Robot:
         self._list_busy()
         self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
         self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
+        self._sounding = [instance for instance in self.instances if isinstance(instance.state, SoundSource)]
+        self._sound_commands = {kind for kind, (_, state) in self._accepting.items() if isinstance(state, SoundSource)}
+        shared.add_audible(self)
         self.sensors = [(sensor, _PluginView(self, shared, sensor.name)) for sensor in sensors]
         self._wakes: dict[type[Any], list[int]] = {}
         for number, (sensor, _) in enumerate(self.sensors):
@@ -238,6 +249,11 @@ class Robot:
         levels = (source.sound_level(now_ns) for source in self._sound_sources)
         return [level for level in levels if level]
 
+    @property
+    def may_sound(self) -> bool:
+        """Whether it may make a sound later without a command."""
+        return any(instance.is_busy for instance in self._sounding)
+
     def accepts(self, command: object) -> bool:
         """Return whether an actuator or stimulus accepts this type of command."""
         return type(command) in self._accepting
@@ -247,6 +263,8 @@ class Robot:
         plugin, state = self._accepting[type(command)]
         plugin.apply(state, command, self._clock.now_ns)
         self.wake(type(command))
+        if type(command) in self._sound_commands:
+            self._shared.add_audible(self)
         for instance in self.instances:
             if instance.state is state and not instance.is_busy:
                 instance.is_busy = True

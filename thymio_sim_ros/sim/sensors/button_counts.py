@@ -45,7 +45,6 @@ SENSOR = Sensor(
     period_ns=1_000_000_000,
     phase_ns=10_000_000,
     measure=_measure,
-    is_stateless=True,
     wakes_on=(PressButton,),
     aseba=AsebaFace(variables=(("buttons._raw", 5), ("buttons._mean", 5), ("buttons._noise", 5))),
     values=(),
