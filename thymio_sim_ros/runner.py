@@ -73,15 +73,8 @@ class Runner:
         self.devices = {
             name: AsebaDevice(node_id=numbers[name], options=options.for_robot(name, alone=alone)) for name in wanted
         }
-        self.hosts = {name: BehaviorHost(device) for name, device in self.devices.items()}
-        for name, host in self.hosts.items():
-            program = (programs or {}).get(name)
-            if behaviour:
-                host.start(behaviour, program)
-            elif program is not None:
-                host.load(program)
-        for name, device in self.devices.items():
-            device.measure_on_read(self._measuring(name))
+        self._present: dict[str, AsebaDevice] = {}
+        """Devices of the robots that are in the world; the others do not run."""
         self._bound = frozenset(bindings.sensor_names()) if self.devices else frozenset()
         self._on_read = self._bound & {
             sensor.name for sensor in all_sensors() if sensor.is_stateless and sensor.period_ns <= TICK_NS
@@ -92,8 +85,15 @@ class Runner:
         self._wanted_events: list[frozenset[int]] = []
         """The local events that the devices wanted when `_fed` was chosen."""
         self.emitted: list[tuple[str, EmittedEvent]] = []
-        self._present: dict[str, AsebaDevice] = {}
-        """Devices of the robots that are in the world; the others do not run."""
+        for name, device in self.devices.items():
+            device.measure_on_read(self._on_read, self._measuring(name))
+        self.hosts = {name: BehaviorHost(device) for name, device in self.devices.items()}
+        for name, host in self.hosts.items():
+            program = (programs or {}).get(name)
+            if behaviour:
+                host.start(behaviour, program)
+            elif program is not None:
+                host.load(program)
         self._start()
 
     @property
@@ -111,12 +111,16 @@ class Runner:
         result = self.world.step(wanted)
         if self.devices:
             self._update_present_devices()
-            bound, devices, now_ns = self._bound, self._present, result.now_ns
-            for robot, sensor, reading in result.readings:
-                if sensor in bound and robot in devices:
-                    devices[robot].feed(sensor, reading.words, now_ns)
+            if result.readings:
+                self._feed(result)
             self._run_devices()
         return result
+
+    def _feed(self, result: StepResult) -> None:
+        bound, devices = self._bound, self._present
+        for robot, sensor, reading in result.readings:
+            if sensor in bound and robot in devices:
+                devices[robot].feed(sensor, reading.words, result.now_ns)
 
     def run(self, seconds: float) -> None:
         """Run for this many simulated seconds."""

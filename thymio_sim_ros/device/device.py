@@ -9,7 +9,7 @@ settings and radio. A reset clears all variables and switches the lights off.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 from aseba_vm import VirtualMachine
 from aseba_vm.machine.costs import NO_COSTS
@@ -184,17 +184,19 @@ class AsebaDevice:
         """Whether the event of a sensor has a receiver. Raises KeyError for an unknown sensor."""
         return self._inputs.wants_event(sensor)
 
-    def measure_on_read(self, measure: Callable[[], Iterable[tuple[str, Sequence[int]]]]) -> None:
-        """Store the readings of `measure` whenever variables are read, for sensors that are not fed.
+    def measure_on_read(
+        self, sensors: Collection[str], measure: Callable[[], Iterable[tuple[str, Sequence[int]]]]
+    ) -> None:
+        """Store the readings of `measure` whenever variables may be read.
 
-        It returns sensors and their words. Their events are not caused.
+        `measure` returns (sensor, words) for those of `sensors` that are not fed. It causes no events.
         """
 
-        def refresh() -> None:
+        def store() -> None:
             for sensor, words in measure():
                 self._inputs.store(sensor, words)
 
-        self.variables.refresh = refresh
+        self.variables.measure_on_read(self._inputs.addresses_of(sensors), store)
 
     def receives_from(self, sender: AsebaDevice) -> bool:
         """Whether the radios of both devices are set to the same network."""
@@ -217,9 +219,8 @@ class AsebaDevice:
     def advance(self, now_ns: int) -> None:
         """Advance simulated time; the next `run` handles the timer events that are due."""
         before_ns = now_ns - TICK_NS
-        if self._now_ns < before_ns < self._queue.next_timer_ns:
-            # It was not due until now. A timer that starts now counts from the last tick, as if each had been advanced.
-            self._queue.advance(before_ns)
+        if self._scheduler.has_stale_periods and self._now_ns < before_ns < self._queue.next_timer_ns:
+            self._queue.advance(before_ns)  # a timer whose period was changed since counts from then
         if now_ns < self._now_ns:
             self._indicators_ns = self._indicators_free_ns = 0
             self._due.set_now()

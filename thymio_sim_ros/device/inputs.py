@@ -44,6 +44,11 @@ class Inputs:
         """Return the sensors that write variables at these addresses."""
         return frozenset(self._sensor_at[address] for address in addresses if address in self._sensor_at)
 
+    def addresses_of(self, sensors: Collection[str]) -> frozenset[int]:
+        """Return the addresses of all variables of sensors."""
+        runs = (run for sensor in sensors for run in self._sensors[sensor].runs)
+        return frozenset(address for run in runs for address in range(run.address, run.address_end))
+
     def wants_event(self, sensor: str) -> bool:
         """Whether the event of a sensor, or of one of its variables, has a receiver."""
         binding, wanted = self._sensors[sensor], self._local_events.wanted

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from aseba_vm import VirtualMachine
 from thymio_sim_ros.device.due_time import DueTime
@@ -28,8 +28,11 @@ class DeviceVariables:
         """Value of `writes` after the last `clear`."""
         self.sets = 0
         """Number of calls of `set`."""
-        self.refresh: Callable[[], None] = _do_nothing
-        """Called before the variables are read or written: writes those that are measured only then."""
+        self._measure: Callable[[], None] | None = None
+        self._measured: frozenset[int] = frozenset()
+        self._program_words: Sequence[int] = ()
+        self._are_measured_used = False
+        """Whether the program may read variables that are measured when they are read."""
         self._vm, self._due = vm, due
         self._robot_addresses = vm.target.addresses
         self._program_addresses: Mapping[str, tuple[int, int]] = {}
@@ -39,6 +42,24 @@ class DeviceVariables:
         """Replace the variables of the program. The memory stays as it is."""
         self._program_addresses = program.program.addresses
         self._allocated = program.program.allocated
+        self._program_words = program.program.words
+        self._find_uses()
+
+    def measure_on_read(self, addresses: Collection[int], measure: Callable[[], None]) -> None:
+        """Call `measure`, which writes the variables at these addresses, before any variable is read or written."""
+        self._measured, self._measure = frozenset(addresses), measure
+        self._find_uses()
+
+    def refresh(self) -> None:
+        """Write the variables that are measured when they are read."""
+        if self._measure is not None:
+            self._measure()
+
+    def prepare_run(self) -> None:
+        """Get ready for a run of the program."""
+        if self._are_measured_used:
+            self.refresh()
+        self.count_write()
 
     def addresses(self) -> dict[str, tuple[int, int]]:
         """Address and size in words of every variable, including those of the program."""
@@ -82,6 +103,7 @@ class DeviceVariables:
         self.writes += 1
         self._due.set_now()
 
-
-def _do_nothing() -> None:
-    pass
+    def _find_uses(self) -> None:
+        # Code refers to a variable by its address, in the lower 12 bits of an instruction or in a word of its own. Other
+        # words that look like one do no harm.
+        self._are_measured_used = any(word & 0xFFF in self._measured for word in self._program_words)

@@ -104,7 +104,7 @@ class World:
         self._clock = SimClock()
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers, len(self.playground.robots))
-        self._movables = tuple(self._physics.movables.values())
+        self._movables = self._physics.movables
         self._robots: dict[str, Robot] = {}
         self._shared = SharedState(
             self._clock,
@@ -154,7 +154,7 @@ class World:
         Raises KeyError for an unknown name, TypeError for a command that is not accepted, ValueError for a pose that is
         not finite, and PlacementError if the target position is occupied now.
         """
-        if name in self._physics.movables:
+        if name in self._movables:
             if not isinstance(command, MoveObject):
                 raise TypeError(f"an object accepts no {type(command).__name__}")
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
@@ -289,7 +289,7 @@ class World:
 
     def _move_bodies(self) -> tuple[Contact, ...]:
         contacts = self._batch.move(self._floor_support)
-        for movable in self._movables:
+        for movable in self._movables.values():
             if movable.is_moving:
                 self._drop_over_edge(movable)
         for contact in contacts:

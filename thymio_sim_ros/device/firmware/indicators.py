@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+from thymio_sim_ros.device.bindings import memory_spans
 from thymio_sim_ros.device.firmware.indicator_kinds import (
     INDICATORS,
     PROXIMITY_GROUPS,
@@ -25,19 +26,6 @@ PERIOD_NS = 20_000_000
 """Time between two updates."""
 ARROW_SOUND, CENTER_SOUND = 2, 3
 """System sounds of the buttons (section 9)."""
-
-
-def _memory_spans(addresses: Mapping[str, tuple[int, int]]) -> list[tuple[int, int]]:
-    """Ranges of addresses (begin, end) that contain all variables of indicators, adjacent variables joined."""
-    spans: list[tuple[int, int]] = []
-    for address, size in sorted(
-        addresses[name] for make in INDICATORS for name in make().variables if name in addresses
-    ):
-        if spans and spans[-1][1] == address:
-            spans[-1] = (spans[-1][0], address + size)
-        else:
-            spans.append((address, address + size))
-    return spans
 
 
 def _locate(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[int, int, int]:
@@ -58,12 +46,11 @@ class Indicators:
             is_measured: returns whether a sensor has written an address since the reset.
         """
         self._addresses, self._is_measured = addresses, is_measured
-        self.addresses = tuple(
-            addresses[name][0] for make in INDICATORS for name in make().variables if name in addresses
-        )
-        """Addresses of the variables that they show."""
         self._buttons = [addresses[name][0] for name in ButtonsIndicator.variables]
-        self._spans = _memory_spans(addresses)
+        places = [addresses[name] for make in INDICATORS for name in make().variables if name in addresses]
+        self.addresses = tuple(address for address, _ in places)
+        """Addresses of the variables that they show."""
+        self._spans = memory_spans(places)
         self._pressed = [0] * len(self._buttons)
         self.reset()
 
@@ -115,9 +102,9 @@ class Indicators:
     def update(self, memory: Sequence[int]) -> Iterable[Command]:
         """Return commands for changed lights, and sounds for touched buttons; `memory` has all words (int16)."""
         parts = [memory[begin:end] for begin, end in self._spans]
-        changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
-        if not changed and not self.is_animated and not self._without_data:
+        if parts == self._last and not self.is_animated and not self._without_data:
             return ()
+        changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
         self._last = parts
         commands = [*self._lights(parts, changed), *self._button_sounds(memory)]
         self.is_animated = any(indicator.is_animated for indicator, _ in self._indicators)

@@ -13,7 +13,7 @@ from thymio_sim_ros.sim.mechanics.edge_fall import list_unsafe
 from thymio_sim_ros.sim.model.noise import tick_number
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
+from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings, ReadingTable, Row
 from thymio_sim_ros.sim.raycast.raycaster import Fan, Raycaster, Values
 from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 
@@ -22,6 +22,7 @@ __all__ = ["RobotBatch"]
 S = TypeVar("S")
 Measure = Callable[[], Sequence[Reading | None]]
 
+_NEVER: tuple[int, Sequence[Reading | None]] = (-1, ())
 _SLIP_USER = "motors"
 """Name under which wheels draw the random numbers of their slip."""
 
@@ -51,6 +52,8 @@ class RobotBatch:
         self._sensors = [sensor for sensor, _ in sensors]
         self._sensor_names = [sensor.name for sensor in self._sensors]
         self._numbers = {sensor.name: number for number, sensor in enumerate(self._sensors)}
+        self._read: dict[str, tuple[int, Sequence[Reading | None]]] = {}
+        """What was measured last because it was read, and when, by sensor."""
         self._measure: list[Measure] = []
         for number, sensor in enumerate(self._sensors):
             if sensor.prepare_all is not None:
@@ -108,11 +111,11 @@ class RobotBatch:
                 self._robots[index].edge_fall.check_floor(floor_support)
         return contacts
 
-    def measure(self, due: Sequence[int]) -> ReadingTable:
+    def measure(self, due: Sequence[int]) -> Sequence[Row]:
         """Return the readings of the sensors with these numbers, and of those woken."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
         if not self.shared.woken:
-            return ReadingTable(self._names, [(self._sensor_names[number], self._measure[number]()) for number in due])
+            return self._table([(self._sensor_names[number], self._measure[number]()) for number in due])
         woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
         awake = sorted({*due, *chain.from_iterable(woken.values())})
         columns: list[tuple[str, Sequence[Reading | None]]] = []
@@ -125,13 +128,20 @@ class RobotBatch:
                     robot.measure_one(number) if index in some else None for index, robot in enumerate(self._robots)
                 ]
             columns.append((self._sensor_names[number], column))
-        return ReadingTable(self._names, columns)
+        return self._table(columns)
 
     def read(self, robot: Robot, sensor: str) -> Reading | None:
         """Return what a stateless sensor of one robot measures now. Raises KeyError for an unknown sensor."""
-        number = self._numbers[sensor]
-        self.tick[0] = tick_number(self.shared.clock.now_ns)
-        return self._measure[number]()[self._order[robot]]
+        now_ns, (read_ns, column) = self.shared.clock.now_ns, self._read.get(sensor, _NEVER)
+        if read_ns != now_ns:
+            self.tick[0] = tick_number(now_ns)
+            column = self._measure[self._numbers[sensor]]()
+            self._read[sensor] = (now_ns, column)
+        return column[self._order[robot]]
+
+    def _table(self, columns: Sequence[tuple[str, Sequence[Reading | None]]]) -> Sequence[Row]:
+        full = [column for column in columns if isinstance(column[1], LazyReadings) or any(column[1])]
+        return ReadingTable(self._names, full) if full else ()
 
     def _one_by_one(self, number: int) -> Measure:
         """Return a function that measures a sensor of all robots, one after the other."""

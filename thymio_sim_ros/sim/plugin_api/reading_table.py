@@ -7,7 +7,7 @@ from typing import Any, overload
 
 from thymio_sim_ros.sim.model.readings import Reading
 
-__all__ = ["LazyReadings", "ReadingTable", "select_rows"]
+__all__ = ["LazyReadings", "ReadingTable", "Row", "select_rows"]
 
 Row = tuple[str, str, Reading]
 
@@ -75,11 +75,8 @@ class ReadingTable(Sequence[Row]):
 
     def _all(self) -> tuple[Row, ...]:
         if self._rows is None:
-            full = [
-                (sensor, column) for sensor, column in self._columns if isinstance(column, LazyReadings) or any(column)
-            ]
-            names = [sensor for sensor, _ in full]
-            made = zip(*(column for _, column in full), strict=True) if names else ()
+            names = [sensor for sensor, _ in self._columns]
+            made = zip(*(column for _, column in self._columns), strict=True) if names else ()
             self._rows = tuple(
                 [
                     (robot, name, reading)
