@@ -73,6 +73,8 @@ class Runner:
         self.devices = {
             name: AsebaDevice(node_id=numbers[name], options=options.for_robot(name, alone=alone)) for name in wanted
         }
+        self._robot_changes = -1
+        """`world.robot_changes` when `_present` was updated."""
         self._present: dict[str, AsebaDevice] = {}
         """Devices of the robots that are in the world; the others do not run."""
         self._bound = frozenset(bindings.sensor_names()) if self.devices else frozenset()
@@ -106,11 +108,16 @@ class Runner:
 
         `sensors`: names of the sensors whose readings the result must have; None: all. See `World.step`.
         """
-        self._choose_fed()
+        now_ns = self.world.now_ns
+        for device in self._present.values():
+            if device.due.ns <= now_ns:  # as it is after another program was loaded
+                self._choose_fed()
+                break
         wanted = sensors if sensors is None else self._fed if not sensors else self._fed.union(sensors)
         result = self.world.step(wanted)
         if self.devices:
-            self._update_present_devices()
+            if self._robot_changes != self.world.robot_changes:
+                self._update_present_devices()
             if result.readings:
                 self._feed(result)
             self._run_devices()
@@ -154,6 +161,7 @@ class Runner:
         self._update_present_devices()
         self.devices[robot].end_tick(self.now_ns)
         self.hosts[robot].load(program)
+        self._choose_fed()
         self._run_devices()
 
     def reset(self) -> None:
@@ -168,6 +176,7 @@ class Runner:
         for device in self._present.values():
             device.advance(self.now_ns)
         self._run_devices()
+        self._choose_fed()
 
     def _choose_fed(self) -> None:
         """Choose the sensors whose readings are fed; the others are measured when variables are read."""
@@ -196,9 +205,7 @@ class Runner:
 
     def _update_present_devices(self) -> None:
         """Update the devices after robots were added or removed; the device of a robot added again restarts."""
-        robots = self.world.robots
-        if len(self._present) == len(self.devices) and self.devices.keys() <= robots.keys():
-            return
+        robots, self._robot_changes = self.world.robots, self.world.robot_changes
         present = {name: device for name, device in self.devices.items() if name in robots}
         for name in present:
             if name not in self._present:
@@ -210,7 +217,9 @@ class Runner:
         self.emitted.clear()
         now_ns, due, advanced = self.now_ns, [], set()
         for _ in range(MAX_ROUNDS):
-            due = [(name, device) for name, device in self._present.items() if device.due_ns <= now_ns]
+            due = [(name, device) for name, device in self._present.items() if device.due.ns <= now_ns]
+            if not due:
+                return
             for name, device in due:
                 if name not in advanced:
                     advanced.add(name)
@@ -228,6 +237,8 @@ class Runner:
         running = sender.program
         events = sender.pop_events()
         woken = int(sender.program is not running)
+        if woken:
+            self._choose_fed()
         for event in events:
             self.emitted.append((name, event))
             for device in self._present.values():

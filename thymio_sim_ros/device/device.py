@@ -54,7 +54,8 @@ class AsebaDevice:
         self.layout = options.layout
         """Name of the memory layout."""
         described = target(self.layout)
-        self._due = due = DueTime()
+        self.due = due = DueTime()
+        """The time from which `run` or `pop_commands` has anything to do, if the device is left alone until then."""
         queue = EventQueue(
             POLICIES[options.events],
             [FIRST_LOCAL_EVENT - described.local_event_number(name) for name in ("timer0", "timer1")],
@@ -128,12 +129,7 @@ class AsebaDevice:
     @property
     def is_due(self) -> bool:
         """Whether `run` or `pop_commands` has anything to do."""
-        return self._due.ns <= self._now_ns
-
-    @property
-    def due_ns(self) -> int:
-        """The time from which `run` or `pop_commands` has anything to do, if the device is left alone until then."""
-        return self._due.ns
+        return self.due.ns <= self._now_ns
 
     @property
     def has_emitted(self) -> bool:
@@ -223,7 +219,7 @@ class AsebaDevice:
             self._queue.advance(before_ns)  # a timer whose period was changed since counts from then
         if now_ns < self._now_ns:
             self._indicators_ns = self._indicators_free_ns = 0
-            self._due.set_now()
+            self.due.set_now()
         self._queue.advance(now_ns)
         self._outputs.advance(now_ns)
         self.services.advance(now_ns, self._vm.variables.words[self._intensity])
@@ -258,7 +254,7 @@ class AsebaDevice:
             self._sent_writes = writes
             if not is_off:
                 changed = self._outputs.pop_changes()
-        self._due.ns = self._next_due_ns()
+        self.due.ns = self._next_due_ns()
         return self._outputs.pop() + changed
 
     def end_tick(self, now_ns: int) -> None:
@@ -273,7 +269,7 @@ class AsebaDevice:
         """Update the indicators at the next multiple of their period."""
         if self._indicators_ns > now_ns:
             self._indicators_ns = max(-(-now_ns // PERIOD_NS) * PERIOD_NS, self._indicators_free_ns)
-            self._due.bring_forward(self._indicators_ns)
+            self.due.bring_forward(self._indicators_ns)
 
     def _next_due_ns(self) -> int:
         if self.is_busy or self.services.is_recording:

@@ -60,7 +60,7 @@ class Inputs:
         return sensor is None or (sensor in self._last and self._last[sensor][1] >= self._variables.last_clear)
 
     def feed(self, sensor: str, words: Sequence[int], now_ns: int) -> bool:
-        """Store the words of a reading and cause its events; return whether the memory was written.
+        """Store the words of a reading and cause its events; return whether the variables were not measured or differ.
 
         Raises KeyError for an unknown sensor and ValueError for a wrong number of words.
         """
@@ -70,14 +70,15 @@ class Inputs:
         if sensor in self._periods_ns and not self._is_due(sensor, now_ns):
             return False
         old, new = self._last.get(sensor), (tuple(words), self._variables.writes)
+        has_changed = False
         if new != old:
-            self._write(sensor, binding, new)
+            has_changed = self._write(sensor, binding, new) or old is None or old[1] < self._variables.last_clear
             if binding.edges:
                 self._cause_edge_events(old[0] if old is not None else (0,) * binding.size, new[0], binding.edges)
         event, above = binding.event, binding.above
         if event in self._local_events.wanted and (above is None or words[0] > self._vm.variables.words[above] != 0):
             self._local_events.cause(event)
-        return new != old
+        return has_changed
 
     def store(self, sensor: str, words: Sequence[int]) -> None:
         """Store the words of a reading that is measured because a variable is read; it causes no event."""
@@ -94,11 +95,16 @@ class Inputs:
         """Drop the last words, so that the next reading of each sensor counts as a change."""
         self._last.clear()
 
-    def _write(self, sensor: str, binding: SensorBinding, new: tuple[tuple[int, ...], int]) -> None:
-        memory, words = self._vm.variables.words, new[0]
+    def _write(self, sensor: str, binding: SensorBinding, new: tuple[tuple[int, ...], int]) -> bool:
+        """Write new words to the memory; return whether it had others."""
+        memory, words, is_new = self._vm.variables.words, list(new[0]), False
         for address, address_end, begin, end in binding.runs:
-            memory[address:address_end] = words[begin:end]
+            part = words[begin:end]
+            if memory[address:address_end] != part:
+                memory[address:address_end] = part
+                is_new = True
         self._last[sensor] = new
+        return is_new
 
     def _cause_edge_events(self, old: Sequence[int], new: Sequence[int], edges: Sequence[Slot]) -> None:
         """Cause the events of the variables that have changed."""

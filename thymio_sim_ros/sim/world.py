@@ -88,6 +88,8 @@ class World:
         self.scene = Scene.of(playground)
         periods = None if periods_ns is None else tuple(periods_ns.items())
         self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
+        self.robot_changes = 0
+        """Number of robots added and removed so far."""
         self.recorder: InputRecorder | None = None
         """Gets all inputs and results from now on."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
@@ -188,6 +190,7 @@ class World:
     def remove(self, robot: str) -> None:
         """Remove a robot at once; raises KeyError for an unknown name."""
         gone = self._robots.pop(robot)
+        self.robot_changes += 1
         rows = self._batch.rows
         self._physics.remove_robot(gone.body)
         self._shared.forget(gone)
@@ -204,7 +207,8 @@ class World:
         wanted = None if self.recorder is not None else sensors
         if wanted is not self._wanted:
             self._select(wanted)
-        self._apply_commands()
+        if self._posted:
+            self._apply_commands()
         self._batch.act(_TICK_S)
         contacts = self._move_bodies()
         now_ns = self._clock.advance()
@@ -240,6 +244,7 @@ class World:
     def _add(self, start: RobotStart) -> None:
         robot = Robot(start, self._shared, self._plugins, self._sensors)
         self._robots[start.name] = robot
+        self.robot_changes += 1
         robot.apply(self._motor_model)
         if start.pen is not None:
             pen = start.pen
@@ -276,8 +281,6 @@ class World:
             self.recorder.record(self._clock.now_ns // TICK_NS, event)
 
     def _apply_commands(self) -> None:
-        if not self._posted:
-            return
         posted, self._posted = self._posted, []
         for name, command in posted:
             if isinstance(command, MoveObject):

@@ -19,6 +19,7 @@ __all__ = [
     "Indicator",
     "RemoteIndicator",
     "SoundIndicator",
+    "StaticIndicator",
 ]
 
 Levels = Mapping[str, tuple[int, ...]]
@@ -42,7 +43,7 @@ class Indicator(Protocol):
         ...
 
 
-class _Static:
+class StaticIndicator:
     """An indicator that does not depend on time."""
 
     is_animated = False
@@ -66,7 +67,7 @@ class _Scale:
         return levels
 
 
-class _ProximityIndicator(_Static):
+class _ProximityIndicator(StaticIndicator):
     """Level of each proximity sensor."""
 
     variables = ("prox.horizontal",)
@@ -79,7 +80,7 @@ class _ProximityIndicator(_Static):
         return {"proximity": (left, center_left, center, center, center_right, right, rear_left, rear_right)}
 
 
-class _GroundIndicator(_Static):
+class _GroundIndicator(StaticIndicator):
     """Level of each ground sensor."""
 
     variables = ("prox.ground.delta",)
@@ -91,7 +92,7 @@ class _GroundIndicator(_Static):
         return {"ground": tuple(self._scale.levels(words[0]))}
 
 
-class _InclinationIndicator(_Static):
+class _InclinationIndicator(StaticIndicator):
     """Light of the circle on the lowest side of a tilted robot."""
 
     variables = ("acc",)
@@ -130,7 +131,7 @@ class ButtonsIndicator:
         return {"buttons": tuple(self._levels)}
 
 
-class _TemperatureIndicator(_Static):
+class _TemperatureIndicator(StaticIndicator):
     """Temperature as a mix of blue (cold) and red (warm)."""
 
     variables = ("temperature",)
