@@ -151,7 +151,7 @@ class Outputs:
             return
         address, size = self._addresses[variable]
         number = self._by_address.get(address)
-        if number is not None and list(words) == self._sent[number] == self._vm.variables.words[address : address + size]:
+        if number is not None and self._sent[number] == words == self._vm.variables.words[address : address + size]:
             return
         self._vm.write_variables(address, words)
         if number is not None:

@@ -156,17 +156,21 @@ class World:
         Raises KeyError for an unknown name, TypeError for a command that is not accepted, ValueError for a pose that is
         not finite, and PlacementError if the target position is occupied now.
         """
-        if name in self._movables:
+        robot = self._robots.get(name)
+        if robot is not None:
+            if not robot.accepts(command):
+                raise TypeError(f"no actuator or stimulus accepts a {type(command).__name__}")
+            if isinstance(command, MoveRobot):
+                pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
+                self._check_place(footprint_of_robot(name, pose))
+        else:
+            movable = self._movables[name]
             if not isinstance(command, MoveObject):
                 raise TypeError(f"an object accepts no {type(command).__name__}")
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
-            self._check_place(footprint_of(self._physics.movables[name].solid.at(pose)))
-        elif not self._robots[name].accepts(command):
-            raise TypeError(f"no actuator or stimulus accepts a {type(command).__name__}")
-        elif isinstance(command, MoveRobot):
-            pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
-            self._check_place(footprint_of_robot(name, pose))
-        self._record(Posted(name, command))
+            self._check_place(footprint_of(movable.solid.at(pose)))
+        if self.recorder is not None:
+            self._record(Posted(name, command))
         self._posted.append((name, command))
 
     def spawn(self, start: RobotStart) -> None:

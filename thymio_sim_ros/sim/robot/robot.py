@@ -198,6 +198,13 @@ class Robot:
             if plugin.update is not None:
                 view = _PluginView(self, shared, plugin.name)
                 self.instances.append(PluginInstance(plugin, state, view))
+        self._instance_of = {
+            kind: instance
+            for instance in self.instances
+            for kind, (_, state) in self._accepting.items()
+            if instance.state is state
+        }
+        """What acts on a command of each type."""
         self._list_busy()
         self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
         self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
@@ -260,15 +267,16 @@ class Robot:
 
     def apply(self, command: object) -> None:
         """Pass a command to its actuator or stimulus."""
-        plugin, state = self._accepting[type(command)]
+        kind = type(command)
+        plugin, state = self._accepting[kind]
         plugin.apply(state, command, self._clock.now_ns)
-        self.wake(type(command))
-        if type(command) in self._sound_commands:
+        self.wake(kind)
+        if kind in self._sound_commands:
             self._shared.add_audible(self)
-        for instance in self.instances:
-            if instance.state is state and not instance.is_busy:
-                instance.is_busy = True
-                self._list_busy()
+        instance = self._instance_of.get(kind)
+        if instance is not None and not instance.is_busy and not instance.rests:
+            instance.is_busy = True
+            self._list_busy()
 
     def wake(self, kind: type[Any]) -> None:
         """Wake the sensors that have this type in `wakes_on`."""
@@ -282,7 +290,7 @@ class Robot:
         has_rested = False
         for instance in self._busy:
             instance.update(instance.state, instance.view, dt_s)
-            if instance.is_idle is not None and instance.is_idle(instance.state):
+            if instance.rests:
                 instance.is_busy, has_rested = False, True
         if has_rested:
             self._list_busy()
