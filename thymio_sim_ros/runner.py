@@ -24,6 +24,7 @@ from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground
+from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
 from thymio_sim_ros.sim.sensors import all_sensors
 from thymio_sim_ros.sim.world import StepResult, World
 
@@ -77,6 +78,8 @@ class Runner:
         """`world.robot_changes` when `_present` was updated."""
         self._present: dict[str, AsebaDevice] = {}
         """Devices of the robots that are in the world; the others do not run."""
+        self._device_of_robot: list[AsebaDevice | None] = []
+        """The device of each robot in the world, in its order."""
         self._bound = frozenset(bindings.sensor_names()) if self.devices else frozenset()
         self._on_read = self._bound & {
             sensor.name for sensor in all_sensors() if sensor.is_stateless and sensor.period_ns <= TICK_NS
@@ -124,10 +127,12 @@ class Runner:
         return result
 
     def _feed(self, result: StepResult) -> None:
-        bound, devices = self._bound, self._present
-        for robot, sensor, reading in result.readings:
-            if sensor in bound and robot in devices:
-                devices[robot].feed(sensor, reading.words, result.now_ns)
+        assert isinstance(result.readings, ReadingTable)
+        for sensor, readings in result.readings.columns:
+            if sensor in self._bound:
+                for device, reading in zip(self._device_of_robot, readings, strict=True):
+                    if device is not None and reading is not None:
+                        device.feed(sensor, reading.words, result.now_ns)
 
     def run(self, seconds: float) -> None:
         """Run for this many simulated seconds."""
@@ -211,6 +216,7 @@ class Runner:
             if name not in self._present:
                 self.hosts[name].restart()
         self._present = present
+        self._device_of_robot = [present.get(name) for name in robots]
 
     def _run_devices(self) -> None:
         """Run the devices that are due, and those that receive their events."""

@@ -140,7 +140,7 @@ class RobotBatch:
         return column[self._order[robot]]
 
     def _table(self, columns: Sequence[tuple[str, Sequence[Reading | None]]]) -> Sequence[Row]:
-        full = [column for column in columns if isinstance(column[1], LazyReadings) or any(column[1])]
+        full = [column for column in columns if type(column[1]) is LazyReadings or any(column[1])]
         return ReadingTable(self._names, full) if full else ()
 
     def _one_by_one(self, number: int) -> Measure:
