@@ -113,7 +113,7 @@ class Outputs:
         """Return the commands of variables that changed since the last call."""
         assert self._vm is not None
         memory = self._vm.variables.words
-        parts = [memory[begin:end] for begin, end in self._spans]
+        parts: list[Sequence[int]] = [memory[begin:end] for begin, end in self._spans]
         if parts == self._compared:
             return []
         self._compared = parts

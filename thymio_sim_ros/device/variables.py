@@ -104,6 +104,6 @@ class DeviceVariables:
         self._due.set_now()
 
     def _find_uses(self) -> None:
-        # Code refers to a variable by its address, in the lower 12 bits of an instruction or in a word of its own. Other
+        # Code refers to a variable by its address: the lower 12 bits of an instruction, or a word of its own. Other
         # words that look like one do no harm.
         self._are_measured_used = any(word & 0xFFF in self._measured for word in self._program_words)

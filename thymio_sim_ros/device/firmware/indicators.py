@@ -76,7 +76,9 @@ class Indicators:
             if all(name in self._addresses for name in indicator.variables):
                 places = [_locate(self._spans, *self._addresses[name]) for name in indicator.variables]
                 self._indicators.append((indicator, places, frozenset(part for part, _, _ in places)))
-        self._animated = [indicator for indicator, _, _ in self._indicators if not isinstance(indicator, StaticIndicator)]
+        self._animated = [
+            indicator for indicator, _, _ in self._indicators if not isinstance(indicator, StaticIndicator)
+        ]
         self._without_data = {indicator for indicator, _, _ in self._indicators}
         """Indicators whose variables were not measured since the reset."""
         self._shown: dict[str, tuple[int, ...]] = {}
