@@ -121,18 +121,17 @@ class Runner:
         if self.devices:
             if self._robot_changes != self.world.robot_changes:
                 self._update_present_devices()
-            if result.readings:
-                self._feed(result)
+            if isinstance(result.readings, ReadingTable):
+                self._feed(result.readings, result.now_ns)
             self._run_devices()
         return result
 
-    def _feed(self, result: StepResult) -> None:
-        assert isinstance(result.readings, ReadingTable)
-        for sensor, readings in result.readings.columns:
+    def _feed(self, table: ReadingTable, now_ns: int) -> None:
+        for sensor, readings in table.columns:
             if sensor in self._bound:
                 for device, reading in zip(self._device_of_robot, readings, strict=True):
                     if device is not None and reading is not None:
-                        device.feed(sensor, reading.words, result.now_ns)
+                        device.feed(sensor, reading.words, now_ns)
 
     def run(self, seconds: float) -> None:
         """Run for this many simulated seconds."""
@@ -221,7 +220,7 @@ class Runner:
     def _run_devices(self) -> None:
         """Run the devices that are due, and those that receive their events."""
         self.emitted.clear()
-        now_ns, due, advanced = self.now_ns, [], set()
+        now_ns, due, advanced = self.world.now_ns, [], set()
         for _ in range(MAX_ROUNDS):
             due = [(name, device) for name, device in self._present.items() if device.due.ns <= now_ns]
             if not due:

@@ -173,7 +173,8 @@ class AsebaDevice:
             self._indicators.record_intensity(words[0])
         elif sensor == _BATTERY:
             self._indicators.set_charging(is_charging=bool(words[-1]))
-        if (has_changed and sensor in self._indicated_sensors) or self._indicators.is_animated:
+        address = self._indicated_sensors.get(sensor) if has_changed else None
+        if self._indicators.is_animated or (address is not None and self._indicators.is_outdated(address, words)):
             self._plan_indicators(now_ns)
 
     def wants_event(self, sensor: str) -> bool:

@@ -40,9 +40,10 @@ class Inputs:
         self._last: dict[str, tuple[tuple[int, ...], int]] = {}
         """The last words of each sensor, and `variables.writes` at that time."""
 
-    def sensors_of(self, addresses: Collection[int]) -> frozenset[str]:
-        """Return the sensors that write variables at these addresses."""
-        return frozenset(self._sensor_at[address] for address in addresses if address in self._sensor_at)
+    def sensors_of(self, addresses: Collection[int]) -> dict[str, int]:
+        """Return the sensors that write variables at these addresses, and the address of the first variable of each."""
+        sensors = {self._sensor_at[address] for address in addresses if address in self._sensor_at}
+        return {sensor: self._sensors[sensor].slots[0].address for sensor in sensors}
 
     def addresses_of(self, sensors: Collection[str]) -> frozenset[int]:
         """Return the addresses of all variables of sensors."""

@@ -47,6 +47,8 @@ class StaticIndicator:
     """An indicator that does not depend on time."""
 
     is_animated = False
+    is_pure = False
+    """Whether its levels depend on the present words of one variable alone."""
 
 
 class _Scale:
@@ -96,6 +98,7 @@ class _InclinationIndicator(StaticIndicator):
     """Light of the circle on the lowest side of a tilted robot."""
 
     variables = ("acc",)
+    is_pure = True
 
     def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         right, forward, up = words[0]
@@ -135,6 +138,7 @@ class _TemperatureIndicator(StaticIndicator):
     """Temperature as a mix of blue (cold) and red (warm)."""
 
     variables = ("temperature",)
+    is_pure = True
 
     def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         ((tenths,),) = words

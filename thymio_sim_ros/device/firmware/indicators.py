@@ -79,6 +79,12 @@ class Indicators:
         self._animated = [
             indicator for indicator, _, _ in self._indicators if not isinstance(indicator, StaticIndicator)
         ]
+        self._pure = {
+            self._addresses[indicator.variables[0]][0]: indicator
+            for indicator, _, _ in self._indicators
+            if isinstance(indicator, StaticIndicator) and indicator.is_pure
+        }
+        """Pure indicators by the address of their variable."""
         self._without_data = {indicator for indicator, _, _ in self._indicators}
         """Indicators whose variables were not measured since the reset."""
         self._shown: dict[str, tuple[int, ...]] = {}
@@ -112,6 +118,16 @@ class Indicators:
         """Report a command of a remote control."""
         self._remote.flash()
         self.is_animated = True
+
+    def is_outdated(self, address: int, words: Sequence[int]) -> bool:
+        """Whether an update may change lights after a variable at this address got these words."""
+        indicator = self._pure.get(address)
+        if indicator is None or indicator in self._without_data:
+            return True
+        return any(
+            group not in self._claimed_groups and levels != self._shown.get(group, (0,) * len(levels))
+            for group, levels in indicator.levels((words,)).items()
+        )
 
     def update(self, memory: Sequence[int]) -> Sequence[Command]:
         """Return commands for changed lights, and sounds for touched buttons; `memory` has all words (int16)."""

@@ -115,7 +115,7 @@ class RobotBatch:
         """Return the readings of the sensors with these numbers, and of those woken."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
         if not self.shared.woken:
-            return self._table([(self._sensor_names[number], self._measure[number]()) for number in due]) if due else ()
+            return self._table([(self._sensor_names[number], self._measure[number]()) for number in due])
         woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
         awake = sorted({*due, *chain.from_iterable(woken.values())})
         columns: list[tuple[str, Sequence[Reading | None]]] = []

@@ -78,7 +78,9 @@ class Schedule:
         for number in odd:
             self._next_ns[number] += self._periods_ns[number]
         self._odd_ns = min(self._next_ns.values())
-        return sorted([*due, *(number for number in odd if self._selected is None or number in self._selected)])
+        if self._selected is not None:
+            odd = [number for number in odd if number in self._selected]
+        return sorted([*due, *odd])
 
 
 def next_due_ns(period_ns: int, phase_ns: int, now_ns: int) -> int:
