@@ -5,7 +5,7 @@ A sensor is declared once, in `sim/sensors`; its variables, addresses, events an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
@@ -107,17 +107,6 @@ def natives() -> dict[str, Native]:
 def at_reset() -> tuple[Command, ...]:
     """Commands for the actuators after a reset of the robot."""
     return tuple(command for actuator in compatible_plugins()[1] for command in actuator.aseba.at_reset)
-
-
-def memory_spans(places: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Ranges of addresses (begin, end) that contain variables (address, size), adjacent variables joined."""
-    spans: list[tuple[int, int]] = []
-    for address, size in sorted(places):
-        if spans and spans[-1][1] == address:
-            spans[-1] = (spans[-1][0], address + size)
-        else:
-            spans.append((address, address + size))
-    return spans
 
 
 def _slots(variables: Sequence[tuple[str, int]], layout: str, *, has_edges: bool = False) -> Iterator[Slot]:

@@ -49,11 +49,6 @@ class Outputs:
         self._indicators = indicators
         self._vm: VirtualMachine | None = None
         self._queued: list[Command] = []
-        self._spans = bindings.memory_spans(
-            (slot.address, slot.size) for output in self._outputs for slot in output.slots
-        )
-        self._compared: list[Sequence[int]] = []
-        """What `_spans` of the memory contained when `_sent` was compared with it."""
         self._sent: list[list[int]] = []
         self._light_levels: dict[str, tuple[int, ...]] = {}
         self._light_period = 0
@@ -64,7 +59,6 @@ class Outputs:
         self._vm = vm
         self._light_levels.clear()
         self.has_used_sound = False
-        self._compared = []
         self._sent = [self._words(output) for output in self._outputs]
         at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
         self._queued = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
@@ -111,12 +105,6 @@ class Outputs:
 
     def pop_changes(self) -> list[Command]:
         """Return the commands of variables that changed since the last call."""
-        assert self._vm is not None
-        memory = self._vm.variables.words
-        parts: list[Sequence[int]] = [memory[begin:end] for begin, end in self._spans]
-        if parts == self._compared:
-            return []
-        self._compared = parts
         commands: list[Command] = []
         for number, output in enumerate(self._outputs):
             words = self._words(output)
@@ -130,7 +118,6 @@ class Outputs:
         for output, sent in zip(self._outputs, self._sent, strict=True):
             if isinstance(output.command(self._words(output)), MotorTargets):
                 sent.clear()
-                self._compared = []
 
     def _adjusted(self, command: Command) -> Command:
         """Calibrate a command for motors; claim the lights of a command for lights."""

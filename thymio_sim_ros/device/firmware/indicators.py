@@ -6,9 +6,8 @@ a program sets its lights, button sounds end when a program uses sound; a reset 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from thymio_sim_ros.device.bindings import memory_spans
 from thymio_sim_ros.device.firmware.indicator_kinds import (
     INDICATORS,
     PROXIMITY_GROUPS,
@@ -27,6 +26,17 @@ PERIOD_NS = 20_000_000
 """Time between two updates."""
 ARROW_SOUND, CENTER_SOUND = 2, 3
 """System sounds of the buttons (section 9)."""
+
+
+def _memory_spans(places: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Ranges of addresses (begin, end) that contain variables (address, size), adjacent variables joined."""
+    spans: list[tuple[int, int]] = []
+    for address, size in sorted(places):
+        if spans and spans[-1][1] == address:
+            spans[-1] = (spans[-1][0], address + size)
+        else:
+            spans.append((address, address + size))
+    return spans
 
 
 Places = list[tuple[int, int, int]]
@@ -55,7 +65,7 @@ class Indicators:
         places = [addresses[name] for make in INDICATORS for name in make().variables if name in addresses]
         self.addresses = tuple(address for address, _ in places)
         """Addresses of the variables that they show."""
-        self._spans = memory_spans(places)
+        self._spans = _memory_spans(places)
         self._button_parts = frozenset(
             number
             for number, (begin, end) in enumerate(self._spans)
