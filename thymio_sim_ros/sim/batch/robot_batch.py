@@ -22,6 +22,7 @@ __all__ = ["RobotBatch"]
 S = TypeVar("S")
 Measure = Callable[[], Sequence[Reading | None]]
 
+_NOBODY: dict[int, list[int]] = {}
 _NEVER: tuple[int, Sequence[Reading | None]] = (-1, ())
 _SLIP_USER = "motors"
 """Name under which wheels draw the random numbers of their slip."""
@@ -114,21 +115,22 @@ class RobotBatch:
     def measure(self, due: Sequence[int]) -> Sequence[Row]:
         """Return the readings of the sensors with these numbers, and of those woken."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
-        if not self.shared.woken:
-            return self._table([(self._sensor_names[number], self._measure[number]()) for number in due])
-        woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
-        awake = sorted({*due, *chain.from_iterable(woken.values())})
+        woken, awake = _NOBODY, due
+        if self.shared.woken:
+            woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
+            awake = sorted({*due, *chain.from_iterable(woken.values())})
         columns: list[tuple[str, Sequence[Reading | None]]] = []
         for number in awake:
-            if number in due:
+            if awake is due or number in due:
                 column = self._measure[number]()
             else:
                 some = [index for index, numbers in woken.items() if number in numbers]
                 column = [
                     robot.measure_one(number) if index in some else None for index, robot in enumerate(self._robots)
                 ]
-            columns.append((self._sensor_names[number], column))
-        return self._table(columns)
+            if type(column) is LazyReadings or any(column):
+                columns.append((self._sensor_names[number], column))
+        return ReadingTable(self._names, columns) if columns else ()
 
     def read(self, robot: Robot, sensor: str) -> Reading | None:
         """Return what a stateless sensor of one robot measures now. Raises KeyError for an unknown sensor."""
@@ -138,10 +140,6 @@ class RobotBatch:
             column = self._measure[self._numbers[sensor]]()
             self._read[sensor] = (now_ns, column)
         return column[self._order[robot]]
-
-    def _table(self, columns: Sequence[tuple[str, Sequence[Reading | None]]]) -> Sequence[Row]:
-        full = [column for column in columns if type(column[1]) is LazyReadings or any(column[1])]
-        return ReadingTable(self._names, full) if full else ()
 
     def _one_by_one(self, number: int) -> Measure:
         """Return a function that measures a sensor of all robots, one after the other."""
