@@ -12,6 +12,7 @@ import pytest
 from aseba_vm.jit.tiering import INTERPRETER
 from tests.aseba_vm.engines import TRANSLATORS
 from tests.tracks import farthest_in_laps
+from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
@@ -80,6 +81,77 @@ def test_the_same_seed_gives_the_same_poses_bit_for_bit():
         poses.append(track)
     assert poses[0] == poses[1]
     assert poses[0] != poses[2]
+
+
+READER = """var n = 0
+var sum = 0
+timer.period[0] = 30
+motor.left.target = 200
+onevent prox
+sum += motor.left.speed / 10 + _imot[0] + prox.horizontal[2] / 100
+onevent timer0
+n++
+motor.right.target = 200 - n % 200
+call leds.top(n % 32, 0, 0)
+onevent button.center
+motor.left.target = 0
+"""
+
+
+def test_the_same_seed_gives_the_same_run_whatever_is_read():
+    found = []
+    for is_read in (False, True):
+        runner = Runner(playgrounds.loads(TWO, "two"), load_program(READER, "reader"), seed=3)
+        for second in range(4):
+            runner.press("anna", "center", pressed=second == 2)
+            for _ in range(100):
+                if is_read:
+                    assert runner.step().readings
+                    _ = [device.variables.words() for device in runner.devices.values()]
+                else:
+                    runner.run(0.01)
+        words = [device.variables.words() for device in runner.devices.values()]
+        found.append((words, runner.world.snapshot()))
+    assert found[0] == found[1]
+
+
+def test_a_variable_is_measured_when_it_is_read():
+    runner = Runner(load_playground("base")[1], load_program("motor.left.target = 100", "left"), noise=False)
+    variables = runner.devices["thymio"].variables
+    for target in (100, 250):
+        variables.set("motor.left.target", (target,))
+        runner.run(0.03)
+        assert variables.get("motor.left.speed") == (target,)
+
+
+def test_a_value_written_to_a_measured_variable_stays_until_the_next_tick():
+    runner = Runner(load_playground("base")[1], load_program("", "none"), noise=False)
+    variables = runner.devices["thymio"].variables
+    runner.run(0.1)
+    variables.set("motor.left.speed", (7,))
+    assert variables.get("motor.left.speed") == (7,)
+    runner.run(0.01)
+    assert variables.get("motor.left.speed") == (0,)
+
+
+def test_the_event_of_a_sensor_that_measures_on_demand_comes_once_it_is_handled():
+    runner = Runner(load_playground("base")[1], load_program("var n = 0", "none"))
+    runner.run(0.5)
+    runner.load("thymio", load_program("var n = 0\nonevent motor\nn++", "motor"))
+    runner.run(0.5)
+    assert runner.devices["thymio"].variables.get("n") == (50,)
+
+
+def test_a_device_without_work_is_not_run(monkeypatch):
+    runner = Runner(load_playground("base")[1], load_program("timer.period[0] = 500\nonevent timer0", "t"), noise=False)
+    runner.run(1.0)
+    runs = []
+    run = AsebaDevice.run
+    monkeypatch.setattr(AsebaDevice, "run", lambda device, budget: (runs.append(runner.now_ns), run(device, budget)))
+    runner.run(1.0)
+    ticks = {now_ns // 10_000_000 for now_ns in runs}
+    assert {150, 200} <= ticks
+    assert len(ticks) < 30
 
 
 def test_reset_repeats_the_run():

@@ -1,14 +1,17 @@
 """World and devices in lock-step, in one thread, without ROS: tests, batch runs, benchmarks.
 
-One step: (1) the world ticks; (2) each device gets its readings and the time; (3) the devices run in the order of the
+One step: (1) the world ticks; (2) each device gets its readings; (3) the devices that are due run in the order of the
 playground, and emitted events are forwarded to the other devices until none is pending; (4) the commands are posted to
 the world and take effect in the next tick. All devices share one Aseba bus; an event is not sent back to its sender.
-The same playground, programs and seed give the same run bit for bit.
+The same playground, programs and seed give the same run bit for bit, whatever is read.
+
+What measures in every tick without noise or memory, such as the speeds of the motors, is measured when a program runs
+or its variables are read (`AsebaDevice.measure_on_read`), unless a program handles its event.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behavior_host import BehaviorHost
@@ -21,6 +24,8 @@ from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground
+from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
+from thymio_sim_ros.sim.sensors import all_sensors
 from thymio_sim_ros.sim.world import StepResult, World
 
 __all__ = ["Runner"]
@@ -69,6 +74,24 @@ class Runner:
         self.devices = {
             name: AsebaDevice(node_id=numbers[name], options=options.for_robot(name, alone=alone)) for name in wanted
         }
+        self._robot_changes = -1
+        """`world.robot_changes` when `_present` was updated."""
+        self._present: dict[str, AsebaDevice] = {}
+        """Devices of the robots that are in the world; the others do not run."""
+        self._device_of_robot: list[AsebaDevice | None] = []
+        """The device of each robot in the world, in its order."""
+        self._bound = frozenset(bindings.sensor_names()) if self.devices else frozenset()
+        self._on_read = self._bound & {
+            sensor.name for sensor in all_sensors() if sensor.is_stateless and sensor.period_ns <= TICK_NS
+        }
+        """Sensors that measure when variables are read, unless a program handles their events."""
+        self._fed = self._bound
+        """Sensors whose readings are fed to the devices."""
+        self._wanted_events: list[frozenset[int]] = []
+        """The local events that the devices wanted when `_fed` was chosen."""
+        self.emitted: list[tuple[str, EmittedEvent]] = []
+        for name, device in self.devices.items():
+            device.measure_on_read(self._on_read, self._measuring(name))
         self.hosts = {name: BehaviorHost(device) for name, device in self.devices.items()}
         for name, host in self.hosts.items():
             program = (programs or {}).get(name)
@@ -76,10 +99,6 @@ class Runner:
                 host.start(behaviour, program)
             elif program is not None:
                 host.load(program)
-        self._bound = frozenset(bindings.sensor_names())
-        self.emitted: list[tuple[str, EmittedEvent]] = []
-        self._present: dict[str, AsebaDevice] = {}
-        """Devices of the robots that are in the world; the others do not run."""
         self._start()
 
     @property
@@ -87,28 +106,42 @@ class Runner:
         """Simulated time."""
         return self.world.now_ns
 
-    def step(self) -> StepResult:
-        """Run one tick of the world and of the programs."""
-        result = self.world.step()
-        self._update_present_devices()
-        bound, devices = self._bound, self._present
-        for robot, sensor, reading in result.readings:
-            if sensor in bound and robot in devices:
-                devices[robot].feed(sensor, reading.words)
-        for device in devices.values():
-            device.advance(result.now_ns)
-        self._run_devices()
+    def step(self, sensors: Collection[str] | None = None) -> StepResult:
+        """Run one tick of the world and of the programs.
+
+        `sensors`: names of the sensors whose readings the result must have; None: all. See `World.step`.
+        """
+        now_ns = self.world.now_ns
+        for device in self._present.values():
+            if device.due.ns <= now_ns:  # as it is after another program was loaded
+                self._choose_fed()
+                break
+        wanted = sensors if sensors is None else self._fed if not sensors else self._fed.union(sensors)
+        result = self.world.step(wanted)
+        if self.devices:
+            if self._robot_changes != self.world.robot_changes:
+                self._update_present_devices()
+            if isinstance(result.readings, ReadingTable):
+                self._feed(result.readings, result.now_ns)
+            self._run_devices()
         return result
+
+    def _feed(self, table: ReadingTable, now_ns: int) -> None:
+        for sensor, readings in table.columns:
+            if sensor in self._bound:
+                for device, reading in zip(self._device_of_robot, readings, strict=True):
+                    if device is not None and reading is not None:
+                        device.feed(sensor, reading.words, now_ns)
 
     def run(self, seconds: float) -> None:
         """Run for this many simulated seconds."""
-        for _ in self.steps(seconds):
-            pass
+        for _ in range(_ticks(seconds)):
+            self.step(())
 
-    def steps(self, seconds: float) -> Iterator[StepResult]:
-        """Run for this many simulated seconds; yield the result of each tick."""
-        for _ in range(round(seconds * _SECOND_NS / TICK_NS)):
-            yield self.step()
+    def steps(self, seconds: float, sensors: Collection[str] | None = None) -> Iterator[StepResult]:
+        """Run for this many simulated seconds; yield the result of each tick, see `step`."""
+        for _ in range(_ticks(seconds)):
+            yield self.step(sensors)
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Run until the condition is true, at most this many simulated seconds; return whether it became true."""
@@ -116,7 +149,7 @@ class Runner:
         while not condition():
             if self.now_ns >= end_ns:
                 return False
-            self.step()
+            self.step(())
         return True
 
     def post(self, robot: str, command: Command) -> None:
@@ -129,8 +162,10 @@ class Runner:
 
     def load(self, robot: str, program: ThymioProgram) -> None:
         """Load another program, which starts now. Raises KeyError for a robot without a device."""
-        self.hosts[robot].load(program)
         self._update_present_devices()
+        self.devices[robot].end_tick(self.now_ns)
+        self.hosts[robot].load(program)
+        self._choose_fed()
         self._run_devices()
 
     def reset(self) -> None:
@@ -145,27 +180,60 @@ class Runner:
         for device in self._present.values():
             device.advance(self.now_ns)
         self._run_devices()
+        self._choose_fed()
+
+    def _choose_fed(self) -> None:
+        """Choose the sensors whose readings are fed; the others are measured when variables are read."""
+        wanted = [device.local_events.wanted for device in self.devices.values()]
+        if wanted != self._wanted_events:
+            self._wanted_events = wanted
+            self._fed = frozenset(
+                sensor
+                for sensor in self._bound
+                if sensor not in self._on_read or any(device.wants_event(sensor) for device in self.devices.values())
+            )
+
+    def _measuring(self, robot: str) -> Callable[[], Iterable[tuple[str, Sequence[int]]]]:
+        """Return a function that measures on one robot, once per tick, what is not fed."""
+        measured_ns = -1
+
+        def measure() -> Iterable[tuple[str, Sequence[int]]]:
+            nonlocal measured_ns
+            if measured_ns == self.world.now_ns or robot not in self._present:
+                return ()
+            measured_ns = self.world.now_ns
+            readings = ((sensor, self.world.read(robot, sensor)) for sensor in self._on_read - self._fed)
+            return [(sensor, reading.words) for sensor, reading in readings if reading is not None]
+
+        return measure
 
     def _update_present_devices(self) -> None:
         """Update the devices after robots were added or removed; the device of a robot added again restarts."""
-        robots = self.world.robots
-        if len(self._present) == len(self.devices) and self.devices.keys() <= robots.keys():
-            return
+        robots, self._robot_changes = self.world.robots, self.world.robot_changes
         present = {name: device for name, device in self.devices.items() if name in robots}
         for name in present:
             if name not in self._present:
                 self.hosts[name].restart()
         self._present = present
+        self._device_of_robot = [present.get(name) for name in robots]
 
     def _run_devices(self) -> None:
+        """Run the devices that are due, and those that receive their events."""
         self.emitted.clear()
+        now_ns, due, advanced = self.world.now_ns, [], set()
         for _ in range(MAX_ROUNDS):
-            for device in self._present.values():
+            due = [(name, device) for name, device in self._present.items() if device.due.ns <= now_ns]
+            if not due:
+                return
+            for name, device in due:
+                if name not in advanced:
+                    advanced.add(name)
+                    device.advance(now_ns)
                 device.run(BUDGET)
-            senders = [name for name, device in self._present.items() if device.has_emitted]
+            senders = [name for name, device in due if device.has_emitted]
             if sum(self._forward_events(name, self.hosts[name]) for name in senders) == 0:
                 break
-        for name, device in self._present.items():
+        for name, device in due:
             for command in device.pop_commands():
                 self.world.post(name, command)
 
@@ -174,6 +242,8 @@ class Runner:
         running = sender.program
         events = sender.pop_events()
         woken = int(sender.program is not running)
+        if woken:
+            self._choose_fed()
         for event in events:
             self.emitted.append((name, event))
             for device in self._present.values():
@@ -181,3 +251,7 @@ class Runner:
                     device.receive_event(event.name, event.args, source=sender.device.node_id)
                     woken += 1
         return woken
+
+
+def _ticks(seconds: float) -> int:
+    return round(seconds * _SECOND_NS / TICK_NS)

@@ -437,12 +437,11 @@ def test_without_a_card_files_cannot_be_opened_and_sounds_not_played():
     assert device.variables.get("status") == (-1,)
 
 
-def test_a_device_is_due_for_events_and_for_the_robots_own_rules():
+def test_a_device_is_due_for_events_and_for_changed_indicators():
     device = device_with("onevent prox\nmotor.left.target = 100")
     device.advance(1_000_000_000)
-    assert device.is_due
-    device.pop_commands()
     assert not device.is_due
+    assert device.due.ns > 10_000_000_000
     device.advance(1_010_000_000)
     device.feed("motor", (1, 2, 3, 4))
     assert not device.is_due
@@ -453,6 +452,7 @@ def test_a_device_is_due_for_events_and_for_the_robots_own_rules():
     assert device.is_due
     assert MotorTargets(100, 0) in device.pop_commands()
     assert not device.is_due
+    assert device.due.ns == 1_020_000_000
     device.advance(1_200_000_000)
     assert device.is_due
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.event_queue import FIRMWARE, MAX_PENDING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
 
 HELLO = GlobalEvent(0, 2, (7,))
@@ -11,7 +12,7 @@ MILLISECOND_NS = 1_000_000
 
 
 def queue(policy: str) -> EventQueue:
-    return EventQueue(POLICIES[policy], (15, 16))
+    return EventQueue(POLICIES[policy], (15, 16), DueTime())
 
 
 def everything(waiting: EventQueue) -> list[int | GlobalEvent]:

@@ -7,6 +7,7 @@ import hashlib
 import math
 import random
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -31,6 +32,7 @@ from thymio_sim_ros.sim.commands import (
 )
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
+from thymio_sim_ros.sim.sensors import all_sensors
 from thymio_sim_ros.sim.world import StepResult, World
 
 FROZEN = "faf1f1fa5ad798f6"
@@ -237,6 +239,55 @@ def test_sensors_keep_their_rates() -> None:
     names = [name for step in run(World(make([FLOOR])), 1.0) for _, name, _ in step.readings]
     assert {name: names.count(name) for name in RATES} == RATES
     assert not {"comm", "remote", "sound_finished", "tap"} & set(names)
+
+
+@pytest.mark.parametrize("wanted", [set(), {"motor"}, {"proximity", "buttons"}, {"pose", "ground", "leds"}])
+def test_readings_are_the_same_whatever_is_wanted(wanted: set[str]) -> None:
+    everything, some = (World(make([FLOOR, box(0.3, 0.0, 0.02, 0.4)], TWO), seed=4) for _ in range(2))
+    for world in (everything, some):
+        for robot in world.robots:
+            world.post(robot, MotorTargets(200, 180))
+    stateless = {sensor.name for sensor in all_sensors() if sensor.is_stateless}
+    left_out = set()
+    for tick in range(300):
+        names = frozenset(wanted) if tick < 200 else frozenset({"pose"})
+        found, expected = some.step(names), everything.step()
+        assert found[::2] == expected[::2]
+        assert list(found.readings) == [row for row in expected.readings if row[1] in names or row[1] not in stateless]
+        left_out |= {row[1] for row in expected.readings} - {row[1] for row in found.readings}
+    assert left_out >= {"motor", "buttons", "proximity"} - wanted
+    assert everything.snapshot() == some.snapshot()
+
+
+def test_a_recorder_gets_all_readings() -> None:
+    class Recorder:
+        def __init__(self) -> None:
+            self.sensors: set[str] = set()
+
+        def record(self, tick: int, event: object) -> None:
+            """Inputs are of no interest here."""
+
+        def record_step(self, result: Any) -> None:
+            self.sensors.update(sensor for _, sensor, _ in result[1])
+
+    world = World(make([FLOOR]))
+    world.step(frozenset())
+    world.recorder = recorder = Recorder()
+    for _ in range(10):
+        world.step(frozenset())
+    assert recorder.sensors >= {"motor", "pose", "buttons", "proximity"}
+
+
+def test_a_stateless_sensor_can_be_read_at_any_time() -> None:
+    world = World(make([FLOOR]), noise=False)
+    (name,) = world.robots
+    world.post(name, MotorTargets(100, -100))
+    world.step(frozenset())
+    reading = world.read(name, "motor")
+    assert reading is not None
+    assert reading.words[:2] == (100, -100)
+    with pytest.raises(KeyError):
+        world.read(name, "nothing")
 
 
 def test_readings_come_by_robot_and_then_by_sensor_name() -> None:

@@ -21,7 +21,7 @@ from thymio_sim_ros.cli.options import (
 )
 from thymio_sim_ros.cli.output import print_json
 from thymio_sim_ros.cli.runner_faults import RunnerFaults
-from thymio_sim_ros.cli.runner_sound import run_with_sound
+from thymio_sim_ros.cli.runner_sound import SOUND_SENSOR, run_with_sound
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.runlog.run_log import RunLog
@@ -59,7 +59,8 @@ def run(argv: Sequence[str]) -> int:
         faults = RunnerFaults(runner, _print_error)
         started = time.perf_counter()
         with StopSignal() as stop:
-            steps = faults.checked(stop.until_signal(runner.steps(options.seconds)))
+            sensors = () if options.sound is None else (SOUND_SENSOR,)
+            steps = faults.checked(stop.until_signal(runner.steps(options.seconds, sensors)))
             if options.sound is None:
                 deque(steps, maxlen=0)
             else:

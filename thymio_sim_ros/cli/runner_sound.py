@@ -12,7 +12,10 @@ from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
 from thymio_sim_ros.sim.model.readings import LoudspeakerReading
 from thymio_sim_ros.sim.world import StepResult
 
-__all__ = ["run_with_sound"]
+__all__ = ["SOUND_SENSOR", "run_with_sound"]
+
+SOUND_SENSOR = "loudspeaker"
+"""The sensor whose readings `run_with_sound` needs."""
 
 
 def run_with_sound(runner: Runner, steps: Iterable[StepResult], file: Path) -> None:

@@ -9,11 +9,12 @@ settings and radio. A reset clears all variables and switches the lights off.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 from aseba_vm import VirtualMachine
 from aseba_vm.machine.costs import NO_COSTS
 from thymio_sim_ros.device.costs import COSTS
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.event_queue import POLICIES, EventQueue, GlobalEvent
 from thymio_sim_ros.device.firmware.indicators import PERIOD_NS, Indicators
 from thymio_sim_ros.device.firmware.sd_card import SdCard
@@ -34,6 +35,7 @@ from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.device.run_control import RunControl
 from thymio_sim_ros.device.variables import DeviceVariables
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.model.clock import NEVER_NS, TICK_NS
 
 __all__ = ["AsebaDevice"]
 
@@ -52,9 +54,12 @@ class AsebaDevice:
         self.layout = options.layout
         """Name of the memory layout."""
         described = target(self.layout)
+        self.due = due = DueTime()
+        """The time from which `run` or `pop_commands` has anything to do, if the device is left alone until then."""
         queue = EventQueue(
             POLICIES[options.events],
             [FIRST_LOCAL_EVENT - described.local_event_number(name) for name in ("timer0", "timer1")],
+            due,
         )
         self.notices = Notices()
         """Messages for the user."""
@@ -79,12 +84,12 @@ class AsebaDevice:
             costs=NO_COSTS if queue.policy.interrupts else COSTS,
         )
         network_events = NetworkEvents(self.load_meter)
-        self.variables = DeviceVariables(vm)
+        self.variables = DeviceVariables(vm, due)
         """The variables by name."""
         self.local_events = LocalEvents(described, queue, indicators, outputs)
         """The local events that a user watches."""
         scheduler = HandlerScheduler(
-            vm, queue, self.variables, self.local_events, network_events, self.services, self.load_meter
+            vm, queue, self.variables, self.local_events, network_events, self.services, self.load_meter, due
         )
         program = load_program("", "none", self.layout)
         self.run_control = RunControl(
@@ -96,11 +101,12 @@ class AsebaDevice:
         self._inputs = Inputs(self.layout, queue.policy.periods_ns, vm, self.variables, self.local_events)
         self._intensity, _ = described.addresses["mic.intensity"]
         self._initial_event: GlobalEvent | None = None
+        self._indicated_sensors = self._inputs.sensors_of(indicators.addresses)
         self._now_ns = 0
         self._indicators_ns = 0
-        """Beginning of the period of the last update of the indicators."""
-        self._indicated: tuple[int, int] | None = None
-        """Numbers of writes and of changed readings at that update."""
+        """Time of the next update of the indicators; NEVER_NS while nothing has changed that they show."""
+        self._indicators_free_ns = 0
+        """Time from which they may be updated again: once per period."""
         self._sent_writes: int | None = None
         """Number of writes when variables were last compared with the commands sent."""
         self.load(program)
@@ -123,17 +129,12 @@ class AsebaDevice:
     @property
     def is_due(self) -> bool:
         """Whether `run` or `pop_commands` has anything to do."""
-        return self.is_busy or self._sent_writes != self.variables.writes or self._is_indicator_update_due
+        return self.due.ns <= self._now_ns
 
     @property
     def has_emitted(self) -> bool:
         """Whether `pop_events` would return events."""
         return self._network_events.has_emitted
-
-    @property
-    def _is_indicator_update_due(self) -> bool:
-        """Whether the indicators have not been updated in the current period."""
-        return not 0 <= self._now_ns - self._indicators_ns < PERIOD_NS
 
     def load(self, program: ThymioProgram, *, warm: bool = False, initial_event: EmittedEvent | None = None) -> None:
         """Replace the program and reset the robot; the next `run` starts with the initialization.
@@ -160,16 +161,39 @@ class AsebaDevice:
         self.services.reinitialize()
         self._inputs.clear()
 
-    def feed(self, sensor: str, words: Sequence[int]) -> None:
+    def feed(self, sensor: str, words: Sequence[int], now_ns: int | None = None) -> None:
         """Store the words of a reading (int16) and queue the events that it causes.
 
-        Raises KeyError for an unknown sensor and ValueError for a wrong number of words.
+        `now_ns` is its time; None: that of the last `advance`. Raises KeyError for an unknown sensor and ValueError for
+        a wrong number of words.
         """
-        self._inputs.feed(sensor, words, self._now_ns)
+        now_ns = self._now_ns if now_ns is None else now_ns
+        has_changed = self._inputs.feed(sensor, words, now_ns)
         if sensor == _SOUND:
             self._indicators.record_intensity(words[0])
         elif sensor == _BATTERY:
             self._indicators.set_charging(is_charging=bool(words[-1]))
+        address = self._indicated_sensors.get(sensor) if has_changed else None
+        if self._indicators.is_animated or (address is not None and self._indicators.is_outdated(address, words)):
+            self._plan_indicators(now_ns)
+
+    def wants_event(self, sensor: str) -> bool:
+        """Whether the event of a sensor has a receiver. Raises KeyError for an unknown sensor."""
+        return self._inputs.wants_event(sensor)
+
+    def measure_on_read(
+        self, sensors: Collection[str], measure: Callable[[], Iterable[tuple[str, Sequence[int]]]]
+    ) -> None:
+        """Store the readings of `measure` whenever variables may be read.
+
+        `measure` returns (sensor, words) for those of `sensors` that are not fed. It causes no events.
+        """
+
+        def store() -> None:
+            for sensor, words in measure():
+                self._inputs.store(sensor, words)
+
+        self.variables.measure_on_read(self._inputs.addresses_of(sensors), store)
 
     def receives_from(self, sender: AsebaDevice) -> bool:
         """Whether the radios of both devices are set to the same network."""
@@ -191,7 +215,14 @@ class AsebaDevice:
 
     def advance(self, now_ns: int) -> None:
         """Advance simulated time; the next `run` handles the timer events that are due."""
+        before_ns = now_ns - TICK_NS
+        if self._scheduler.has_stale_periods and self._now_ns < before_ns < self._queue.next_timer_ns:
+            self._queue.advance(before_ns)  # a timer whose period was changed since counts from then
+        if now_ns < self._now_ns:
+            self._indicators_ns = self._indicators_free_ns = 0
+            self.due.set_now()
         self._queue.advance(now_ns)
+        self._outputs.advance(now_ns)
         self.services.advance(now_ns, self._vm.variables.words[self._intensity])
         self._now_ns = now_ns
 
@@ -208,23 +239,43 @@ class AsebaDevice:
         The order is: native calls; indicators of the firmware, because a native call may just have taken over their
         lights; changed variables.
         """
-        is_off, writes = self.run_control.is_off, self.variables.writes
-        if self._is_indicator_update_due:
-            self._indicators_ns = self._now_ns - self._now_ns % PERIOD_NS
-            changes = (writes, self._inputs.changes)
-            if not is_off and (changes != self._indicated or self._indicators.is_animated):
-                self._indicated = changes
+        is_off, writes, now_ns = self.run_control.is_off, self.variables.writes, self._now_ns
+        are_written = self._sent_writes != writes
+        if are_written:
+            self._plan_indicators(now_ns)
+        if self._indicators_ns <= now_ns:
+            self._indicators_ns = NEVER_NS
+            if not is_off:
                 self._outputs.queue(*self._indicators.update(self._vm.variables.words))
+        self.end_tick(now_ns)
+        if self._indicators.is_animated and not is_off:
+            self._plan_indicators(now_ns)
         changed: list[Command] = []
-        if self._sent_writes != writes:
+        if are_written:
             self._sent_writes = writes
             if not is_off:
                 changed = self._outputs.pop_changes()
-        return self._outputs.pop(self._now_ns) + changed
+        self.due.ns = self._next_due_ns()
+        return self._outputs.pop() + changed
+
+    def end_tick(self, now_ns: int) -> None:
+        """Note that all that was due at this time is done."""
+        self._indicators_free_ns = now_ns - now_ns % PERIOD_NS + PERIOD_NS
 
     def pop_events(self) -> list[EmittedEvent]:
         """Return and clear the emitted events, in order."""
         return self._network_events.pop()
+
+    def _plan_indicators(self, now_ns: int) -> None:
+        """Update the indicators at the next multiple of their period."""
+        if self._indicators_ns > now_ns:
+            self._indicators_ns = max(-(-now_ns // PERIOD_NS) * PERIOD_NS, self._indicators_free_ns)
+            self.due.bring_forward(self._indicators_ns)
+
+    def _next_due_ns(self) -> int:
+        if self.is_busy or self.services.is_recording:
+            return 0
+        return min(self._indicators_ns, self._queue.next_timer_ns)
 
     def _on_reset(self, vm: VirtualMachine) -> None:
         """Set the robot's variables after a reset of the machine (docs/spec/thymio-robot.md section 4)."""

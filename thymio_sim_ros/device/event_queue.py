@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.firmware.timers import Timers
 
 __all__ = ["FIRMWARE", "MAX_PENDING", "POLICIES", "EventQueue", "GlobalEvent", "Policy"]
@@ -53,9 +54,10 @@ class GlobalEvent:
 class EventQueue:
     """Pending events of one machine. Invariant: with a coalescing policy each local event is pending at most once."""
 
-    def __init__(self, policy: Policy, timer_events: Sequence[int]) -> None:
-        """`timer_events`: indexes of the events of the two timers."""
+    def __init__(self, policy: Policy, timer_events: Sequence[int], due: DueTime) -> None:
+        """`timer_events`: indexes of the events of the two timers. An added event makes `due` now."""
         self.policy = policy
+        self._due = due
         self._timer_events = timer_events
         self._timers = Timers()
         self._pending: list[int] = []
@@ -72,6 +74,11 @@ class EventQueue:
         """Whether a global event is pending."""
         return bool(self._global)
 
+    @property
+    def next_timer_ns(self) -> int:
+        """Time at which a timer fires next; NEVER_NS if none runs."""
+        return self._timers.next_ns
+
     def is_timer(self, index: int) -> bool:
         """Whether a local event is that of a timer."""
         return index in self._timer_events
@@ -79,12 +86,14 @@ class EventQueue:
     def add_local(self, index: int) -> None:
         """Add a local event that occurs now."""
         self._add(self._local_now, index)
+        self._due.set_now()
 
     def add_global(self, event: GlobalEvent) -> bool:
         """Add a global event; return False if the queue is full."""
         if len(self._global) >= MAX_PENDING:
             return False
         self._global.append(event)
+        self._due.set_now()
         return True
 
     def advance(self, now_ns: int) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from aseba_vm import VirtualMachine
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.event_queue import EventQueue, GlobalEvent
 from thymio_sim_ros.device.firmware.services import FirmwareServices
 from thymio_sim_ros.device.local_events import FIRST_LOCAL_EVENT, LocalEvents
@@ -32,13 +33,17 @@ class HandlerScheduler:
         network_events: NetworkEvents,
         services: FirmwareServices,
         meter: LoadMeter,
+        due: DueTime,
     ) -> None:
-        """`services` have the number of the robot, `meter` the costs of native calls and events."""
+        """`services` have the number of the robot, `meter` the costs of native calls and events.
+
+        Periods of timers to be read make `due` now.
+        """
         self.event = ""
         """Name of the event of the last handler started, or INIT."""
         self._vm, self._queue, self._variables = vm, queue, variables
         self._local_events, self._network_events = local_events, network_events
-        self._services, self._meter = services, meter
+        self._services, self._meter, self._due = services, meter, due
         self._handler_start = 0
         """Value of `vm.instructions` at the start of the handler."""
         self._periods = vm.target.addresses["timer.period"]
@@ -50,10 +55,10 @@ class HandlerScheduler:
     def is_busy(self) -> bool:
         """Whether `run` has work: an unfinished handler, a pending event, or periods of timers to read."""
         vm = self._vm
-        return (vm.is_active or self._queue.has_events or self._has_stale_periods) and not vm.is_step_by_step
+        return not vm.is_step_by_step and (vm.is_active or self._queue.has_events or self.has_stale_periods)
 
     @property
-    def _has_stale_periods(self) -> bool:
+    def has_stale_periods(self) -> bool:
         """Whether the periods of the timers may have been changed from outside the program."""
         return not self._are_periods_read or self._variables.sets != self._sets_at_reading
 
@@ -69,15 +74,11 @@ class HandlerScheduler:
         """
         if not self.is_busy:
             return
-        self._variables.count_write()
+        self._variables.prepare_run()
         vm, queue, meter = self._vm, self._queue, self._meter
         handler_budget = queue.policy.handler_budget
-        end, charged = vm.instructions + budget, meter.charged
-        while (
-            self.is_busy
-            and vm.instructions < end
-            and not (queue.policy.interrupts and meter.charged - charged >= budget)
-        ):
+        end, charged, is_busy = vm.instructions + budget, meter.charged, True
+        while is_busy and vm.instructions < end and not (queue.policy.interrupts and meter.charged - charged >= budget):
             if not vm.is_active or (
                 queue.policy.interrupts and queue.has_events and vm.instructions > self._handler_start
             ):
@@ -85,25 +86,29 @@ class HandlerScheduler:
             elif queue.has_global and vm.instructions - self._handler_start >= handler_budget:
                 self._start_global(queue.pop_global())
             vm.run(min(handler_budget, end - vm.instructions))
-            if process_messages():
+            is_restarted = process_messages()
+            if not vm.is_active:
+                self._read_timer_periods()
+            if is_restarted:
                 break  # a robot that restarts takes a while
             if queue.policy.interrupts and vm.is_active and not queue.has_events:
                 break  # the rest of a long handler belongs to the next step
-        meter.count_run(is_cut=self.is_busy and meter.charged - charged >= budget // 2)
-        if not vm.is_active:
-            self._read_timer_periods()
+            is_busy = self.is_busy
+        meter.count_run(is_cut=meter.charged - charged >= budget // 2 and self.is_busy)
 
     def start_next_if_idle(self) -> bool:
         """Start the handler of the next event if no handler is active; return whether one was started."""
         if self._vm.is_active:
             return False
         while not self._vm.is_active and self._queue.has_events:
+            self._read_timer_periods()
             self._start_next()
         return self._vm.is_active
 
     def invalidate_timer_periods(self) -> None:
         """Make the next `run` read the periods of the timers, even if no event is pending."""
         self._are_periods_read = False
+        self._due.set_now()
 
     def reset(self) -> None:
         """Drop all pending events, stop all timers, and note that the initialization starts."""
@@ -112,7 +117,7 @@ class HandlerScheduler:
 
     def _start_next(self) -> None:
         """Start the handler of the next event, if any."""
-        if not self._vm.is_active:
+        if not self._vm.is_active and self.has_stale_periods:
             self._read_timer_periods()
         event = self._queue.pop()
         if isinstance(event, GlobalEvent):

@@ -30,7 +30,7 @@ __all__ = ["Outputs"]
 _SOUNDS = frozenset({PlayTone, PlaySystemSound, PlaySamples, StopSound})
 """Commands that count as use of sound by a program."""
 LIGHT_REPEAT_NS = 500_000_000
-"""Time after which a repeated setting of lights to the same levels is sent again."""
+"""Period in which a repeated setting of lights to the same levels is sent once."""
 _NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
@@ -51,7 +51,8 @@ class Outputs:
         self._queued: list[Command] = []
         self._sent: list[list[int]] = []
         self._light_levels: dict[str, tuple[int, ...]] = {}
-        self._lights_cleared_ns = 0
+        self._light_period = 0
+        """Number of the period of `LIGHT_REPEAT_NS` to which `_light_levels` belongs."""
 
     def reset(self, vm: VirtualMachine) -> None:
         """Queue the commands of a reset: those of variables that are 0, and those of all actuators."""
@@ -85,11 +86,15 @@ class Outputs:
         for variable, words in writes.items():
             self._write(variable, words)
 
-    def pop(self, now_ns: int) -> list[Command]:
-        """Return and clear the queued commands."""
-        if not 0 <= now_ns - self._lights_cleared_ns < LIGHT_REPEAT_NS:
-            self._lights_cleared_ns = now_ns
+    def advance(self, now_ns: int) -> None:
+        """Advance simulated time."""
+        period = max(0, now_ns - 1) // LIGHT_REPEAT_NS
+        if period != self._light_period:
+            self._light_period = period
             self._light_levels.clear()
+
+    def pop(self) -> list[Command]:
+        """Return and clear the queued commands."""
         commands, self._queued = self._queued, []
         return commands
 
@@ -131,9 +136,11 @@ class Outputs:
         assert self._vm is not None
         if variable not in self._addresses:
             return
-        address, _ = self._addresses[variable]
-        self._vm.write_variables(address, words)
+        address, size = self._addresses[variable]
         number = self._by_address.get(address)
+        if number is not None and self._sent[number] == words == self._vm.variables.words[address : address + size]:
+            return
+        self._vm.write_variables(address, words)
         if number is not None:
             self._sent[number] = self._words(self._outputs[number])
 

@@ -78,6 +78,7 @@ class RunControl:
         if self._state == OFF:
             self._restart()
             return
+        self._variables.refresh()
         if self._debugger.leave_breakpoint():
             self._variables.count_write()
             self.process_messages()
@@ -152,6 +153,7 @@ class RunControl:
         return bool(requested)
 
     def _step(self, execute: Callable[[], object]) -> None:
+        self._variables.refresh()
         execute()
         self._variables.count_write()
         self.process_messages()

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from aseba_vm import VirtualMachine
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.programs.program import ThymioProgram
 
 __all__ = ["DeviceVariables"]
@@ -19,14 +20,20 @@ class DeviceVariables:
     compares `writes` first, and the memory itself only if that count has changed.
     """
 
-    def __init__(self, vm: VirtualMachine) -> None:
+    def __init__(self, vm: VirtualMachine, due: DueTime) -> None:
+        """Create the variables of a machine. Whatever may have written them makes `due` now."""
         self.writes = 0
         """Number of runs, resets and calls of `set`: what may have written the memory, apart from readings."""
         self.last_clear = 0
         """Value of `writes` after the last `clear`."""
         self.sets = 0
         """Number of calls of `set`."""
-        self._vm = vm
+        self._measure: Callable[[], None] | None = None
+        self._measured: frozenset[int] = frozenset()
+        self._program_words: Sequence[int] = ()
+        self._are_measured_used = False
+        """Whether the program may read variables that are measured when they are read."""
+        self._vm, self._due = vm, due
         self._robot_addresses = vm.target.addresses
         self._program_addresses: Mapping[str, tuple[int, int]] = {}
         self._allocated = 0
@@ -35,6 +42,24 @@ class DeviceVariables:
         """Replace the variables of the program. The memory stays as it is."""
         self._program_addresses = program.program.addresses
         self._allocated = program.program.allocated
+        self._program_words = program.program.words
+        self._find_uses()
+
+    def measure_on_read(self, addresses: Collection[int], measure: Callable[[], None]) -> None:
+        """Call `measure`, which writes the variables at these addresses, before any variable is read or written."""
+        self._measured, self._measure = frozenset(addresses), measure
+        self._find_uses()
+
+    def refresh(self) -> None:
+        """Write the variables that are measured when they are read."""
+        if self._measure is not None:
+            self._measure()
+
+    def prepare_run(self) -> None:
+        """Get ready for a run of the program."""
+        if self._are_measured_used:
+            self.refresh()
+        self.count_write()
 
     def addresses(self) -> dict[str, tuple[int, int]]:
         """Address and size in words of every variable, including those of the program."""
@@ -42,10 +67,12 @@ class DeviceVariables:
 
     def words(self) -> list[int]:
         """Words (int16) of all variables in order of address."""
+        self.refresh()
         return list(self._vm.variables.words[: self._allocated])
 
     def get(self, name: str) -> tuple[int, ...]:
         """Words (int16) of a variable. Raises KeyError for an unknown name."""
+        self.refresh()
         address, size = self.addresses()[name]
         return tuple(self._vm.variables[address : address + size])
 
@@ -57,12 +84,14 @@ class DeviceVariables:
         wrong = [word for word in words if word not in INT16]
         if wrong:
             raise ValueError(f"{name}: {wrong[0]} found, expected -32768 to 32767")
+        self.refresh()
         self._vm.write_variables(address, words)
         self.sets += 1
         self.count_write()
 
     def clear(self, initial_values: Mapping[str, Sequence[int]]) -> None:
         """Set all words to 0, then these variables of the robot. Raises KeyError for an unknown name."""
+        self.refresh()
         self._vm.variables[:] = [0] * len(self._vm.variables)
         for name, words in initial_values.items():
             self._vm.write_variables(self._robot_addresses[name][0], words)
@@ -72,3 +101,9 @@ class DeviceVariables:
     def count_write(self) -> None:
         """Count a moment at which the program, or a step of it, may have written the memory."""
         self.writes += 1
+        self._due.set_now()
+
+    def _find_uses(self) -> None:
+        # Code refers to a variable by its address: the lower 12 bits of an instruction, or a word of its own. Other
+        # words that look like one do no harm.
+        self._are_measured_used = any(word & 0xFFF in self._measured for word in self._program_words)

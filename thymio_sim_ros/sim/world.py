@@ -7,7 +7,7 @@ give the same readings bit for bit. One thread may use a world; nothing here loc
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -88,6 +88,8 @@ class World:
         self.scene = Scene.of(playground)
         periods = None if periods_ns is None else tuple(periods_ns.items())
         self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
+        self.robot_changes = 0
+        """Number of robots added and removed so far."""
         self.recorder: InputRecorder | None = None
         """Gets all inputs and results from now on."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
@@ -104,6 +106,7 @@ class World:
         self._clock = SimClock()
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers, len(self.playground.robots))
+        self._movables = self._physics.movables
         self._robots: dict[str, Robot] = {}
         self._shared = SharedState(
             self._clock,
@@ -116,6 +119,8 @@ class World:
         )
         self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
+        self._wanted: Collection[str] | None = None
+        """The sensors wanted in the last step."""
         for start in self.playground.robots:
             self._add(start)
         self._posted: list[tuple[str, Command]] = []
@@ -151,17 +156,21 @@ class World:
         Raises KeyError for an unknown name, TypeError for a command that is not accepted, ValueError for a pose that is
         not finite, and PlacementError if the target position is occupied now.
         """
-        if name in self._physics.movables:
+        robot = self._robots.get(name)
+        if robot is not None:
+            if not robot.accepts(command):
+                raise TypeError(f"no actuator or stimulus accepts a {type(command).__name__}")
+            if isinstance(command, MoveRobot):
+                pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
+                self._check_place(footprint_of_robot(name, pose))
+        else:
+            movable = self._movables[name]
             if not isinstance(command, MoveObject):
                 raise TypeError(f"an object accepts no {type(command).__name__}")
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
-            self._check_place(footprint_of(self._physics.movables[name].solid.at(pose)))
-        elif not self._robots[name].accepts(command):
-            raise TypeError(f"no actuator or stimulus accepts a {type(command).__name__}")
-        elif isinstance(command, MoveRobot):
-            pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
-            self._check_place(footprint_of_robot(name, pose))
-        self._record(Posted(name, command))
+            self._check_place(footprint_of(movable.solid.at(pose)))
+        if self.recorder is not None:
+            self._record(Posted(name, command))
         self._posted.append((name, command))
 
     def spawn(self, start: RobotStart) -> None:
@@ -185,6 +194,7 @@ class World:
     def remove(self, robot: str) -> None:
         """Remove a robot at once; raises KeyError for an unknown name."""
         gone = self._robots.pop(robot)
+        self.robot_changes += 1
         rows = self._batch.rows
         self._physics.remove_robot(gone.body)
         self._shared.forget(gone)
@@ -192,9 +202,17 @@ class World:
         self._posted = [(name, command) for name, command in self._posted if name != robot]
         self._batch = RobotBatch(self._robots.values(), self._shared, rows)
 
-    def step(self) -> StepResult:
-        """Advance the world by one tick."""
-        self._apply_commands()
+    def step(self, sensors: Collection[str] | None = None) -> StepResult:
+        """Advance the world by one tick.
+
+        `sensors`: names of the sensors whose readings are wanted; None: all. Of the others, those that are stateless do
+        not measure. The run is the same, and so are all readings, whatever is wanted. A recorder wants all.
+        """
+        wanted = None if self.recorder is not None else sensors
+        if wanted is not self._wanted:
+            self._select(wanted)
+        if self._posted:
+            self._apply_commands()
         self._batch.act(_TICK_S)
         contacts = self._move_bodies()
         now_ns = self._clock.advance()
@@ -202,6 +220,22 @@ class World:
         if self.recorder is not None:
             self.recorder.record_step((now_ns, tuple(result.readings), contacts))
         return result
+
+    def read(self, robot: str, sensor: str) -> Reading | None:
+        """Return what a stateless sensor measures now. Raises KeyError for an unknown robot or sensor."""
+        return self._batch.read(self._robots[robot], sensor)
+
+    def _select(self, wanted: Collection[str] | None) -> None:
+        self._wanted = wanted
+        self._schedule.select(
+            None
+            if wanted is None
+            else {
+                number
+                for number, sensor in enumerate(self._sensors)
+                if sensor.name in wanted or not sensor.is_stateless
+            }
+        )
 
     def snapshot(self) -> Snapshot:
         """Return the visible state of the world now."""
@@ -214,6 +248,7 @@ class World:
     def _add(self, start: RobotStart) -> None:
         robot = Robot(start, self._shared, self._plugins, self._sensors)
         self._robots[start.name] = robot
+        self.robot_changes += 1
         robot.apply(self._motor_model)
         if start.pen is not None:
             pen = start.pen
@@ -261,7 +296,7 @@ class World:
 
     def _move_bodies(self) -> tuple[Contact, ...]:
         contacts = self._batch.move(self._floor_support)
-        for movable in self._physics.movables.values():
+        for movable in self._movables.values():
             if movable.is_moving:
                 self._drop_over_edge(movable)
         for contact in contacts:

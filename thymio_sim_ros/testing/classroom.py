@@ -91,7 +91,7 @@ class Classroom:
 
     def tick(self) -> None:
         """Advance simulated time by one tick of 10 ms."""
-        self.runner.step()
+        self.runner.step(())
         self._record_events()
         for name, thymio in self.robots.items():
             robot = self.world.robots.get(name)

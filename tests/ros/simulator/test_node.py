@@ -75,7 +75,7 @@ def test_an_internal_error_pauses_the_world_and_is_logged(ros, simulation, monke
     sim = simulation()
     logs, states = ros.collect(Log, "/rosout"), ros.collect(String, "/simulator/_state")
 
-    def fail():
+    def fail(_sensors):
         raise ZeroDivisionError("unexpected")
 
     monkeypatch.setattr(sim.world, "step", fail)

@@ -37,6 +37,16 @@ def test_a_schedule_returns_all_that_is_due_in_order() -> None:
     assert [schedule.due(tick * TICK_NS) for tick in (1, 2, 3)] == [[1], [0, 1], [1]]
 
 
+def test_a_schedule_returns_the_selected_ones_at_their_own_times() -> None:
+    periods = [(20_000_000, 0), (16_384_000, 0), (30_000_000, 0)]
+    everything, some = Schedule(periods), Schedule(periods)
+    for tick in range(1, 300):
+        if tick % 50 == 0:
+            some.select({1, 2} if tick % 100 else None)
+        wanted = {1, 2} if tick % 100 >= 50 else {0, 1, 2}
+        assert list(some.due(tick * TICK_NS)) == [n for n in everything.due(tick * TICK_NS) if n in wanted]
+
+
 @pytest.mark.parametrize("period_ns", [10_000_000, 16_384_000, 50_000_000, 62_500_000, 7_000_000])
 @pytest.mark.parametrize("phase_ns", [0, 10_000_000, 25_000_000])
 def test_the_next_due_time_is_known_without_asking_every_tick(period_ns: int, phase_ns: int) -> None:

@@ -19,6 +19,7 @@ __all__ = [
     "Indicator",
     "RemoteIndicator",
     "SoundIndicator",
+    "StaticIndicator",
 ]
 
 Levels = Mapping[str, tuple[int, ...]]
@@ -42,39 +43,62 @@ class Indicator(Protocol):
         ...
 
 
-class _Static:
+class StaticIndicator:
     """An indicator that does not depend on time."""
 
     is_animated = False
+    is_pure = False
+    """Whether its levels depend on the present words of one variable alone."""
 
 
-class _ProximityIndicator(_Static):
-    """Level of each proximity and ground sensor, scaled between its smallest and its largest reading so far."""
+class _Scale:
+    """Levels of sensors, each between its smallest and its largest reading so far."""
 
-    variables = ("prox.horizontal", "prox.ground.delta")
+    def __init__(self, count: int, low: int, high: int) -> None:
+        self._low, self._high = [low] * count, [high] * count
+
+    def levels(self, values: Sequence[int]) -> list[int]:
+        """Levels for one value of each sensor."""
+        low, high, levels = self._low, self._high, []
+        for number, value in enumerate(values):
+            if 0 < value < low[number]:
+                low[number] = value
+            if value > high[number]:
+                high[number] = value
+            levels.append(max(0, LED_FULL * (value - low[number]) // (high[number] - low[number])))
+        return levels
+
+
+class _ProximityIndicator(StaticIndicator):
+    """Level of each proximity sensor."""
+
+    variables = ("prox.horizontal",)
 
     def __init__(self) -> None:
-        self._low, self._high = [1200] * 7 + [0] * 2, [4000] * 7 + [900] * 2
+        self._scale = _Scale(7, 1200, 4000)
 
     def levels(self, words: Sequence[Sequence[int]]) -> Levels:
-        levels = list(map(self._level, range(9), (*words[0], *words[1])))
-        left, center_left, center, center_right, right, rear_left, rear_right, *ground = levels
-        front = (left, center_left, center, center, center_right, right)
-        return {"proximity": (*front, rear_left, rear_right), "ground": tuple(ground)}
-
-    def _level(self, number: int, value: int) -> int:
-        low, high = self._low, self._high
-        if 0 < value < low[number]:
-            low[number] = value
-        if value > high[number]:
-            high[number] = value
-        return max(0, LED_FULL * (value - low[number]) // (high[number] - low[number]))
+        left, center_left, center, center_right, right, rear_left, rear_right = self._scale.levels(words[0])
+        return {"proximity": (left, center_left, center, center, center_right, right, rear_left, rear_right)}
 
 
-class _InclinationIndicator(_Static):
+class _GroundIndicator(StaticIndicator):
+    """Level of each ground sensor."""
+
+    variables = ("prox.ground.delta",)
+
+    def __init__(self) -> None:
+        self._scale = _Scale(2, 0, 900)
+
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
+        return {"ground": tuple(self._scale.levels(words[0]))}
+
+
+class _InclinationIndicator(StaticIndicator):
     """Light of the circle on the lowest side of a tilted robot."""
 
     variables = ("acc",)
+    is_pure = True
 
     def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         right, forward, up = words[0]
@@ -110,10 +134,11 @@ class ButtonsIndicator:
         return {"buttons": tuple(self._levels)}
 
 
-class _TemperatureIndicator(_Static):
+class _TemperatureIndicator(StaticIndicator):
     """Temperature as a mix of blue (cold) and red (warm)."""
 
     variables = ("temperature",)
+    is_pure = True
 
     def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         ((tenths,),) = words
@@ -195,9 +220,10 @@ class BatteryIndicator:
 
 
 PROXIMITY_GROUPS = ("proximity", "ground")
-"""Groups of one indicator, which ends when a program sets either of them (section 6.3)."""
+"""Groups whose indicators both end when a program sets either of them (section 6.3)."""
 INDICATORS: tuple[Callable[[], Indicator], ...] = (
     _ProximityIndicator,
+    _GroundIndicator,
     _InclinationIndicator,
     ButtonsIndicator,
     _TemperatureIndicator,

@@ -16,6 +16,7 @@ from thymio_sim_ros.device.firmware.indicator_kinds import (
     Indicator,
     RemoteIndicator,
     SoundIndicator,
+    StaticIndicator,
 )
 from thymio_sim_ros.sim.commands import Command, PlaySystemSound, ShowOnLeds
 
@@ -27,17 +28,19 @@ ARROW_SOUND, CENTER_SOUND = 2, 3
 """System sounds of the buttons (section 9)."""
 
 
-def _memory_spans(addresses: Mapping[str, tuple[int, int]]) -> list[tuple[int, int]]:
-    """Ranges of addresses (begin, end) that contain all variables of indicators, adjacent variables joined."""
+def _memory_spans(places: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Ranges of addresses (begin, end) that contain variables (address, size), adjacent variables joined."""
     spans: list[tuple[int, int]] = []
-    for address, size in sorted(
-        addresses[name] for make in INDICATORS for name in make().variables if name in addresses
-    ):
+    for address, size in sorted(places):
         if spans and spans[-1][1] == address:
             spans[-1] = (spans[-1][0], address + size)
         else:
             spans.append((address, address + size))
     return spans
+
+
+Places = list[tuple[int, int, int]]
+"""For each variable of an indicator the index of the range that contains it, and its begin and end within the range."""
 
 
 def _locate(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[int, int, int]:
@@ -59,7 +62,15 @@ class Indicators:
         """
         self._addresses, self._is_measured = addresses, is_measured
         self._buttons = [addresses[name][0] for name in ButtonsIndicator.variables]
-        self._spans = _memory_spans(addresses)
+        places = [addresses[name] for make in INDICATORS for name in make().variables if name in addresses]
+        self.addresses = tuple(address for address, _ in places)
+        """Addresses of the variables that they show."""
+        self._spans = _memory_spans(places)
+        self._button_parts = frozenset(
+            number
+            for number, (begin, end) in enumerate(self._spans)
+            if any(begin <= address < end for address in self._buttons)
+        )
         self._pressed = [0] * len(self._buttons)
         self.reset()
 
@@ -69,12 +80,22 @@ class Indicators:
         indicators: list[Indicator] = [*(make() for make in INDICATORS), self._remote]
         self._sound = next(indicator for indicator in indicators if isinstance(indicator, SoundIndicator))
         self._battery = next(indicator for indicator in indicators if isinstance(indicator, BatteryIndicator))
-        self._indicators = [
-            (indicator, [_locate(self._spans, *self._addresses[name]) for name in indicator.variables])
-            for indicator in indicators
-            if all(name in self._addresses for name in indicator.variables)
+        self._indicators: list[tuple[Indicator, Places, frozenset[int]]] = []
+        """Indicators with the places of their variables, and the numbers of the ranges that contain these."""
+        for indicator in indicators:
+            if all(name in self._addresses for name in indicator.variables):
+                places = [_locate(self._spans, *self._addresses[name]) for name in indicator.variables]
+                self._indicators.append((indicator, places, frozenset(part for part, _, _ in places)))
+        self._animated = [
+            indicator for indicator, _, _ in self._indicators if not isinstance(indicator, StaticIndicator)
         ]
-        self._without_data = {indicator for indicator, _ in self._indicators}
+        self._pure = {
+            self._addresses[indicator.variables[0]][0]: indicator
+            for indicator, _, _ in self._indicators
+            if isinstance(indicator, StaticIndicator) and indicator.is_pure
+        }
+        """Pure indicators by the address of their variable."""
+        self._without_data = {indicator for indicator, _, _ in self._indicators}
         """Indicators whose variables were not measured since the reset."""
         self._shown: dict[str, tuple[int, ...]] = {}
         self._claimed_groups: set[str] = set()
@@ -108,32 +129,48 @@ class Indicators:
         self._remote.flash()
         self.is_animated = True
 
-    def update(self, memory: Sequence[int]) -> Iterable[Command]:
+    def is_outdated(self, address: int, words: Sequence[int]) -> bool:
+        """Whether an update may change lights after a variable at this address got these words."""
+        indicator = self._pure.get(address)
+        if indicator is None or indicator in self._without_data:
+            return True
+        return any(
+            group not in self._claimed_groups and levels != self._shown.get(group, (0,) * len(levels))
+            for group, levels in indicator.levels((words,)).items()
+        )
+
+    def update(self, memory: Sequence[int]) -> Sequence[Command]:
         """Return commands for changed lights, and sounds for touched buttons; `memory` has all words (int16)."""
         parts = [memory[begin:end] for begin, end in self._spans]
-        changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
-        if not changed and not self.is_animated and not self._without_data:
+        if parts == self._last and not self.is_animated and not self._without_data:
             return ()
+        changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
         self._last = parts
-        commands = [*self._lights(parts, changed), *self._button_sounds(memory)]
-        self.is_animated = any(indicator.is_animated for indicator, _ in self._indicators)
+        commands: list[Command] = []
+        for indicator, places, used in self._indicators:
+            if indicator in self._without_data:
+                self._update_first(indicator, places, commands)
+            elif not used.isdisjoint(changed) or indicator.is_animated:
+                self._update_one(indicator, places, commands)
+        if not self._button_parts.isdisjoint(changed):
+            commands += self._button_sounds(memory)
+        self.is_animated = any(indicator.is_animated for indicator in self._animated)
         return commands
 
-    def _lights(self, parts: Sequence[Sequence[int]], changed: set[int]) -> Iterator[Command]:
-        for indicator, places in self._indicators:
-            if indicator in self._without_data:
-                if indicator.variables and not any(
-                    self._is_measured(self._addresses[name][0]) for name in indicator.variables
-                ):
-                    continue  # not measured since the reset
-                self._without_data.discard(indicator)
-            elif not indicator.is_animated and not any(part in changed for part, _, _ in places):
-                continue
-            words = [parts[part][begin:end] for part, begin, end in places]
-            for group, levels in indicator.levels(words).items():
-                if group not in self._claimed_groups and levels != self._shown.get(group, (0,) * len(levels)):
-                    self._shown[group] = levels
-                    yield ShowOnLeds(group, levels)
+    def _update_first(self, indicator: Indicator, places: Places, commands: list[Command]) -> None:
+        """Update an indicator that had no data, if its variables have been measured since the reset."""
+        addresses = [self._addresses[name][0] for name in indicator.variables]
+        if not addresses or any(map(self._is_measured, addresses)):
+            self._without_data.discard(indicator)
+            self._update_one(indicator, places, commands)
+
+    def _update_one(self, indicator: Indicator, places: Places, commands: list[Command]) -> None:
+        assert self._last is not None
+        words = [self._last[part][begin:end] for part, begin, end in places]
+        for group, levels in indicator.levels(words).items():
+            if group not in self._claimed_groups and levels != self._shown.get(group, (0,) * len(levels)):
+                self._shown[group] = levels
+                commands.append(ShowOnLeds(group, levels))
 
     def _button_sounds(self, memory: Sequence[int]) -> Iterator[Command]:
         before, self._pressed = self._pressed, [memory[address] for address in self._buttons]

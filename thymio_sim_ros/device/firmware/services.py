@@ -59,6 +59,11 @@ class FirmwareServices:
         self._recorder: SoundRecorder | None = None
         self._now_ns = 0
 
+    @property
+    def is_recording(self) -> bool:
+        """Whether sound is recorded."""
+        return self._recorder is not None
+
     def reset(self) -> None:
         """Reset the services when the program restarts."""
         self.stop_recording()

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from thymio_sim_ros.sim.model.clock import NEVER_NS
+
 MILLISECOND_NS = 1_000_000
 
 MAX_LAG_MS = 1000
@@ -42,6 +44,11 @@ class Timers:
     def are_due(self) -> bool:
         """Whether a timer fires in the time that is not counted yet."""
         return self._next_ms is not None and self._next_ms <= self._clock_ms and self._at_ms is not None
+
+    @property
+    def next_ns(self) -> int:
+        """Time of the next firing; NEVER_NS if no timer runs."""
+        return NEVER_NS if self._next_ms is None else self._next_ms * MILLISECOND_NS
 
     def set_clock(self, now_ns: int) -> tuple[int, ...]:
         """Advance the clock; return the timers that fired before its previous time. A jump back restarts all timers."""

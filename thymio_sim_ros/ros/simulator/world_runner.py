@@ -150,7 +150,7 @@ class WorldRunner:
         endpoints = self._endpoints
         self.update_robots()
         for _ in range(ticks):
-            result = self.world.step()
+            result = self.world.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
             if self.paused:
                 endpoints.clock.publish(result.now_ns, last=True)

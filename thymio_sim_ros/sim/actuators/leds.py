@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.actuators._led_patterns import Gesture
@@ -159,10 +160,11 @@ def _limited(group: str, levels: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _setter(group: str) -> Callable[[Sequence[int]], Command]:
-    def set_leds(words: Sequence[int]) -> Command:
+    @lru_cache(maxsize=256)  # programs set the same levels again and again
+    def command(words: tuple[int, ...]) -> Command:
         return SetLeds(group, tuple(map(units.saturate_led, words)))
 
-    return set_leds
+    return lambda words: command(tuple(words))
 
 
 def _copier(variable: str) -> Callable[[Sequence[int]], Mapping[str, Sequence[int]]]:

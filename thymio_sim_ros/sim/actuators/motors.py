@@ -30,6 +30,8 @@ class MotorState:
     """When the targets are in force again."""
     new_model: str | None = None
     """One of `commands.MOTOR_MODELS`, until it is set."""
+    is_set: bool = True
+    """Whether the wheels have the speeds in force."""
 
 
 def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
@@ -58,6 +60,7 @@ def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwis
     else:
         state.speeds_m_s = wheel_speeds(command)
         state.ends_ns = now_ns + command.timeout_ns if command.timeout_ns else None
+    state.is_set = False
 
 
 def _update(state: MotorState, view: ActuatorView, _dt_s: float) -> None:
@@ -67,10 +70,11 @@ def _update(state: MotorState, view: ActuatorView, _dt_s: float) -> None:
         view.wheels.set_controlled(is_controlled=state.new_model == "firmware")
         state.new_model = None
     view.wheels.want(*state.speeds_m_s)
+    state.is_set = True
 
 
 def _is_idle(state: MotorState) -> bool:
-    return state.ends_ns is None and state.new_model is None
+    return state.is_set and state.ends_ns is None
 
 
 def _targets(words: Sequence[int]) -> Command:

@@ -23,7 +23,10 @@ from center to center."""
 
 @runtime_checkable
 class SoundSource(Protocol):
-    """The state of a plug-in that makes sound: any state with this method is heard from where its robot is."""
+    """The state of a plug-in that makes sound: any state with this method is heard from where its robot is.
+
+    A silent state stays silent until its plug-in gets a command, unless it is busy.
+    """
 
     def sound_level(self, now_ns: int) -> float:
         """Level within NEAR_M of the robot at this simulated time; 0 is silent."""

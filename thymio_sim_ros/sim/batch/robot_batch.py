@@ -16,7 +16,7 @@ from thymio_sim_ros.sim.model.noise import tick_number
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
+from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings, ReadingTable, Row
 from thymio_sim_ros.sim.raycast.raycaster import Fan, Raycaster, Values
 from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 
@@ -25,6 +25,8 @@ __all__ = ["RobotBatch"]
 S = TypeVar("S")
 Measure = Callable[[], Sequence[Reading | None]]
 
+_NOBODY: dict[int, list[int]] = {}
+_NEVER: tuple[int, Sequence[Reading | None]] = (-1, ())
 _SLIP_USER = "motors"
 """Name under which wheels draw the random numbers of their slip."""
 
@@ -59,6 +61,9 @@ class RobotBatch:
         sensors = self._robots[0].sensors if self._robots else ()
         self._sensors = [sensor for sensor, _ in sensors]
         self._sensor_names = [sensor.name for sensor in self._sensors]
+        self._numbers = {sensor.name: number for number, sensor in enumerate(self._sensors)}
+        self._read: dict[str, tuple[int, Sequence[Reading | None]]] = {}
+        """What was measured last because it was read, and when, by sensor."""
         self._measure: list[Measure] = []
         for number, sensor in enumerate(self._sensors):
             if sensor.prepare_all is not None:
@@ -115,26 +120,36 @@ class RobotBatch:
                 self._robots[index].edge_fall.check_floor(floor_support)
         return contacts
 
-    def measure(self, due: Sequence[int]) -> ReadingTable:
+    def measure(self, due: Sequence[int]) -> Sequence[Row]:
         """Return the readings of the sensors with these numbers, and of those woken."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
         if not self._robots:
-            return ReadingTable((), ())
-        if not self.shared.woken:
-            return ReadingTable(self._names, [(self._sensor_names[number], self._measure[number]()) for number in due])
-        woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
-        awake = sorted({*due, *chain.from_iterable(woken.values())})
+            return ()
+        woken, awake = _NOBODY, due
+        if self.shared.woken:
+            woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
+            awake = sorted({*due, *chain.from_iterable(woken.values())})
         columns: list[tuple[str, Sequence[Reading | None]]] = []
         for number in awake:
-            if number in due:
+            if awake is due or number in due:
                 column = self._measure[number]()
             else:
                 some = [index for index, numbers in woken.items() if number in numbers]
                 column = [
                     robot.measure_one(number) if index in some else None for index, robot in enumerate(self._robots)
                 ]
-            columns.append((self._sensor_names[number], column))
-        return ReadingTable(self._names, columns)
+            if type(column) is LazyReadings or any(column):
+                columns.append((self._sensor_names[number], column))
+        return ReadingTable(self._names, columns) if columns else ()
+
+    def read(self, robot: Robot, sensor: str) -> Reading | None:
+        """Return what a stateless sensor of one robot measures now. Raises KeyError for an unknown sensor."""
+        now_ns, (read_ns, column) = self.shared.clock.now_ns, self._read.get(sensor, _NEVER)
+        if read_ns != now_ns:
+            self.tick[0] = tick_number(now_ns)
+            column = self._measure[self._numbers[sensor]]()
+            self._read[sensor] = (now_ns, column)
+        return column[self._order[robot]]
 
     def _one_by_one(self, number: int) -> Measure:
         """Return a function that measures a sensor of all robots, one after the other."""

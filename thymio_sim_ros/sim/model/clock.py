@@ -7,7 +7,7 @@ wall clock, which its caller takes (docs/architecture.md, "Time").
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 __all__ = ["NEVER_NS", "TICK_NS", "Pacer", "Schedule", "SimClock", "next_due_ns"]
 
@@ -43,7 +43,7 @@ class Schedule:
     every tick in turn.
     """
 
-    __slots__ = ("_cycle", "_next_ns", "_odd_ns", "_periods_ns")
+    __slots__ = ("_cycle", "_next_ns", "_odd_ns", "_periods_ns", "_selected", "_selected_cycle")
 
     def __init__(self, periods_and_phases_ns: Iterable[tuple[int, int]]) -> None:
         cycle: list[set[int]] = [set() for _ in range(_CYCLE_TICKS)]
@@ -57,20 +57,30 @@ class Schedule:
                     cycle[-(-time_ns // TICK_NS) % _CYCLE_TICKS].add(number)
             else:
                 self._periods_ns[number], self._next_ns[number] = period_ns, first_ns
-        self._cycle = [sorted(due) for due in cycle]
+        self._cycle = self._selected_cycle = [sorted(due) for due in cycle]
+        self._selected: Collection[int] | None = None
         self._odd_ns = min(self._next_ns.values(), default=NEVER_NS)
         """When the next thing happens that does not fit."""
 
+    def select(self, numbers: Collection[int] | None) -> None:
+        """Let `due` return these numbers only; None: all."""
+        self._selected = numbers
+        self._selected_cycle = self._cycle
+        if numbers is not None:
+            self._selected_cycle = [[number for number in due if number in numbers] for due in self._cycle]
+
     def due(self, now_ns: int) -> Sequence[int]:
         """Return the numbers of what is due in the tick that ends now, in order."""
-        due = self._cycle[now_ns // TICK_NS % _CYCLE_TICKS]
+        due = self._selected_cycle[now_ns // TICK_NS % _CYCLE_TICKS]
         if now_ns < self._odd_ns:
             return due
         odd = [number for number, next_ns in self._next_ns.items() if next_ns <= now_ns]
         for number in odd:
             self._next_ns[number] += self._periods_ns[number]
         self._odd_ns = min(self._next_ns.values())
-        return sorted(due + odd)
+        if self._selected is not None:
+            odd = [number for number in odd if number in self._selected]
+        return sorted([*due, *odd])
 
 
 def next_due_ns(period_ns: int, phase_ns: int, now_ns: int) -> int:

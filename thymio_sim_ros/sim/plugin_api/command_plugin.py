@@ -24,7 +24,7 @@ class CommandPlugin:
         begin: Returns the initial state on one robot.
         apply: Called with the state, a command and the simulated time in ns; raises ValueError for bad values.
         update: Called with the state, a view of the robot and the length of the tick in s, in every tick, or, with
-            `is_idle`, in every tick from a command on until the state is idle.
+            `is_idle`, in every tick in which the state is not idle.
         is_idle: Returns whether `update` has nothing to do for this state until the next command.
         shows: Returns what a viewer shows of the state; the items are merged into `RobotSnapshot.shown`.
     """

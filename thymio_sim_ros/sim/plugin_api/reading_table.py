@@ -7,7 +7,7 @@ from typing import Any, overload
 
 from thymio_sim_ros.sim.model.readings import Reading
 
-__all__ = ["LazyReadings", "ReadingTable", "select_rows"]
+__all__ = ["LazyReadings", "ReadingTable", "Row", "select_rows"]
 
 Row = tuple[str, str, Reading]
 
@@ -38,10 +38,10 @@ class LazyReadings(Sequence[Reading | None]):
 class ReadingTable(Sequence[Row]):
     """Readings as (robot, sensor, reading), by robot and then by sensor; equal to a tuple of the same."""
 
-    __slots__ = ("_columns", "_robots", "_rows")
+    __slots__ = ("_robots", "_rows", "columns")
 
     def __init__(self, robots: Sequence[str], columns: Sequence[tuple[str, Sequence[Reading | None]]]) -> None:
-        self._robots, self._columns = robots, columns
+        self._robots, self.columns = robots, columns
         self._rows: tuple[Row, ...] | None = None
 
     def __len__(self) -> int:
@@ -70,16 +70,13 @@ class ReadingTable(Sequence[Row]):
         """Return the rows of some sensors, in the same order, without making the readings of the others."""
         if self._rows is not None:
             return (row for row in self._rows if row[1] in sensors)
-        wanted = [column for column in self._columns if column[0] in sensors]
+        wanted = [column for column in self.columns if column[0] in sensors]
         return ReadingTable(self._robots, wanted) if wanted else ()
 
     def _all(self) -> tuple[Row, ...]:
         if self._rows is None:
-            full = [
-                (sensor, column) for sensor, column in self._columns if isinstance(column, LazyReadings) or any(column)
-            ]
-            names = [sensor for sensor, _ in full]
-            made = zip(*(column for _, column in full), strict=True) if names else ()
+            names = [sensor for sensor, _ in self.columns]
+            made = zip(*(column for _, column in self.columns), strict=True) if names else ()
             self._rows = tuple(
                 [
                     (robot, name, reading)
@@ -88,7 +85,6 @@ class ReadingTable(Sequence[Row]):
                     if reading is not None
                 ]
             )
-            self._columns = ()
         return self._rows
 
 

@@ -13,9 +13,14 @@ __all__ = ["PluginInstance"]
 class PluginInstance:
     """An actuator or stimulus with its state; it acts in every tick in which it is busy."""
 
-    __slots__ = ("is_busy", "is_idle", "state", "update", "view")
+    __slots__ = ("_is_idle", "is_busy", "state", "update", "view")
 
     def __init__(self, plugin: CommandPlugin, state: Any, view: ActuatorView) -> None:
         assert plugin.update is not None
-        self.update, self.is_idle, self.state, self.view = plugin.update, plugin.is_idle, state, view
-        self.is_busy = self.is_idle is None or not self.is_idle(state)
+        self.update, self._is_idle, self.state, self.view = plugin.update, plugin.is_idle, state, view
+        self.is_busy = not self.rests
+
+    @property
+    def rests(self) -> bool:
+        """Whether `update` has nothing to do until the next command."""
+        return self._is_idle is not None and self._is_idle(self.state)

@@ -31,8 +31,8 @@ class SharedState:
     """State that all robots of a world share."""
 
     __slots__ = (
-        "_sounds", "_sounds_ns", "busy", "clock", "ground", "is_noisy", "physics", "proximity_model", "robots", "seed",
-        "woken",
+        "_audible", "_sounds", "_sounds_ns", "busy", "clock", "ground", "is_noisy", "physics", "proximity_model",
+        "robots", "seed", "woken",
     )  # fmt: skip
 
     def __init__(
@@ -53,24 +53,31 @@ class SharedState:
         """Robots with plug-ins to update in the next tick."""
         self.woken: dict[Robot, None] = {}
         """Robots with a sensor that was woken."""
+        self._audible: dict[Robot, None] = {}
+        """Robots that may make a sound."""
         self._sounds: list[Sound] = []
         self._sounds_ns = -1
 
     def forget(self, robot: Robot) -> None:
         """Forget a robot that has left the world."""
-        self.busy.pop(robot, None)
-        self.woken.pop(robot, None)
+        for robots in (self.busy, self.woken, self._audible):
+            robots.pop(robot, None)
+
+    def add_audible(self, robot: Robot) -> None:
+        """Note that a robot may make a sound from now on."""
+        self._audible[robot] = None
 
     def sounds(self) -> list[Sound]:
         """Return all sounds now; they are computed once per tick."""
         now_ns = self.clock.now_ns
         if self._sounds_ns != now_ns:
-            self._sounds_ns = now_ns
-            self._sounds = [
-                Sound(robot.pose.x_m, robot.pose.y_m, level)
-                for robot in self.robots.values()
-                for level in robot.sound_levels(now_ns)
-            ]
+            self._sounds_ns, self._sounds = now_ns, []
+            if self._audible:
+                for robot in [robot for robot in self.robots.values() if robot in self._audible]:
+                    levels = robot.sound_levels(now_ns)
+                    self._sounds += [Sound(robot.pose.x_m, robot.pose.y_m, level) for level in levels]
+                    if not levels and not robot.may_sound:
+                        del self._audible[robot]
         return self._sounds
 
 
@@ -181,9 +188,19 @@ class Robot:
             if plugin.update is not None:
                 view = _PluginView(self, shared, plugin.name)
                 self.instances.append(PluginInstance(plugin, state, view))
+        self._instance_of = {
+            kind: instance
+            for instance in self.instances
+            for kind, (_, state) in self._accepting.items()
+            if instance.state is state
+        }
+        """What acts on a command of each type."""
         self._list_busy()
         self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
         self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
+        self._sounding = [instance for instance in self.instances if isinstance(instance.state, SoundSource)]
+        self._sound_commands = {kind for kind, (_, state) in self._accepting.items() if isinstance(state, SoundSource)}
+        shared.add_audible(self)
         self.sensors = [(sensor, _PluginView(self, shared, sensor.name)) for sensor in sensors]
         self._wakes: dict[type[Any], list[int]] = {}
         for number, (sensor, _) in enumerate(self.sensors):
@@ -229,19 +246,27 @@ class Robot:
         levels = (source.sound_level(now_ns) for source in self._sound_sources)
         return [level for level in levels if level]
 
+    @property
+    def may_sound(self) -> bool:
+        """Whether it may make a sound later without a command."""
+        return any(instance.is_busy for instance in self._sounding)
+
     def accepts(self, command: object) -> bool:
         """Return whether an actuator or stimulus accepts this type of command."""
         return type(command) in self._accepting
 
     def apply(self, command: object) -> None:
         """Pass a command to its actuator or stimulus."""
-        plugin, state = self._accepting[type(command)]
+        kind = type(command)
+        plugin, state = self._accepting[kind]
         plugin.apply(state, command, self._clock.now_ns)
-        self.wake(type(command))
-        for instance in self.instances:
-            if instance.state is state and not instance.is_busy:
-                instance.is_busy = True
-                self._list_busy()
+        self.wake(kind)
+        if kind in self._sound_commands:
+            self._shared.add_audible(self)
+        instance = self._instance_of.get(kind)
+        if instance is not None and not instance.is_busy and not instance.rests:
+            instance.is_busy = True
+            self._list_busy()
 
     def wake(self, kind: type[Any]) -> None:
         """Wake the sensors that have this type in `wakes_on`."""
@@ -255,7 +280,7 @@ class Robot:
         has_rested = False
         for instance in self._busy:
             instance.update(instance.state, instance.view, dt_s)
-            if instance.is_idle is not None and instance.is_idle(instance.state):
+            if instance.rests:
                 instance.is_busy, has_rested = False, True
         if has_rested:
             self._list_busy()

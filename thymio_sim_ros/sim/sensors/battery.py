@@ -36,6 +36,7 @@ SENSOR = Sensor(
     period_ns=1_000_000_000,
     phase_ns=10_000_000,
     measure=_measure,
+    is_stateless=True,
     wakes_on=(SetBattery, ConnectCharger),
     aseba=AsebaFace(variables=(("_vbat", 2),), unseen=("1 while charging",)),
     values=(DisplayedValue("", "V", 1 / _UNITS_PER_V, digits=2, full_scale=_FULL_SCALE_V * _UNITS_PER_V),),

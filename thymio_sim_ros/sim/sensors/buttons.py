@@ -20,6 +20,7 @@ SENSOR = Sensor(
     name="buttons",
     period_ns=20_000_000,
     measure=_measure,
+    is_stateless=True,
     aseba=AsebaFace(variables=tuple((f"button.{button}", 1) for button in BUTTONS), event="buttons", edge_events=True),
     values=(),
 )

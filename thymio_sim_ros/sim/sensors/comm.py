@@ -129,6 +129,7 @@ SENSOR = Sensor(
     name="comm",
     period_ns=100_000_000,
     measure=_measure,
+    is_stateless=True,
     aseba=AsebaFace(
         variables=(("prox.comm.rx", 1), ("prox.comm.rx._payloads", 7), ("prox.comm.rx._intensities", 7)),
         event="prox.comm",

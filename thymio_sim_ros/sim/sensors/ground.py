@@ -123,6 +123,7 @@ SENSOR = Sensor(
     name="ground",
     period_ns=100_000_000,
     prepare_all=_prepare,
+    is_stateless=True,
     aseba=AsebaFace(variables=(("prox.ground.ambiant", 2), ("prox.ground.reflected", 2), ("prox.ground.delta", 2))),
     values=(),
 )

@@ -42,6 +42,7 @@ SENSOR = Sensor(
     name="motor",
     period_ns=10_000_000,
     prepare_all=_prepare,
+    is_stateless=True,
     aseba=AsebaFace(
         variables=(
             ("motor.left.speed", 1),

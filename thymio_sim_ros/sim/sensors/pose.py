@@ -41,4 +41,4 @@ def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
     return measure
 
 
-SENSOR = Sensor(name="pose", period_ns=50_000_000, prepare_all=_prepare)
+SENSOR = Sensor(name="pose", period_ns=50_000_000, prepare_all=_prepare, is_stateless=True)

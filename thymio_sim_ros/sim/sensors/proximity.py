@@ -148,6 +148,7 @@ SENSOR = Sensor(
     name="proximity",
     period_ns=100_000_000,
     prepare_all=_prepare,
+    is_stateless=True,
     aseba=AsebaFace(variables=(("prox.horizontal", _SENSORS),), event="prox"),
     values=(),
 )

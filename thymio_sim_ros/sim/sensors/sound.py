@@ -30,10 +30,10 @@ _SILENCE = 128
 
 
 def _measure(view: SensorView) -> SoundReading | None:
-    level = float(view.state(EnvironmentState).noise_level)
+    intensity = view.state(EnvironmentState).noise_level
     if sounds := view.sounds:
-        level = math.hypot(level, level_at(sounds, view.pose.x_m, view.pose.y_m))
-    intensity = min(FULL_LEVEL, round(level))
+        intensity = round(math.hypot(intensity, level_at(sounds, view.pose.x_m, view.pose.y_m)))
+    intensity = min(FULL_LEVEL, intensity)
     is_loud = view.state(MicrophoneState).is_exceeded(intensity)
     if not should_publish(view, intensity) and not is_loud:
         return None

@@ -26,6 +26,7 @@ SENSOR = Sensor(
     period_ns=1_000_000_000,
     phase_ns=10_000_000,
     measure=_measure,
+    is_stateless=True,
     aseba=AsebaFace(variables=(("temperature", 1),), event="temperature"),
     values=(DisplayedValue("", "°C", 0.1, digits=1, full_scale=500),),
 )
