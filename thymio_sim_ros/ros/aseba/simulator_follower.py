@@ -28,12 +28,13 @@ _SENSORS = frozenset(sensor_names())
 class SimulatorFollower:
     """Subscribes to the simulator; without one, or with `follow_simulator` off, robots have their own subscriptions."""
 
-    def __init__(self, node: Node, params: RuntimeParams, robots: RobotSet) -> None:
+    def __init__(self, node: Node, params: RuntimeParams, robots: RobotSet, inputs: Node) -> None:
         """Subscribe to the readings of all robots if a simulator publishes them already.
 
-        The first robots are then created without subscriptions of their own, which the state would replace.
+        The first robots are then created without subscriptions of their own, which the state would replace. `inputs` is
+        the node that subscribes, `node` has the clock and the log.
         """
-        self._node, self._robots = node, robots
+        self._node, self._robots, self._inputs = node, robots, inputs
         self._is_on, self._has_driver = params.follow_simulator, params.robot_topics == "driver"
         self._raw: Any = None
         """The subscription to the integer readings of all robots of the simulator."""
@@ -44,7 +45,7 @@ class SimulatorFollower:
     def start(self) -> None:
         """Follow the robots of the simulator's state, unless `follow_simulator` is off."""
         if self._is_on:
-            self._node.create_subscription(String, SIMULATOR_STATE, self._on_state, qos.TRANSIENT_LOCAL)
+            self._inputs.create_subscription(String, SIMULATOR_STATE, self._on_state, qos.TRANSIENT_LOCAL)
 
     def check_publisher(self) -> None:
         """Return to the topics of each robot if the simulator has ended."""
@@ -69,10 +70,10 @@ class SimulatorFollower:
         """Subscribe to the readings of all robots in one topic; "" selects one topic per robot and sensor."""
         topic = topic and self._node.resolve_topic_name(topic)
         if self._raw is not None and self._raw.topic_name != topic:
-            self._node.destroy_subscription(self._raw)
+            self._inputs.destroy_subscription(self._raw)
             self._raw = None
         if self._raw is None and topic:
-            self._raw = self._node.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
+            self._raw = self._inputs.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
         self._robots.feed(self._raw is not None)
 
     def _on_raw(self, data: bytes) -> None:
