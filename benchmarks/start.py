@@ -134,6 +134,7 @@ def main() -> None:
         for _ in range(1 if options.quick else options.rounds):
             with reserved():  # no test that runs meanwhile hears this suite
                 rounds.append(one_round(file, options.robots, order=options.order, has_profile=options.profile))
+            print({name: round(value, 2) for name, value in rounds[-1].items()}, file=sys.stderr, flush=True)
     late = sum(one["discovery_s"] > LATE_S for one in rounds)
     result: dict[str, object] = {"robots": options.robots, "rounds": len(rounds), "late": late}
     for name in rounds[0]:

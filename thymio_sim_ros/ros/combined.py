@@ -40,7 +40,7 @@ class SuitePeers:
 
     def link(self, simulator: Simulator) -> SimulatorLink:
         """Create the connection of the runtime to the simulator."""
-        return SimulatorLink(self._receiving.node("_aseba_runtime"), simulator.local_commands.post)
+        return SimulatorLink(lambda: self._receiving.node("_aseba_runtime"), simulator.local_commands.post)
 
     def of_bridge(self) -> tuple[Node, Node]:
         """Create the nodes that subscribe and publish for the clients of the bridge."""

@@ -92,7 +92,6 @@ class DeviceEndpoints:
         link: SimulatorLink | None = None,
     ) -> None:
         """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property."""
-        inputs, post = (node, None) if link is None else (link.inputs, link.post)
         self.names = names
         self.number = number
         self.device = AsebaDevice(node_id=number, options=options)
@@ -106,13 +105,15 @@ class DeviceEndpoints:
         self._last_slice_s = 0.0
         self._replaced = 0
         self._overload = ""
-        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=post)
+        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None)
         self.warn = ThrottledLog(node)
         self._status = StatusEndpoints(node, names, number=number)
         self._events = EventEndpoints(node, names, lambda event, args: bus.emit(self, event, args), self.warn)
         self._variables = VariableEndpoints(node, names, self.device, self.run, language=self._debug_options.language)
         self._shutdown = node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
-        self._sensors = SensorSubscriptions(inputs, names, self._on_reading, has_driver=has_driver, is_fed=is_fed)
+        self._sensors = SensorSubscriptions(
+            node, names, self._on_reading, has_driver=has_driver, is_fed=is_fed, link=link
+        )
         controls = {
             "run": self._host.resume,
             "pause": self.device.run_control.pause,

@@ -80,12 +80,12 @@ class AsebaRuntime:
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
         )
-        self.peers = () if link is None else (link.inputs,)
         try:
             self._start(defaults or RuntimeParams(), link)
         except (OptionError, WrongValueError, *ROBOT_ERRORS) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
+        self.peers = () if link is None else (link.inputs,)
 
     @property
     def startup_message(self) -> str:
@@ -131,9 +131,6 @@ class AsebaRuntime:
 
     def _start(self, defaults: RuntimeParams, link: SimulatorLink | None) -> None:
         node = self.node
-        inputs = node if link is None else link.inputs
-        if link is not None:
-            follow_clock(node, inputs)
         self.values = RuntimeValues(node, defaults)
         params = self.values.params
         self._diagnostics = RuntimeDiagnostics(node)
@@ -141,8 +138,10 @@ class AsebaRuntime:
         self.robots.bus.reaches_all = params.emit_reaches == "network"
         self._publish_behaviours()
         self._check = CheckService(node, layout=params.layout, robots=lambda: self.robots.names)
-        self._follower = SimulatorFollower(node, params, self.robots, inputs)
+        self._follower = SimulatorFollower(node, params, self.robots, link)
         self.robots.set_names(params.robots)
+        if link is not None:
+            follow_clock(node, link.inputs)
         self._follower.start()
         wall = Clock(clock_type=ClockType.STEADY_TIME)
         self._variable_timer = VariableTimer(node, wall, self.robots, params.watch_rate)

@@ -16,6 +16,7 @@ from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.aseba import driver_input
+from thymio_sim_ros.ros.aseba.simulator_link import Post
 from thymio_sim_ros.ros.interface import command_topics, driver_topics, plugin_topics, qos
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
@@ -26,10 +27,6 @@ __all__ = ["OutputEndpoints"]
 FRESH_S = 10.0
 """Time after the start of a program during which retained commands are re-sent to every new subscriber, even if there
 was one before: discovery reports a killed robot as a subscriber for a while."""
-
-
-Post = Callable[[str, str, Any], None]
-"""Takes a command: ROS name of the robot, topic without that name, message."""
 
 
 @dataclass(frozen=True, slots=True)
