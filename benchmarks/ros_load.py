@@ -132,7 +132,7 @@ def send(robots: str, heard: str, rate_hz: str, seconds: str) -> None:
     """The bare loop: one message that is ready on each regular topic, again and again; prints its CPU in percent."""
     context = Context()
     rclpy.init(args=[], context=context)
-    with dds_profile.alone():
+    with dds_profile.used(dds_profile.ALONE):
         node = Node("sender", context=context, enable_rosout=False, start_parameter_services=False)
     ready = []
     for kind, topic in topics(int(robots), heard, only_regular=True):
@@ -155,7 +155,7 @@ def profiled(path: str, arguments: list[str]) -> None:
     rclpy.init(args=arguments, context=context, signal_handler_options=SignalHandlerOptions.NO)
     ended: list[int] = []
     signal.signal(signal.SIGINT, lambda number, _frame: ended.append(number))
-    with dds_profile.alone():
+    with dds_profile.used(dds_profile.ALONE):
         simulator = Simulator(context)
     profile = cProfile.Profile(time.thread_time)
     profile.runcall(run_node, simulator, context, lambda: bool(ended))

@@ -15,9 +15,8 @@ from thymio_sim_ros.suite_config import SuiteConfig
 __all__ = ["banner", "qr_code", "startup_notice"]
 
 _NONE = "none (started without it)"
-_HUNDRED_ROBOTS_S = 67.0
-"""Start time of a hundred robots in one process, where DDS compares each of their topics with all others; it grows with
-the square of their number (measured, docs/performance-method.md)."""
+_ROBOT_S = 0.1
+"""Start time of each robot (measured, docs/performance-method.md)."""
 _LONG_START_S = 5.0
 
 
@@ -52,7 +51,7 @@ def qr_code(suite: SuiteConfig) -> str:
 
 def startup_notice(robots: int) -> str | None:
     """A line that announces a start of more than `_LONG_START_S`; None for a shorter one."""
-    seconds = _HUNDRED_ROBOTS_S * (robots / 100) ** 2
+    seconds = _ROBOT_S * robots
     return None if seconds < _LONG_START_S else f"Start     {robots} robots: this takes about {seconds:.0f} s"
 
 

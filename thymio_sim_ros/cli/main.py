@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal
-from thymio_sim_ros.cli import convert, foxglove_layout, replay, runner, suite
+from thymio_sim_ros.cli import convert, env, foxglove_layout, replay, runner, suite
 from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
@@ -18,6 +18,7 @@ __all__ = ["main"]
 COMMANDS: Mapping[str, Callable[[Sequence[str]], int]] = {
     "runner": runner.run,
     "convert": convert.run,
+    "env": env.run,
     "foxglove-layout": foxglove_layout.run,
     "replay": replay.run,
 }

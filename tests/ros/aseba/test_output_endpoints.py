@@ -99,3 +99,19 @@ def test_with_another_subscriber_only_fresh_commands_are_sent_again(ros, outputs
     other = Robot(ros)
     resend(ros, outputs)
     assert other.heard == heard
+
+
+def test_a_simulator_in_the_same_process_gets_commands_without_dds(ros):
+    posted, robot = [], Robot(ros)
+    outputs = OutputEndpoints(
+        ros.node,
+        RobotNames("anna"),
+        has_driver=False,
+        post=lambda name, topic, message: posted.append((name, topic, list(message.data))),
+    )
+    outputs.start_program()
+    outputs.send(MotorTargets(1, 2))
+    resend(ros, outputs)
+    assert posted == [("anna", "_motor/target", [1, 2])]
+    assert robot.heard == []
+    outputs.close()

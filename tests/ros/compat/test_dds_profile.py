@@ -1,24 +1,25 @@
-"""The profile of a process that a node has to itself."""
+"""The DDS profiles of this package's processes."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 from thymio_sim_ros.ros.compat import dds_profile
 
 MEET = """
-import contextlib, sys
+import sys
 import rclpy
 from rclpy.context import Context
 from rclpy.node import Node
 from std_msgs.msg import Empty
 from thymio_sim_ros.ros.compat import dds_profile
 
-with dds_profile.alone() if sys.argv[1] == "alone" else contextlib.nullcontext():
+with dds_profile.used(getattr(dds_profile, sys.argv[1])):
     context = Context()
     rclpy.init(args=[], context=context)
     node = Node("node", context=context)
@@ -36,16 +37,27 @@ def matched(folder: Path, how: str) -> str:
     return run.stdout.strip()
 
 
-def test_endpoints_of_a_process_with_the_profile_do_not_match(tmp_path: Path) -> None:
-    assert matched(tmp_path, "alone") == "matched 0"
-    assert matched(tmp_path, "together") == "matched 1"
+def test_endpoints_of_a_process_match_unless_its_profile_says_otherwise(tmp_path: Path) -> None:
+    assert matched(tmp_path, "ALONE") == "matched 0"
+    assert matched(tmp_path, "ANNOUNCING") == "matched 1"
 
 
-def test_the_environment_is_as_before_afterwards() -> None:
-    environment: dict[str, str] = {}
-    with dds_profile.alone(environment):
-        assert environment == {dds_profile.VARIABLE: str(dds_profile.PROFILE)}
-    assert environment == {}
+@pytest.mark.parametrize("profile", [dds_profile.ALONE, dds_profile.ANNOUNCING])
+def test_both_profiles_announce_participants_more_often_than_every_three_seconds(profile: Path) -> None:
+    """A profile that cannot be parsed is ignored by Fast DDS."""
+    name = "{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}"
+    (period,) = ElementTree.parse(profile).getroot().iter(f"{name}leaseAnnouncement")
+    seconds, nanoseconds = (int(part.text or "") for part in period)
+    assert seconds + nanoseconds / 1e9 <= 0.5
+
+
+@pytest.mark.parametrize("before", [{}, {dds_profile.VARIABLE: str(dds_profile.ANNOUNCING)}])
+def test_the_environment_is_as_before_afterwards(before: dict[str, str]) -> None:
+    environment = dict(before)
+    with dds_profile.used(dds_profile.ALONE, environment) as is_used:
+        assert is_used
+        assert environment == {dds_profile.VARIABLE: str(dds_profile.ALONE)}
+    assert environment == before
 
 
 @pytest.mark.parametrize(
@@ -53,7 +65,8 @@ def test_the_environment_is_as_before_afterwards() -> None:
 )
 def test_a_profile_of_the_user_has_priority(name: str) -> None:
     environment = {name: "theirs"}
-    with dds_profile.alone(environment):
+    with dds_profile.used(dds_profile.ALONE, environment) as is_used:
+        assert not is_used
         assert environment == {name: "theirs"}
     assert environment == {name: "theirs"}
 
@@ -62,5 +75,14 @@ def test_a_profile_in_the_working_folder_has_priority(tmp_path: Path, monkeypatc
     monkeypatch.chdir(tmp_path)
     (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").touch()
     environment: dict[str, str] = {}
-    with dds_profile.alone(environment):
+    with dds_profile.used(dds_profile.ALONE, environment) as is_used:
+        assert not is_used
+        assert environment == {}
+
+
+def test_another_rmw_keeps_its_own_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dds_profile, "get_rmw_implementation_identifier", lambda: "rmw_cyclonedds_cpp")
+    environment: dict[str, str] = {}
+    with dds_profile.used(dds_profile.ALONE, environment) as is_used:
+        assert not is_used
         assert environment == {}

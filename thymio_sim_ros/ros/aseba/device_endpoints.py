@@ -27,6 +27,7 @@ from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.event_endpoints import EventEndpoints
 from thymio_sim_ros.ros.aseba.output_endpoints import OutputEndpoints
 from thymio_sim_ros.ros.aseba.sensor_subscriptions import SensorSubscriptions
+from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.aseba.status_endpoints import Loaded, StatusEndpoints, describe_position
 from thymio_sim_ros.ros.aseba.variable_endpoints import VariableEndpoints
 from thymio_sim_ros.ros.interface import qos
@@ -88,6 +89,7 @@ class DeviceEndpoints:
         debug_options: DebugOptions | None = None,
         has_driver: bool = False,
         is_fed: bool = False,
+        link: SimulatorLink | None = None,
     ) -> None:
         """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property."""
         self.names = names
@@ -103,13 +105,15 @@ class DeviceEndpoints:
         self._last_slice_s = 0.0
         self._replaced = 0
         self._overload = ""
-        self._outputs = OutputEndpoints(node, names, has_driver=has_driver)
+        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None)
         self.warn = ThrottledLog(node)
         self._status = StatusEndpoints(node, names, number=number)
         self._events = EventEndpoints(node, names, lambda event, args: bus.emit(self, event, args), self.warn)
         self._variables = VariableEndpoints(node, names, self.device, self.run, language=self._debug_options.language)
         self._shutdown = node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
-        self._sensors = SensorSubscriptions(node, names, self._on_reading, has_driver=has_driver, is_fed=is_fed)
+        self._sensors = SensorSubscriptions(
+            node, names, self._on_reading, has_driver=has_driver, is_fed=is_fed, link=link
+        )
         controls = {
             "run": self._host.resume,
             "pause": self.device.run_control.pause,

@@ -33,10 +33,13 @@ from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, WrongValueError
 from thymio_sim_ros.ros.aseba.robot_set import ROBOT_ERRORS, RobotSet
 from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
 from thymio_sim_ros.ros.aseba.simulator_follower import SimulatorFollower
+from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.aseba.variable_timer import VariableTimer
+from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, deliver, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
+from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
@@ -62,8 +65,10 @@ class AsebaRuntime:
         *,
         use_sim_time: bool | None = None,
         overrides: Mapping[str, Any] = NO_OVERRIDES,
+        link: SimulatorLink | None = None,
     ) -> None:
-        """`overrides`: parameter values by name, like those of a command line.
+        """`overrides`: parameter values by name, like those of a command line; `link`: to a simulator whose endpoints
+        do not match those of `context`.
 
         Raises StartError for a parameter or a program that cannot be used.
         """
@@ -76,10 +81,11 @@ class AsebaRuntime:
             allow_undeclared_parameters=True,
         )
         try:
-            self._start(defaults or RuntimeParams())
+            self._start(defaults or RuntimeParams(), link)
         except (OptionError, WrongValueError, *ROBOT_ERRORS) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
+        self.peers = () if link is None else (link.inputs,)
 
     @property
     def startup_message(self) -> str:
@@ -123,17 +129,19 @@ class AsebaRuntime:
         self.robots.close()
         self.node.destroy_node()
 
-    def _start(self, defaults: RuntimeParams) -> None:
+    def _start(self, defaults: RuntimeParams, link: SimulatorLink | None) -> None:
         node = self.node
         self.values = RuntimeValues(node, defaults)
         params = self.values.params
         self._diagnostics = RuntimeDiagnostics(node)
-        self.robots = RobotSet(node, self.values, self._diagnostics)
+        self.robots = RobotSet(node, self.values, self._diagnostics, link)
         self.robots.bus.reaches_all = params.emit_reaches == "network"
         self._publish_behaviours()
         self._check = CheckService(node, layout=params.layout, robots=lambda: self.robots.names)
-        self._follower = SimulatorFollower(node, params, self.robots)
+        self._follower = SimulatorFollower(node, params, self.robots, link)
         self.robots.set_names(params.robots)
+        if link is not None:
+            follow_clock(node, link.inputs)
         self._follower.start()
         wall = Clock(clock_type=ClockType.STEADY_TIME)
         self._variable_timer = VariableTimer(node, wall, self.robots, params.watch_rate)
@@ -160,4 +168,5 @@ class AsebaRuntime:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the executable `aseba_runtime`."""
-    return run_main(lambda context: announce([AsebaRuntime(context)]), args)
+    with dds_profile.used(dds_profile.ANNOUNCING):
+        return run_main(lambda context: announce([AsebaRuntime(context)]), args)

@@ -21,6 +21,7 @@ from thymio_sim_ros.ros.aseba.bus import Bus
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
+from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.interface.names import RobotNames
 
 __all__ = ["PROGRAM_ERRORS", "ROBOT_ERRORS", "ParameterChange", "RobotSet"]
@@ -44,13 +45,15 @@ class ParameterChange:
 class RobotSet(Sequence[DeviceEndpoints]):
     """One device per robot, in the order of the simulator. Invariant: a robot that stays keeps device and number."""
 
-    def __init__(self, node: Node, values: RuntimeValues, diagnostics: RuntimeDiagnostics) -> None:
+    def __init__(
+        self, node: Node, values: RuntimeValues, diagnostics: RuntimeDiagnostics, link: SimulatorLink | None = None
+    ) -> None:
         """Raises OptionError for unknown options, ResourceError for an unknown built-in behavior."""
         self._node, self._values = node, values
         self._options = values.params.options
         self._behaviour = check_behaviour(values.params.behaviour, values.params.layout)
         """The built-in behavior that robots are switched on with; empty: their program, or the menu."""
-        self._diagnostics = diagnostics
+        self._diagnostics, self._link = diagnostics, link
         self._robots: list[DeviceEndpoints] = []
         self._is_fed = False
         self.bus = Bus(node, self)
@@ -156,6 +159,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
             debug_options=self._values.debug_options(name),
             has_driver=self._values.params.robot_topics == "driver",
             is_fed=self._is_fed,
+            link=self._link,
         )
 
     def _assign_programs(self, new: Sequence[str]) -> None:

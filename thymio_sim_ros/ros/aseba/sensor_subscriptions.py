@@ -11,6 +11,7 @@ from std_msgs.msg import Int16MultiArray
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.ros.aseba import driver_input
 from thymio_sim_ros.ros.aseba.driver_input import Feed
+from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import RobotNames, raw_topic
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
@@ -21,11 +22,24 @@ __all__ = ["SensorSubscriptions"]
 class SensorSubscriptions:
     """Subscribes to `_raw/<sensor>` or to the topics of the ROS driver; to nothing while the owner feeds readings."""
 
-    def __init__(self, node: Node, names: RobotNames, on_reading: Feed, *, has_driver: bool, is_fed: bool) -> None:
+    def __init__(
+        self,
+        node: Node,
+        names: RobotNames,
+        on_reading: Feed,
+        *,
+        has_driver: bool,
+        is_fed: bool,
+        link: SimulatorLink | None = None,
+    ) -> None:
         """`has_driver`: the robot has the topics of the ROS driver, which are always used."""
-        self._node, self._names, self._on_reading = node, names, on_reading
+        self._own_node, self._link, self._names, self._on_reading = node, link, names, on_reading
         self._has_driver, self._is_fed = has_driver, is_fed
         self._subscriptions = self._subscribe()
+
+    @property
+    def _node(self) -> Node:
+        return self._own_node if self._link is None else self._link.inputs
 
     @property
     def is_fed(self) -> bool:

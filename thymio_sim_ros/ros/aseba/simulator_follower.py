@@ -12,6 +12,7 @@ from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.parameters import RuntimeParams
 from thymio_sim_ros.ros.aseba.robot_set import ROBOT_ERRORS, RobotSet
+from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import full_name
 from thymio_sim_ros.ros.interface.raw_topic import RawDecoder
@@ -28,23 +29,31 @@ _SENSORS = frozenset(sensor_names())
 class SimulatorFollower:
     """Subscribes to the simulator; without one, or with `follow_simulator` off, robots have their own subscriptions."""
 
-    def __init__(self, node: Node, params: RuntimeParams, robots: RobotSet) -> None:
+    def __init__(self, node: Node, params: RuntimeParams, robots: RobotSet, link: SimulatorLink | None) -> None:
         """Subscribe to the readings of all robots if a simulator publishes them already.
 
         The first robots are then created without subscriptions of their own, which the state would replace.
         """
-        self._node, self._robots = node, robots
+        self._node, self._robots, self._link = node, robots, link
         self._is_on, self._has_driver = params.follow_simulator, params.robot_topics == "driver"
         self._raw: Any = None
         """The subscription to the integer readings of all robots of the simulator."""
         self._decoder, self._warn = RawDecoder(), ThrottledLog(node)
         if self._is_on and not self._has_driver and node.count_publishers(SIMULATOR_RAW):
-            self._subscribe_raw(SIMULATOR_RAW)
+            if link is None:
+                self._subscribe_raw(SIMULATOR_RAW)
+            else:
+                self._robots.feed(True)
+
+    @property
+    def _inputs(self) -> Node:
+        """The node that subscribes."""
+        return self._node if self._link is None else self._link.inputs
 
     def start(self) -> None:
         """Follow the robots of the simulator's state, unless `follow_simulator` is off."""
         if self._is_on:
-            self._node.create_subscription(String, SIMULATOR_STATE, self._on_state, qos.TRANSIENT_LOCAL)
+            self._inputs.create_subscription(String, SIMULATOR_STATE, self._on_state, qos.TRANSIENT_LOCAL)
 
     def check_publisher(self) -> None:
         """Return to the topics of each robot if the simulator has ended."""
@@ -69,10 +78,10 @@ class SimulatorFollower:
         """Subscribe to the readings of all robots in one topic; "" selects one topic per robot and sensor."""
         topic = topic and self._node.resolve_topic_name(topic)
         if self._raw is not None and self._raw.topic_name != topic:
-            self._node.destroy_subscription(self._raw)
+            self._inputs.destroy_subscription(self._raw)
             self._raw = None
         if self._raw is None and topic:
-            self._raw = self._node.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
+            self._raw = self._inputs.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
         self._robots.feed(self._raw is not None)
 
     def _on_raw(self, data: bytes) -> None:

@@ -1,10 +1,13 @@
-"""The Fast DDS profile of nodes that run alone in a process.
+"""The Fast DDS profiles of this package's processes. A profile of the user has priority, and so has another RMW.
 
-By default Fast DDS compares every endpoint with all others of its process and allocates memory for a hundred messages
-of each: a hundred robots took 19 s of CPU time and 770 MB. With `alone.xml` the endpoints of a process do not match
-each other, which is correct for a node that does not subscribe to its own topics, and memory is allocated on demand:
-3.4 s and 450 MB (measured, docs/performance-method.md). Other DDS implementations do not read the file, and a profile
-of the user has priority.
+`ANNOUNCING`: every participant announces itself every 250 ms instead of every 3 s. A starting participant of Fast DDS 2
+announces itself before it reads its sockets, and so loses the answers of quick peers. A peer answers once; its next
+regular announcement is what the new participant discovers it by (measured: some starts took 3 s longer, at load most).
+
+`ALONE`: also, the endpoints of one participant do not match each other, and memory for messages is allocated on demand.
+By default Fast DDS compares every endpoint with all others of its participant and allocates memory for a hundred
+messages of each: the suite with a hundred robots was ready after 67 s (docs/performance-method.md). Nodes that need each
+other's topics then need `rclpy_ext/peers.py`.
 """
 
 from __future__ import annotations
@@ -14,9 +17,11 @@ from collections.abc import Iterator, MutableMapping
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["PROFILE", "VARIABLE", "alone"]
+from rclpy.utilities import get_rmw_implementation_identifier
 
-PROFILE = Path(__file__).with_name("alone.xml")
+__all__ = ["ALONE", "ANNOUNCING", "VARIABLE", "has_own_profile", "used"]
+
+ALONE, ANNOUNCING = (Path(__file__).with_name(f"{name}.xml") for name in ("alone", "announcing"))
 
 VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 """Variable with the path of the profile; Fast DDS 2 reads it when the process creates its first participant."""
@@ -27,15 +32,31 @@ _OTHERS = ("FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML")
 _USERS_FILE = "DEFAULT_FASTRTPS_PROFILES.xml"
 """Fast DDS reads this file in the working folder without being asked to."""
 
+_RMW = "rmw_fastrtps_cpp"
+
+
+def has_own_profile(environment: MutableMapping[str, str] = os.environ) -> bool:
+    """Whether the user has a profile; `ANNOUNCING`, which `thymio-sim env` sets for other processes, is none."""
+    if any(name in environment for name in _OTHERS) or Path(_USERS_FILE).exists():
+        return True
+    return environment.get(VARIABLE, str(ANNOUNCING)) != str(ANNOUNCING)
+
 
 @contextmanager
-def alone(environment: MutableMapping[str, str] = os.environ) -> Iterator[None]:
-    """Use the profile for participants that are created inside the block, unless the user has one."""
-    if any(name in environment for name in (VARIABLE, *_OTHERS)) or Path(_USERS_FILE).exists():
-        yield
+def used(profile: Path, environment: MutableMapping[str, str] = os.environ) -> Iterator[bool]:
+    """Use a profile for the participants of this process, unless the user has one; yield whether it is used.
+
+    The first participant must be created inside the block.
+    """
+    if has_own_profile(environment) or get_rmw_implementation_identifier() != _RMW:
+        yield False
         return
-    environment[VARIABLE] = str(PROFILE)
+    before = environment.get(VARIABLE)
+    environment[VARIABLE] = str(profile)
     try:
-        yield
+        yield True
     finally:
-        del environment[VARIABLE]
+        if before is None:
+            del environment[VARIABLE]
+        else:
+            environment[VARIABLE] = before

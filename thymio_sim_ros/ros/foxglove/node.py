@@ -21,6 +21,7 @@ from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import Executor
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
@@ -29,6 +30,7 @@ from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Toke
 from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 from thymio_sim_ros.bridge.protocol.messages import AssetResponse
 from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
 from thymio_sim_ros.ros.foxglove.graph import (
     allow_list,
@@ -49,6 +51,7 @@ from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
+from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
 from thymio_sim_ros.ros.web import tokens as node_tokens
 
 __all__ = ["FoxgloveBridge", "main"]
@@ -80,14 +83,20 @@ class FoxgloveBridge:
         use_sim_time: bool | None = None,
         defaults: FoxgloveParams | None = None,
         tokens: Tokens | None = None,
+        peers: tuple[Node, Node] | None = None,
     ) -> None:
         """Start the server. Raises StartError for invalid parameters or if the port cannot be used.
 
         `tokens` are those of the command line; None: tokens from the environment and parameters, or new ones if the
-        address is reachable from the network. The other arguments override parameters.
+        address is reachable from the network. `peers` subscribe and publish for clients, where the endpoints of
+        `context` do not match each other; None: the bridge's node does. The other arguments override parameters.
         """
         overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
         self.node = parameter_node("foxglove_bridge", context=context, parameter_overrides=overrides)
+        self.peers: tuple[Node, ...] = peers or ()
+        self._subscriber, self._publisher = peers or (self.node, self.node)
+        if peers is not None:
+            follow_clock(self.node, self._subscriber)
         try:
             values = defaults or FoxgloveParams()
             values = replace(
@@ -197,9 +206,9 @@ class FoxgloveBridge:
         self._fast_poll_timer.cancel()
         self._resend_timer = self.node.create_timer(_RESEND_DELAY_S, self._resend_retained, clock=steady)
         self._resend_timer.cancel()
-        self._calls = ServiceCalls(self.node, wake=self._poll_soon)
+        self._calls = ServiceCalls(self._subscriber, wake=self._poll_soon)
         self._topics = Topics(
-            self.node,
+            self._subscriber,
             post,
             self._server.publish,
             self._now_ns,
@@ -210,14 +219,14 @@ class FoxgloveBridge:
         )
         self._services = Services(self.node, self._calls, post)
         self._parameters = Parameters(
-            self.node,
+            self._subscriber,
             self._calls,
             post,
             is_allowed=allow_list(values.param_whitelist),
             wake=self._poll_soon,
         )
         self._publishers = ClientPublishers(
-            self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._poll_soon
+            self._publisher, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._poll_soon
         )
         self._published_count = -1
         self._count = (
@@ -368,4 +377,5 @@ def _new_id() -> str:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `foxglove_bridge`."""
-    return run_main(lambda context: announce([FoxgloveBridge(context=context)]), args)
+    with dds_profile.used(dds_profile.ANNOUNCING):
+        return run_main(lambda context: announce([FoxgloveBridge(context=context)]), args)

@@ -32,6 +32,7 @@ from rclpy.signals import SignalHandlerOptions
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat.shm_cleanup import remove_incomplete_ports
 from thymio_sim_ros.ros.rclpy_ext import log_directory
+from thymio_sim_ros.ros.rclpy_ext.peers import HasPeers
 
 SWITCH_INTERVAL_S = 0.0005
 """Thread switch interval of the interpreter, a tenth of Python's default: at 25 times real time, a command that waits
@@ -142,7 +143,9 @@ def run_node(runnable: RunnableNode, context: Context, stop: Callable[[], bool])
     a lesson. After `MAX_CONSECUTIVE_ERRORS` failed iterations in a row the exception is raised.
     """
     executor = make_executor(context)
-    executor.add_node(runnable.node)
+    nodes = (runnable.node, *(runnable.peers if isinstance(runnable, HasPeers) else ()))
+    for node in nodes:
+        executor.add_node(node)
     errors = 0
     try:
         while not stop() and context.ok():
@@ -157,7 +160,8 @@ def run_node(runnable: RunnableNode, context: Context, stop: Callable[[], bool])
                     f"internal error (please report); continuing:\n{traceback.format_exc()}"
                 )
     finally:
-        executor.remove_node(runnable.node)
+        for node in nodes:
+            executor.remove_node(node)
         executor.shutdown()
 
 

@@ -27,6 +27,7 @@ from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
 from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics, MessageCounters
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
+from thymio_sim_ros.ros.simulator.local_commands import LocalCommands
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams, SimulatorParams
 from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_world
@@ -47,7 +48,7 @@ class Simulator:
     """The simulator node.
 
     `runner` owns the world, `endpoints` what is published, `params` the current parameters. Invariant: only `run_once`
-    and callbacks of `node` use them.
+    and callbacks of `node` use them. `local_commands` takes commands from other threads.
     """
 
     def __init__(self, context: Context, defaults: SimulatorParams | None = None) -> None:
@@ -70,6 +71,7 @@ class Simulator:
         self._last_heartbeat_ns = 0
         self._counters = MessageCounters()
         self.endpoints = SimulatorEndpoints(self.node, values, self._new_robot)
+        self.local_commands = LocalCommands(self.node, self.endpoints.robots.receive)
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
         self._robot_options = replace(values.endpoint_options, extra=extra)
         world = new_world(prepared.playground, values, prepared.ground)
@@ -91,6 +93,7 @@ class Simulator:
     def run_once(self, executor: Executor) -> None:
         """Execute the ticks that are due, then handle messages until the next tick with a visible result."""
         now_ns = time.monotonic_ns()
+        self.local_commands.deliver()
         self.endpoints.poll_if_due(now_ns)
         self.runner.run_due_ticks(now_ns)
         if now_ns - self._last_heartbeat_ns >= HEARTBEAT_NS:
@@ -125,5 +128,5 @@ class Simulator:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the executable `simulator`."""
-    with dds_profile.alone():
+    with dds_profile.used(dds_profile.ALONE):
         return run_main(lambda context: announce([Simulator(context)]), args)

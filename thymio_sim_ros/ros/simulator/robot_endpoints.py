@@ -152,9 +152,11 @@ class RobotEndpoints:
                 DESCRIPTION_TOPIC[0], names.topic(DESCRIPTION), qos.TRANSIENT_LOCAL
             )
             self._description.publish(String(data=urdf(names)))
+        inputs = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
+        self._handlers = {one.topic: self._handler(one) for one in inputs}
         self._subscriptions = [
-            node.create_subscription(one.type, names.topic(one.topic), self._handler(one), one.profile)
-            for one in (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
+            node.create_subscription(one.type, names.topic(one.topic), self._handlers[one.topic], one.profile)
+            for one in inputs
         ]
         handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
         self._services = [
@@ -189,6 +191,10 @@ class RobotEndpoints:
                 target.template = Template.checked(row.patch, message, reading, content)
             target.is_stale = row.profile == qos.TRANSIENT_LOCAL
             target.publisher.publish(message)
+
+    def receive(self, topic: str, message: Any) -> None:
+        """Handle a message for one of the subscribed topics that did not arrive by DDS."""
+        self._handlers[topic](message)
 
     @property
     def topics(self) -> int:

@@ -19,6 +19,7 @@ import thymio_sim_ros
 from thymio_sim_ros import resources
 from thymio_sim_ros.addresses import describe_urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
@@ -123,4 +124,5 @@ class WebPage:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `web_ui`."""
-    return run_main(lambda context: announce([WebPage(context)]), args)
+    with dds_profile.used(dds_profile.ANNOUNCING):
+        return run_main(lambda context: announce([WebPage(context)]), args)

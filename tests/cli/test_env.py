@@ -1,0 +1,43 @@
+"""The command thymio-sim env."""
+
+from __future__ import annotations
+
+import shlex
+
+import pytest
+
+from thymio_sim_ros.cli import main
+
+dds_profile = pytest.importorskip("thymio_sim_ros.ros.compat.dds_profile")
+
+RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+
+
+@pytest.fixture(autouse=True)
+def _unset(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    for name in (RANGE, dds_profile.VARIABLE, "FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML"):
+        monkeypatch.delenv(name, raising=False)
+
+
+def printed(capsys):
+    """The variables that the printed commands set."""
+    assert main.main(["env"]) == 0
+    words = [shlex.split(line) for line in capsys.readouterr().out.splitlines()]
+    assert all(word == "export" for word, _ in words)
+    return dict(assignment.split("=", 1) for _, assignment in words)
+
+
+def test_it_prints_discovery_range_and_profile(capsys):
+    assert printed(capsys) == {RANGE: "LOCALHOST", dds_profile.VARIABLE: str(dds_profile.ANNOUNCING)}
+
+
+@pytest.mark.parametrize("name", [RANGE, dds_profile.VARIABLE])
+def test_a_variable_that_is_set_is_left_alone(capsys, monkeypatch, name):
+    monkeypatch.setenv(name, "theirs")
+    assert name not in printed(capsys)
+
+
+def test_no_profile_is_set_beside_another_one(capsys, monkeypatch):
+    monkeypatch.setenv("FASTDDS_DEFAULT_PROFILES_FILE", "theirs")
+    assert printed(capsys) == {RANGE: "LOCALHOST"}

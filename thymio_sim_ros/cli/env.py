@@ -1,0 +1,47 @@
+"""The command `thymio-sim env`: environment variables for other ROS processes on this computer."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+
+from aseba_vm.cli.output import standard_output
+from thymio_sim_ros.cli.options import check_ros
+
+__all__ = ["run"]
+
+EXAMPLE = """\
+In each terminal, before `ros2` or a node of your own is started:
+  eval "$(thymio-sim env)"
+
+Discovery is limited to this computer, as that of `thymio-sim`, and every process announces itself to new ones four
+times a second, so that they find it at once. Variables that are set already are not printed.
+"""
+
+
+def run(argv: Sequence[str]) -> int:
+    """Print the commands that set the variables; return the exit code. Raises UsageError without ROS."""
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim env",
+        description="Print shell commands that prepare a terminal for nodes beside the simulator.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.parse_args(argv)
+    check_ros()
+    with standard_output():
+        sys.stdout.write("".join(f"export {name}={shlex.quote(value)}\n" for name, value in _variables().items()))
+    return 0
+
+
+def _variables() -> Mapping[str, str]:
+    from thymio_sim_ros.ros.compat import dds_profile
+
+    values = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    if not dds_profile.has_own_profile():
+        values[dds_profile.VARIABLE] = str(dds_profile.ANNOUNCING)
+    return {name: value for name, value in values.items() if name not in os.environ}
