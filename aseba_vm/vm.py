@@ -8,11 +8,13 @@ A program can never make the machine raise: a fault stops it, is appended to ``o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, MutableSequence, Sequence
 
 from aseba_vm.frontend.pipeline import Program
 from aseba_vm.frontend.symbols import INIT_EVENT
-from aseba_vm.jit.tiering import AUTO, Tiering, create_tiering
+from aseba_vm.jit.tiering import AUTO, Change, Tiering, create_tiering
+from aseba_vm.kernel.integers import wrap
+from aseba_vm.machine import reference
 from aseba_vm.machine.code_memory import CodeMemory
 from aseba_vm.machine.costs import NO_COSTS, Costs
 from aseba_vm.machine.data_memory import Variables
@@ -29,7 +31,8 @@ from aseba_vm.machine.machine_messages import (
     OutOfBounds,
     VariablesRead,
 )
-from aseba_vm.machine.native_call import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
+from aseba_vm.machine.native_call import Native, NativeCall, Signature
+from aseba_vm.machine.native_faults import DequeFault, DivisionFault, NativeFault
 from aseba_vm.machine.natives import NATIVES
 from aseba_vm.target import TargetDescription
 
@@ -80,7 +83,8 @@ class VirtualMachine:
         self.instructions = 0
         self.extra_cost = 0
         """Cost of the native that is being called, until it is added to ``instructions``."""
-        self.random_state = 0
+        self.random: MutableSequence[int] = [0]
+        """The state of the random number generator, in whatever storage the active engine needs."""
         self.tracer: Callable[[int], None] | None = None
         self.stack: list[int] = [0] * target.stack_size
         self.code = CodeMemory(target.bytecode_size)
@@ -89,7 +93,8 @@ class VirtualMachine:
         self._kills_long_events = kills_long_events
         self._functions = {**NATIVES, **(natives or {})}
         self._natives = [
-            (Signature.of(native, costs.of(native.name)), self._functions.get(native.name)) for native in target.natives
+            (Signature.of(native, costs.of(native.name)), self._functions.get(native.name) or self._reporting(number))
+            for number, native in enumerate(target.natives)
         ]
         self._tiering: Tiering | None = None
         self.use_engine(engine)
@@ -99,8 +104,16 @@ class VirtualMachine:
     @property
     def bytecode(self) -> tuple[int, ...]:
         """The bytecode memory, unsigned words."""
-        self._flush_edges()
-        return tuple(self.code.words)
+        return self.code.words
+
+    @property
+    def random_state(self) -> int:
+        """The state of the random number generator, 16 bits."""
+        return self.random[0]
+
+    @random_state.setter
+    def random_state(self, value: int) -> None:
+        self.random[0] = value & 0xFFFF
 
     @property
     def is_active(self) -> bool:
@@ -127,9 +140,8 @@ class VirtualMachine:
 
     def set_bytecode(self, words: Sequence[int], start: int = 0) -> None:
         """Write words and reset. Raises ValueError if they do not fit into the memory."""
-        if start < 0 or start + len(words) > len(self.code.words):
-            raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self.code.words)}")
-        self._flush_edges()
+        if start < 0 or start + len(words) > len(self.code):
+            raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self.code)}")
         self.code.write(start, words)
         self.reset()
 
@@ -146,12 +158,11 @@ class VirtualMachine:
 
         The conditions are cleared as far as the reference clears them (:meth:`CodeMemory.clear_edges`).
         """
-        self._flush_edges()
         self.flags = STEP_BY_STEP
         self.fault = None
         self.code.clear_edges()
         if self._tiering is not None:
-            self._tiering.invalidate()
+            self._tiering.apply(Change.WRITTEN)
         if self._on_reset is not None:
             self._on_reset(self)
         if not self.setup(INIT_EVENT):
@@ -186,7 +197,7 @@ class VirtualMachine:
 
     def set_breakpoint(self, pc: int) -> None:
         """Add a breakpoint if fewer than MAX_BREAKPOINTS are set, and report whether it was added."""
-        if not 0 <= pc < len(self.code.words):
+        if not 0 <= pc < len(self.code):
             self.stop_on(BadCode(pc, "breakpoint-out-of-range"))
             return
         has_room = len(self._breakpoints) < MAX_BREAKPOINTS
@@ -301,12 +312,12 @@ class VirtualMachine:
         return executed, False
 
     def _interpret_one(self) -> int:
-        """Execute one instruction in the interpreter and mark the translation as stale; return the number executed."""
+        """Execute one instruction as the reference does, which may change the bytecode; return its cost."""
         try:
-            return self.interpret(1)
+            return reference.step(self)
         finally:
             if self._tiering is not None:
-                self._tiering.mark_stale()
+                self._tiering.apply(Change.WRITTEN)
 
     def _trace(self) -> None:
         if self.tracer is not None:
@@ -320,11 +331,6 @@ class VirtualMachine:
             self._tiering.close()
         self._tiering = create_tiering(name, self, self._functions)
 
-    def interpret(self, limit: int) -> int:
-        """Execute without translation up to ``limit``; return the budget used. Called by the tiering."""
-        self._flush_edges()
-        return interpret(self, limit)
-
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
         """Call a native with the words it pops; return False if an argument lies outside memory.
 
@@ -334,23 +340,31 @@ class VirtualMachine:
         call = NativeCall(self, signature, popped)
         if not call.is_inside_memory:
             return False
-        if function is None:
-            self.outbox.append(call.record(number))
-            return True
         try:
             function(call)
-        except NativeFault as error:
-            call.report(error)
-        for fault in call.faults:
+        except NativeFault as fault:
             self.stop_on_native_fault(pc, fault)
         return True
+
+    def bind(self, number: int, popped: Sequence[int]) -> tuple[Native, NativeCall]:
+        """Return the implementation of a native, and the call with these words, which must lie inside memory.
+
+        The call is valid while the variables stay where they are. Called by the tiering.
+        """
+        signature, function = self._natives[number]
+        return function, NativeCall(self, signature, popped)
+
+    def _reporting(self, number: int) -> Native:
+        """Return what is called in place of a native without implementation."""
+        return lambda call: self.outbox.append(call.record(number))
 
     def stop_on_native_fault(self, pc: int, fault: NativeFault) -> None:
         """Stop because a native called at ``pc`` raised ``fault``. Called by the tiering."""
         if isinstance(fault, DivisionFault):
             self.stop_on(DivisionByZero(pc))
         elif isinstance(fault, DequeFault):
-            self.stop_on(OutOfBounds(pc))
+            for _ in range(fault.times):
+                self.stop_on(OutOfBounds(pc))
         else:
             self.stop_on(NodeSpecific(pc, fault.reason))
 
@@ -370,10 +384,6 @@ class VirtualMachine:
     def count_popped(self, number: int) -> int:
         """Return how many words a native pops. Called by the interpreter."""
         return self._natives[number][0].count
-
-    def _flush_edges(self) -> None:
-        if self._tiering is not None:
-            self._tiering.flush_edges()
 
     def stop_on(self, fault: Fault) -> None:
         """Stop the event because of a fault and report the fault. Called by the interpreter."""

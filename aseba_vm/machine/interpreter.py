@@ -1,12 +1,10 @@
-"""The interpreter: one loop over decoded operations, and the reference for the translators.
+"""The interpreter: one loop over decoded operations.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
 
-The loop reads operations with decoded operands (:mod:`aseba_vm.machine.code_memory`). A BRANCH keeps its edge flag in
-its own word. Arithmetic is exact in Python and wrapped to 16 bits by :func:`aseba_vm.machine.native_call.wrap`.
-
-The loop is written for speed: stack checks are inline, and reads beyond a list raise IndexError, which the end of the
-function turns into a fault, instead of being checked in advance.
+The loop reads operations with decoded operands (:mod:`aseba_vm.machine.code_memory`). It is written for speed: stack
+checks are inline, and reads beyond a list raise IndexError, which the end of the function turns into a fault, instead
+of being checked in advance. :mod:`aseba_vm.machine.reference` defines the same, one function per operation.
 """
 
 from __future__ import annotations
@@ -21,11 +19,10 @@ from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, 
 from aseba_vm.machine.operations import (
     BAD,
     BINARY,
+    BRANCHES,
     CALL,
     EMIT,
     IF,
-    IF_FALSE,
-    IF_TRUE,
     JUMP,
     LOAD,
     LOADX,
@@ -36,9 +33,6 @@ from aseba_vm.machine.operations import (
     STORE,
     STOREX,
     UNARY,
-    WHEN,
-    WHEN_FALSE,
-    WHEN_TRUE,
 )
 from aseba_vm.target import TargetDescription
 
@@ -89,14 +83,14 @@ def interpret(machine: InterpretedMachine, limit: int) -> int:
 
 def _run_slice(machine: InterpretedMachine, limit: int) -> int:
     """Execute until ``limit`` is spent, the event ends, or an operation costs more than its instruction."""
-    code, variables, stack = machine.code.operations, machine.variables.words, machine.stack
-    size = len(code)
+    code, variables, stack = machine.code, machine.variables.words, machine.stack
+    operations, edges, size = code.operations, code.edges, len(code)
     pc, sp = machine.pc, machine.sp
     executed = 0
     kind = BAD
     try:
         for executed in range(limit):  # also read after the loop, where it is the number of complete instructions
-            kind, first, second = code[pc]
+            kind, first, second = operations[pc]
             if kind == LOAD:
                 stack[sp + 1] = variables[first]
                 sp += 1
@@ -118,17 +112,19 @@ def _run_slice(machine: InterpretedMachine, limit: int) -> int:
                 sp -= 1
                 stack[sp] = first(stack[sp], right)
                 pc += 1
-            elif kind in IF:
+            elif kind in BRANCHES:
                 if sp < 1:
                     return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 sp -= 2
-                if first(stack[sp + 1], stack[sp + 2]):
-                    if kind == IF_FALSE:
-                        machine.code.toggle_edge(pc)
+                is_true = 1 if first(stack[sp + 1], stack[sp + 2]) else 0
+                was_true = edges[pc]
+                if is_true != was_true:
+                    edges[pc] = is_true
+                    if pc in code.overlapped:
+                        code.refresh(pc)
+                if is_true and (kind == IF or not was_true):
                     pc += 2
                 else:
-                    if kind == IF_TRUE:
-                        machine.code.toggle_edge(pc)
                     pc += second
                     if not 0 <= pc < size:
                         return _stop_on_bad_code(machine, pc - second, sp, executed, "jump-out-of-range")
@@ -155,19 +151,6 @@ def _run_slice(machine: InterpretedMachine, limit: int) -> int:
                 variables[first + index] = stack[sp - 1]
                 sp -= 2
                 pc += 2
-            elif kind in WHEN:
-                if sp < 1:
-                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
-                sp -= 2
-                is_true = bool(first(stack[sp + 1], stack[sp + 2]))
-                if is_true != (kind == WHEN_TRUE):
-                    machine.code.toggle_edge(pc)
-                if is_true and kind == WHEN_FALSE:
-                    pc += 2
-                else:
-                    pc += second
-                    if not 0 <= pc < size:
-                        return _stop_on_bad_code(machine, pc - second, sp, executed, "jump-out-of-range")
             elif kind == UNARY:
                 if sp < 0:
                     return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")

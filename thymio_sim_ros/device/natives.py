@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from aseba_vm import Native, NativeCall
-from aseba_vm.machine.native_call import NativeFault
+from aseba_vm import Native, NativeCall, NativeFault
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION
 from thymio_sim_ros.device.firmware.services import RESTART, SWITCH_OFF, FirmwareServices
