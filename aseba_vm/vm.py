@@ -96,6 +96,9 @@ class VirtualMachine:
             (Signature.of(native, costs.of(native.name)), self._functions.get(native.name) or self._reporting(number))
             for number, native in enumerate(target.natives)
         ]
+        sizes = [variable.size for variable in target.variables[:3]]
+        self._source_address = sizes[1] if len(sizes) > 1 else target.variables_size
+        self._arguments_size = sizes[2] if len(sizes) > 2 else 0
         self._tiering: Tiering | None = None
         self.use_engine(engine)
 
@@ -228,19 +231,20 @@ class VirtualMachine:
 
     def address_of(self, event: int) -> int:
         """Return the address of the code of an event, 0 if there is none."""
-        return self.code.address_of(event)
+        return self.code.addresses.get(event, 0)
 
     def setup(self, event: int) -> int:
         """Start an event; return the address of its code, or 0 if the program does not handle it."""
-        address = self.code.address_of(event)
+        address = self.code.addresses.get(event, 0)
         if address == 0:
             return 0
-        if self.flags & ACTIVE:
+        flags = self.flags
+        if flags & ACTIVE:
             self.outbox.append(EventKilled(self.pc))
         self.pc = address
         self.sp = -1
-        self.flags |= ACTIVE
-        if self.flags & STEP_BY_STEP:
+        self.flags = flags | ACTIVE
+        if flags & STEP_BY_STEP:
             self.report_state()
         return address
 
@@ -252,23 +256,25 @@ class VirtualMachine:
         """
         if self.flags & STEP_BY_STEP and self.flags & ACTIVE:
             return
-        declared = self.target.variables
-        if len(declared) > 1:
-            address = declared[1].size
-            capacity = declared[2].size if len(declared) > 2 else 0
-            words = [source, *arguments[:capacity]][: len(self.variables) - address]
-            self.write_variables(address, words)
+        self._write_source(source, arguments)
         self.setup(event)
 
     def start_local(self, index: int) -> bool:
         """Start local event ``index`` of the target; return False if another event is active. Raises no error."""
         if self.flags & ACTIVE:
             return False
-        declared = self.target.variables
-        if len(declared) > 1:
-            self.write_variables(declared[1].size, [self.node_id][: len(self.variables) - declared[1].size])
+        self._write_source(self.node_id, ())
         self.setup(0xFFFE - index)
         return True
+
+    def _write_source(self, source: int, arguments: Sequence[int]) -> None:
+        """Write the source of an event and its arguments, as far as the target has variables for them."""
+        memory, address = self.variables.words, self._source_address
+        if address < len(memory):
+            memory[address] = wrap(source)
+        if arguments:
+            words = arguments[: min(self._arguments_size, max(len(memory) - address - 1, 0))]
+            memory[address + 1 : address + 1 + len(words)] = [wrap(word) for word in words]
 
     # -- running (docs/spec/aseba-bytecode-vm.md section 10.3)
 

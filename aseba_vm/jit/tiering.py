@@ -135,12 +135,15 @@ class Tiering:
         self._translation: Translation | None = None
         self._run_counts: dict[int, int] = {}
         self._ready: dict[int, ReadyCode | None] = {}
-        """Translated code by address, None where there is none; valid in the state TRANSLATED."""
+        """Translated code by address, None where there is none."""
+        self._runnable: Mapping[int, ReadyCode | None] = {}
+        """The same in the state TRANSLATED, otherwise empty."""
         self._failure: BaseException | None = None
 
     def apply(self, change: Change) -> None:
         """Change the state."""
         self.state = TRANSITIONS[self.state, change]
+        self._runnable = self._ready if self.state is State.TRANSLATED else {}
 
     def close(self) -> None:
         """Move the state of the machine back into its own memory."""
@@ -154,7 +157,7 @@ class Tiering:
         Raises the exception of a native that raised one, and RuntimeError if translated code trapped (a bug).
         """
         machine = self._machine
-        ready = self._ready.get(machine.pc) if self.state is State.TRANSLATED else None
+        ready = self._runnable.get(machine.pc)
         left = limit
         if ready is None and not self._is_eager and not self._is_warm(machine.pc):
             left -= self._interpret(min(left, _WARM_INSTRUCTIONS))
@@ -245,12 +248,11 @@ class Tiering:
     def _run_translated(self, run: Run, left: int) -> int:
         """Run translated code with a budget of ``left`` and apply its exit to the machine; return the budget used."""
         machine = self._machine
-        rest, pc, kind, words = run(left)
-        machine.pc = pc
-        if machine.extra_cost:
-            rest -= machine.extra_cost
-            machine.extra_cost = 0
+        rest, machine.pc, kind, words = run(left)
         done = left - rest
+        if machine.extra_cost:
+            done += machine.extra_cost
+            machine.extra_cost = 0
         machine.instructions += done
         if words:
             sp = machine.sp
@@ -264,10 +266,10 @@ class Tiering:
                 raise failure
             # Translated code left before a statement that it cannot execute: the interpreter executes its first
             # instruction, and reports the fault if there is one.
-            if machine.flags & ACTIVE and rest > 0:
+            if machine.flags & ACTIVE and left > done:
                 done += self._interpret(1)
         elif kind != CONTINUE:
-            raise RuntimeError(f"internal error (please report): translated code trapped at {pc}")
+            raise RuntimeError(f"internal error (please report): translated code trapped at {machine.pc}")
         return done
 
     # -- called by translated code (aseba_vm.jit.wasm_host.NativeCaller)
@@ -278,12 +280,12 @@ class Tiering:
 
         def call(popped: Sequence[int]) -> int:
             try:
-                if not machine.invoke(number, pc, popped):
+                if not machine.invoke(number, pc, popped[: site.words]):
                     return 2
             except BaseException as failure:
                 self._failure = failure
                 return 1
-            return 0 if machine.flags & ACTIVE and self.state is State.TRANSLATED and not machine.extra_cost else 1
+            return 0 if machine.flags & ACTIVE and self._runnable and not machine.extra_cost else 1
 
         if site.popped is None:
             return call
@@ -298,7 +300,7 @@ class Tiering:
             except BaseException as failure:
                 self._failure = failure
                 return 1
-            return 0 if machine.flags & ACTIVE and self.state is State.TRANSLATED and not machine.extra_cost else 1
+            return 0 if machine.flags & ACTIVE and self._runnable and not machine.extra_cost else 1
 
         return call_prepared
 

@@ -120,7 +120,7 @@ class NativeCaller(Protocol):
     """What executes native calls for translated code; none of these methods may raise."""
 
     def prepare(self, site: CallSite) -> Callable[[Sequence[int]], int]:
-        """Return the function that executes a call, given the words it pops if they are not constant.
+        """Return the function that executes a call, given an array that begins with the words it pops.
 
         It returns 0 to continue, 1 if translated code must exit, 2 if an argument is invalid and nothing was done.
         """
@@ -200,13 +200,13 @@ class WasmHost:
         """Call a native, or account for a translated one, for translated code."""
         if self._emitted[0]:
             self._flush_events()
-        number, done, _ = self._request
-        site = self._sites[number]
+        request = self._request
+        number, done = request[0], request[1]
         if done:
             cost, self._cost[0] = self._cost[0], 0
-            self._caller.finish(site, done - 1, cost)
+            self._caller.finish(self._sites[number], done - 1, cost)
         else:
-            self._request[2] = self._calls[number](() if site.popped is not None else self._arguments[: site.words])
+            request[2] = self._calls[number](self._arguments)
 
     def _with_stack(self, found: tuple[int, int, int, int]) -> tuple[int, int, int, Any]:
         """Flush the events and return the exit with the words to push."""

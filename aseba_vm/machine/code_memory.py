@@ -18,12 +18,13 @@ class CodeMemory:
     the flag of an ``overlapped`` word, which another instruction may read as its operand, calls ``refresh``.
     """
 
-    __slots__ = ("_events", "_words", "edges", "operations", "overlapped")
+    __slots__ = ("_words", "addresses", "edges", "operations", "overlapped")
 
     def __init__(self, size: int) -> None:
         """Create a memory of zeros."""
         self._words = [0] * size
-        self._events: dict[int, int] | None = None
+        self.addresses: dict[int, int] = {}
+        """Address of the code of each event."""
         self.edges: MutableSequence[int] = [0] * size
         self.overlapped: set[int] = set()
         self.operations: list[Decoded] = [(STOP, 0, 0)] * size
@@ -45,31 +46,24 @@ class CodeMemory:
             for word, edge in zip(self._words, self.edges, strict=True)
         )
 
-    def address_of(self, event: int) -> int:
-        """Return the address of the code of an event, 0 if there is none."""
-        if self._events is None:
-            size = min(self.word(0), len(self) - 1)
-            # Reversed, so that the first of several entries for an event wins.
-            self._events = {self.word(place): self.word(place + 1) for place in reversed(range(1, size, 2))}
-        return self._events.get(event, 0)
-
     def write(self, start: int, words: Sequence[int]) -> None:
         """Write words, which must fit, and decode them."""
         end = start + len(words)
         self._words[start:end] = [word & 0xFFFF for word in words]
         self.edges[start:end] = [word >> _FLAG & 1 for word in self._words[start:end]]
-        self._events = None
         self.overlapped = {
             pc for pc, word in enumerate(self._words) if word >> 12 == Op.BRANCH and self._is_overlapped(pc)
         }
         for pc in range(max(start - 2, 0), end):
             self._decode(pc)
+        self._find_events()
 
     def refresh(self, pc: int) -> None:
         """Decode what may contain the word at ``pc`` again, because its edge flag may have changed."""
-        self._events = None
         for place in range(max(pc - 2, 0), pc):
             self._decode(place)
+        if pc <= self.word(0):
+            self._find_events()
 
     def clear_edges(self) -> None:
         """Clear the edge flags, from the word on at which the reference starts its scan.
@@ -84,6 +78,12 @@ class CodeMemory:
                 if pc in self.overlapped:
                     self.refresh(pc)
             pc += LENGTH[word >> 12]
+
+    def _find_events(self) -> None:
+        """Read the table of events."""
+        size = min(self.word(0), len(self) - 1)
+        # Reversed, so that the first of several entries for an event wins.
+        self.addresses = {self.word(place): self.word(place + 1) for place in reversed(range(1, size, 2))}
 
     def _is_overlapped(self, pc: int) -> bool:
         """Whether another instruction, or the table of events, may contain the word at ``pc``."""

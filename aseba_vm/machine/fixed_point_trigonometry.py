@@ -38,9 +38,12 @@ ARCTANGENT = _table("""
     16344 16348 16352 16355 16357 16360 16361 16363 16364 16366 16369 16369 16371 16372 16373 16373 16375 16375
     16377 16376 16378 16378 16378 16379 16379 16380 16380 16380 16382 16381 16381 16381 16382 16382 16382 16382
     16382 16382 16384 16383 16383 16383 16383 16383 16383 16383 16383 16383 16383 16383 16384 16384 16384 16384
-    16384 16384 16384 16384 16384 16384 16384 16384 16384 16384 16384 16384
+    16384 16384 16384
 """)
-"""The arc tangent of 2^(i-4) * (1 + j/8) at 8i + j, and a right angle after the last one."""
+"""The arc tangent of 2^(i-4) * (1 + j/8) at 8i + j."""
+
+_ANGLES = (*ARCTANGENT, *[RIGHT_ANGLE] * 9)
+"""The arc tangents up to the largest ratio."""
 
 
 @kernel
@@ -86,8 +89,8 @@ def steepness_angle(height: int, width: int) -> int:
     ratio = quotient(wrap32(height << 16), width)
     exponent = floor_log2(ratio)
     if exponent < 12:
-        return (ARCTANGENT[0] * ratio) >> 12
+        return (_ANGLES[0] * ratio) >> 12
     rest = wrap32(ratio - (1 << exponent)) >> (exponent - 8)
     index = 8 * (exponent - 12) + (rest >> 5)
     fraction = rest & 31
-    return (ARCTANGENT[index] * (32 - fraction) + ARCTANGENT[index + 1] * fraction) >> 5
+    return (_ANGLES[index] * (32 - fraction) + _ANGLES[index + 1] * fraction) >> 5
