@@ -12,7 +12,8 @@ from collections.abc import Callable, Mapping, MutableSequence, Sequence
 
 from aseba_vm.frontend.pipeline import Program
 from aseba_vm.frontend.symbols import INIT_EVENT
-from aseba_vm.jit.tiering import AUTO, Change, Tiering, create_tiering
+from aseba_vm.jit.program_state import Change
+from aseba_vm.jit.tiering import AUTO, Tiering, create_tiering
 from aseba_vm.kernel.integers import wrap
 from aseba_vm.machine import reference
 from aseba_vm.machine.code_memory import CodeMemory
@@ -22,17 +23,14 @@ from aseba_vm.machine.interpreter import ACTIVE, interpret
 from aseba_vm.machine.machine_messages import (
     BadCode,
     BreakpointSet,
-    DivisionByZero,
     EventKilled,
     ExecutionState,
     Fault,
     Message,
-    NodeSpecific,
-    OutOfBounds,
     VariablesRead,
 )
-from aseba_vm.machine.native_call import Native, NativeCall, Signature
-from aseba_vm.machine.native_faults import DequeFault, DivisionFault, NativeFault
+from aseba_vm.machine.native_call import Native
+from aseba_vm.machine.native_table import NativeTable
 from aseba_vm.machine.natives import NATIVES
 from aseba_vm.target import TargetDescription
 
@@ -91,11 +89,7 @@ class VirtualMachine:
         self._breakpoints: list[int] = []
         self._on_reset = on_reset
         self._kills_long_events = kills_long_events
-        self._functions = {**NATIVES, **(natives or {})}
-        self._natives = [
-            (Signature.of(native, costs.of(native.name)), self._functions.get(native.name) or self._reporting(number))
-            for number, native in enumerate(target.natives)
-        ]
+        self.natives = NativeTable(self, target.natives, {**NATIVES, **(natives or {})}, costs)
         sizes = [variable.size for variable in target.variables[:3]]
         self._source_address = sizes[1] if len(sizes) > 1 else target.variables_size
         self._arguments_size = sizes[2] if len(sizes) > 2 else 0
@@ -335,61 +329,12 @@ class VirtualMachine:
         """Select how events are executed. Raises ValueError for a name that is not in ``ENGINES``."""
         if self._tiering is not None:
             self._tiering.close()
-        self._tiering = create_tiering(name, self, self._functions)
-
-    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native with the words it pops; return False if an argument lies outside memory.
-
-        Called by the interpreter and the tiering.
-        """
-        signature, function = self._natives[number]
-        call = NativeCall(self, signature, popped)
-        if not call.is_inside_memory:
-            return False
-        try:
-            function(call)
-        except NativeFault as fault:
-            self.stop_on_native_fault(pc, fault)
-        return True
-
-    def bind(self, number: int, popped: Sequence[int]) -> tuple[Native, NativeCall]:
-        """Return the implementation of a native, and the call with these words, which must lie inside memory.
-
-        The call is valid while the variables stay where they are. Called by the tiering.
-        """
-        signature, function = self._natives[number]
-        return function, NativeCall(self, signature, popped)
-
-    def _reporting(self, number: int) -> Native:
-        """Return what is called in place of a native without implementation."""
-        return lambda call: self.outbox.append(call.record(number))
-
-    def stop_on_native_fault(self, pc: int, fault: NativeFault) -> None:
-        """Stop because a native called at ``pc`` raised ``fault``. Called by the tiering."""
-        if isinstance(fault, DivisionFault):
-            self.stop_on(DivisionByZero(pc))
-        elif isinstance(fault, DequeFault):
-            for _ in range(fault.times):
-                self.stop_on(OutOfBounds(pc))
-        else:
-            self.stop_on(NodeSpecific(pc, fault.reason))
+        self._tiering = create_tiering(name, self)
 
     def charge(self, instructions: int) -> None:
         """Add to the cost of the native that is being called, if costs are enabled."""
         if self.costs is not NO_COSTS:
             self.extra_cost += instructions
-
-    def native_cost(self, number: int, popped: Sequence[int]) -> int:
-        """Return the cost of a native call beyond its instruction. Called by the interpreter."""
-        return self._natives[number][0].call_cost(popped)
-
-    def emit_cost(self, words: int) -> int:
-        """Return the cost of an emitted event beyond its instruction. Called by the interpreter."""
-        return self.costs.emit.of(words)
-
-    def count_popped(self, number: int) -> int:
-        """Return how many words a native pops. Called by the interpreter."""
-        return self._natives[number][0].count
 
     def stop_on(self, fault: Fault) -> None:
         """Stop the event because of a fault and report the fault. Called by the interpreter."""

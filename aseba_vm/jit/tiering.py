@@ -12,18 +12,15 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping, MutableSequence, Sequence
-from enum import Enum, auto
 from typing import NamedTuple, Protocol
 
 from aseba_vm.jit.basic_blocks import Memories
 from aseba_vm.jit.ir import KnownNative
+from aseba_vm.jit.program_state import TRANSITIONS, Change, State
 from aseba_vm.jit.structured_ir import CONTINUE, INTERPRET, STOPPED
 from aseba_vm.jit.translation import Translation, find_translation
 from aseba_vm.jit.wasm_host import CallSite, Run, WasmHost
 from aseba_vm.kernel.wasm_runtime import is_usable
-from aseba_vm.machine.code_memory import CodeMemory
-from aseba_vm.machine.costs import Costs
-from aseba_vm.machine.data_memory import Variables
 from aseba_vm.machine.interpreter import ACTIVE, InterpretedMachine, interpret
 from aseba_vm.machine.machine_messages import Emitted
 from aseba_vm.machine.native_call import Native, NativeCall, Signature
@@ -48,65 +45,14 @@ _MAX_SLICE = 10_000_000
 """Instructions after which translated code returns, so that a user can interrupt an endless program."""
 
 
-class State(Enum):
-    """What is known about the program in the bytecode memory."""
-
-    COLD = auto()
-    """It is interpreted, and runs are counted."""
-    WARM = auto()
-    """It has run long or often, and is to be translated."""
-    TRANSLATED = auto()
-    """The translation is that of the program; translated code may run."""
-    WRITTEN = auto()
-    """The memory was written from outside: it must be compared with the translation before translated code runs."""
-    INTERPRETED = auto()
-    """WebAssembly does not work here."""
-
-
-class Change(Enum):
-    """What changes the state."""
-
-    HEATED = auto()
-    TRANSLATED = auto()
-    WRITTEN = auto()
-    FOUND_EQUAL = auto()
-    FOUND_DIFFERENT = auto()
-    FAILED = auto()
-
-
-TRANSITIONS: Mapping[tuple[State, Change], State] = {
-    (State.COLD, Change.HEATED): State.WARM,
-    (State.COLD, Change.WRITTEN): State.COLD,
-    (State.WARM, Change.TRANSLATED): State.TRANSLATED,
-    (State.WARM, Change.FAILED): State.INTERPRETED,
-    (State.WARM, Change.WRITTEN): State.COLD,
-    (State.TRANSLATED, Change.WRITTEN): State.WRITTEN,
-    (State.WRITTEN, Change.WRITTEN): State.WRITTEN,
-    (State.WRITTEN, Change.FOUND_EQUAL): State.TRANSLATED,
-    (State.WRITTEN, Change.FOUND_DIFFERENT): State.COLD,
-    (State.INTERPRETED, Change.WRITTEN): State.INTERPRETED,
-}
-
-
 class TieredMachine(InterpretedMachine, Protocol):
     """What the tiering needs of a machine: its state, interpreter and natives."""
 
-    costs: Costs
-    variables: Variables
-    code: CodeMemory
+    node_id: int
     random: MutableSequence[int]
-
-    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native; return False if an argument lies outside memory."""
-
-    def bind(self, number: int, popped: Sequence[int]) -> tuple[Native, NativeCall]:
-        """Return the implementation of a native, and the call with these words, which must lie inside memory."""
 
     def charge(self, instructions: int) -> None:
         """Add to the cost of the native that is being called."""
-
-    def stop_on_native_fault(self, pc: int, fault: NativeFault) -> None:
-        """Stop because a native called at ``pc`` raised ``fault``."""
 
 
 class ReadyCode(NamedTuple):
@@ -120,14 +66,14 @@ class ReadyCode(NamedTuple):
 class Tiering:
     """Executes the events of one machine."""
 
-    def __init__(self, machine: TieredMachine, natives: Mapping[str, Native], *, is_eager: bool) -> None:
+    def __init__(self, machine: TieredMachine, *, is_eager: bool) -> None:
         """``is_eager``: translate at once."""
         self.state = State.COLD
         self._machine = machine
         self._is_eager = is_eager
         target = machine.target
-        signatures = tuple(Signature.of(native, machine.costs.of(native.name)) for native in target.natives)
-        self._natives = tuple(_known(signature, natives) for signature in signatures)
+        self._natives = tuple(_known(*machine.natives[number]) for number in range(len(machine.natives)))
+        signatures = tuple(native.signature for native in self._natives)
         self._memories = Memories(
             target.variables_size, target.bytecode_size, target.stack_size, signatures, machine.costs.emit
         )
@@ -188,8 +134,6 @@ class Tiering:
         if self.state is State.WRITTEN:
             self._compare()
         if self.state is State.COLD:
-            self.apply(Change.HEATED)
-        if self.state is State.WARM:
             self._translate()
         if self.state is State.INTERPRETED:
             return None
@@ -280,7 +224,7 @@ class Tiering:
 
         def call(popped: Sequence[int]) -> int:
             try:
-                if not machine.invoke(number, pc, popped[: site.words]):
+                if not machine.natives.call(number, pc, popped[: site.words]):
                     return 2
             except BaseException as failure:
                 self._failure = failure
@@ -289,13 +233,14 @@ class Tiering:
 
         if site.popped is None:
             return call
-        function, prepared = machine.bind(number, site.popped)
+        function, signature = machine.natives[number]
+        prepared = NativeCall(machine, signature, site.popped)
 
         def call_prepared(_popped: Sequence[int]) -> int:
             try:
                 function(prepared)
             except NativeFault as fault:
-                machine.stop_on_native_fault(pc, fault)
+                machine.natives.stop_on(pc, fault)
                 return 1
             except BaseException as failure:
                 self._failure = failure
@@ -308,22 +253,19 @@ class Tiering:
         """Account for a translated native that returned a fault, or added to its cost."""
         self._machine.charge(cost)
         if result != OK:
-            self._machine.stop_on_native_fault(site.pc, FAULTS[result]())
+            self._machine.natives.stop_on(site.pc, FAULTS[result]())
 
     def emit(self, number: int, words: tuple[int, ...]) -> None:
         """Emit an event."""
         self._machine.outbox.append(Emitted(number, words))
 
 
-def _known(signature: Signature, functions: Mapping[str, Native]) -> KnownNative:
+def _known(function: Native, signature: Signature) -> KnownNative:
     """Return what the translator knows of a native."""
-    function = functions.get(signature.native.name)
-    if isinstance(function, StandardNative) and function.fits(signature.native):
-        return KnownNative(signature, function.kernel)
-    return KnownNative(signature, None)
+    return KnownNative(signature, function.kernel if isinstance(function, StandardNative) else None)
 
 
-def create_tiering(name: str, machine: TieredMachine, natives: Mapping[str, Native]) -> Tiering | None:
+def create_tiering(name: str, machine: TieredMachine) -> Tiering | None:
     """Return the tiering for an engine name, None for the interpreter.
 
     Raises ValueError for an unknown name, or for ``wasm`` without wasmtime.
@@ -332,4 +274,4 @@ def create_tiering(name: str, machine: TieredMachine, natives: Mapping[str, Nati
         raise ValueError(f"engine: found {name!r}, expected one of {', '.join(ENGINES)}")
     if name == WASM and not is_usable():
         raise ValueError(f"engine {name!r} needs the package wasmtime, which does not work here")
-    return None if name == INTERPRETER else Tiering(machine, natives, is_eager=name == WASM)
+    return None if name == INTERPRETER else Tiering(machine, is_eager=name == WASM)

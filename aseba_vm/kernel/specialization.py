@@ -7,6 +7,8 @@ import operator
 from collections.abc import Mapping
 from copy import deepcopy
 
+from aseba_vm.kernel.integers import wrap32
+
 __all__ = ["MAX_ITERATIONS", "specialize"]
 
 MAX_ITERATIONS = 16
@@ -54,7 +56,7 @@ class _Specializer(ast.NodeTransformer):
         self.generic_visit(node)
         match node.left, type(node.op), node.right:
             case ast.Constant(value=int() as left), kind, ast.Constant(value=int() as right) if kind in _OPERATORS:
-                return ast.copy_location(ast.Constant(_OPERATORS[kind](left, right)), node)
+                return ast.copy_location(ast.Constant(wrap32(_OPERATORS[kind](left, right))), node)
         return node
 
     def visit_While(self, _node: ast.While) -> ast.stmt:

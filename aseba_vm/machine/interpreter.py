@@ -9,13 +9,14 @@ of being checked in advance. :mod:`aseba_vm.machine.reference` defines the same,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Protocol
 
 from aseba_vm.bytecode import MAX_EMITTED
 from aseba_vm.machine.code_memory import CodeMemory
+from aseba_vm.machine.costs import Costs
 from aseba_vm.machine.data_memory import Variables
 from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, Fault, Message, OutOfBounds
+from aseba_vm.machine.native_table import NativeTable
 from aseba_vm.machine.operations import (
     BAD,
     BINARY,
@@ -44,6 +45,8 @@ class InterpretedMachine(Protocol):
     """What the loop needs of a machine."""
 
     target: TargetDescription
+    costs: Costs
+    natives: NativeTable
     code: CodeMemory
     variables: Variables
     stack: list[int]
@@ -53,18 +56,6 @@ class InterpretedMachine(Protocol):
     instructions: int
     extra_cost: int
     outbox: list[Message]
-
-    def count_popped(self, number: int) -> int:
-        """Return how many words a native pops."""
-
-    def native_cost(self, number: int, popped: Sequence[int]) -> int:
-        """Return the cost of a native call beyond its instruction."""
-
-    def emit_cost(self, words: int) -> int:
-        """Return the cost of an emitted event beyond its instruction."""
-
-    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native; return False if an argument lies outside memory."""
 
     def stop_on(self, fault: Fault) -> None:
         """Stop the event because of a fault."""
@@ -180,7 +171,7 @@ def _run_slice(machine: InterpretedMachine, limit: int) -> int:
                     return _stop_on_bad_code(machine, pc, sp, executed, "variable-out-of-range")
                 machine.outbox.append(Emitted(first, tuple(variables[address : address + count])))
                 pc += 3
-                cost = machine.emit_cost(count)
+                cost = machine.costs.emit.of(count)
                 if cost:
                     executed += cost
                     break
@@ -188,7 +179,7 @@ def _run_slice(machine: InterpretedMachine, limit: int) -> int:
                 try:
                     reason, sp = _call(machine, first, pc, sp)
                 except BaseException:  # its arguments are popped: continue after the native
-                    machine.pc, machine.sp = pc + 1, sp - machine.count_popped(first)
+                    machine.pc, machine.sp = pc + 1, sp - machine.natives.count_popped(first)
                     machine.instructions += executed + 1 + machine.extra_cost
                     machine.extra_cost = 0
                     raise
@@ -223,14 +214,14 @@ def _run_slice(machine: InterpretedMachine, limit: int) -> int:
 
 def _call(machine: InterpretedMachine, number: int, pc: int, sp: int) -> tuple[str, int]:
     """Call a native; return the reason if that was impossible (empty otherwise), and the new stack index."""
-    if number >= len(machine.target.natives):
+    if number >= len(machine.natives):
         return "unknown-native", sp
-    count = machine.count_popped(number)
+    count = machine.natives.count_popped(number)
     if sp + 1 < count:
         return "stack-underflow", sp
     popped = machine.stack[sp - count + 1 : sp + 1][::-1]
-    machine.extra_cost = machine.native_cost(number, popped)
-    if machine.invoke(number, pc, popped):
+    machine.extra_cost = machine.natives.cost(number, popped)
+    if machine.natives.call(number, pc, popped):
         return "", sp - count
     machine.extra_cost = 0
     return "variable-out-of-range", sp - count

@@ -64,20 +64,21 @@ def _size_key(native: NativeFunction, index: int) -> int:
 class NativeCall:
     """A call from one place of a program: address and size of each argument, and access to the words.
 
-    ``memory`` is the whole variable memory.
+    ``memory`` is the whole variable memory, ``popped`` the words that the call pops, unsigned.
     """
 
-    __slots__ = ("addresses", "machine", "memory", "native", "sizes")
+    __slots__ = ("addresses", "machine", "memory", "native", "popped", "sizes")
 
     def __init__(self, machine: NativeMachine, signature: Signature, popped: Sequence[int]) -> None:
         """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
         self.machine = machine
         self.memory = machine.variables.words
         self.native = signature.native
+        self.popped = words = tuple([word & 0xFFFF for word in popped])
         self.sizes = signature.sizes
-        self.addresses = tuple([word & 0xFFFF for word in popped[: len(self.sizes)]])
-        if len(popped) > len(self.sizes):
-            self.sizes = tuple([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes])
+        self.addresses = words[: len(self.sizes)]
+        if len(words) > len(self.sizes):
+            self.sizes = tuple([size if size > 0 else words[-size] for size in self.sizes])
 
     @property
     def is_inside_memory(self) -> bool:

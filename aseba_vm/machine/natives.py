@@ -9,7 +9,7 @@ element is read, so overlapping arguments behave as specified.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from aseba_vm.kernel.integers import quotient, wrap, wrap32
 from aseba_vm.kernel.signatures import parameters
@@ -237,8 +237,14 @@ class StandardNative:
         self._has_cost, self._is_random = "cost" in names, "random" in names
 
     def __call__(self, call: NativeCall) -> None:
-        """Execute a call. Raises NativeFault."""
-        words = (*call.addresses, *[call.sizes[index] for index in self._declared.free_sizes])
+        """Execute a call of a native with the same parameters. Raises NativeFault."""
+        self._execute(call, call.popped)
+
+    def adapted(self, call: NativeCall) -> None:
+        """Execute a call of a native that declares other sizes. Raises NativeFault."""
+        self._execute(call, (*call.addresses, *[call.sizes[index] for index in self._declared.free_sizes]))
+
+    def _execute(self, call: NativeCall, words: Sequence[int]) -> None:
         if self._has_cost:
             cost = [0]
             result = self.kernel(call.memory, cost, *words)

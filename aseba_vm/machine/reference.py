@@ -176,18 +176,18 @@ def _emit(machine: InterpretedMachine, word: int) -> int:
     if address + count > len(machine.variables):
         raise _Bad("variable-out-of-range")
     machine.outbox.append(Emitted(word & 0xFFF, tuple(machine.variables[address : address + count])))
-    machine.extra_cost = machine.emit_cost(count)
+    machine.extra_cost = machine.costs.emit.of(count)
     return machine.pc + 3
 
 
 def _native(machine: InterpretedMachine, word: int) -> int:
     number, pc = word & 0xFFF, machine.pc
-    if number >= len(machine.target.natives):
+    if number >= len(machine.natives):
         raise _Bad("unknown-native")
-    popped = _pop(machine, machine.count_popped(number))
-    machine.extra_cost = machine.native_cost(number, popped)
+    popped = _pop(machine, machine.natives.count_popped(number))
+    machine.extra_cost = machine.natives.cost(number, popped)
     try:
-        is_possible = machine.invoke(number, pc, popped)
+        is_possible = machine.natives.call(number, pc, popped)
     except BaseException:  # its arguments are popped: continue after the native
         machine.pc = pc + 1
         machine.instructions += 1 + machine.extra_cost
