@@ -19,7 +19,7 @@ from aseba_vm.machine import reference
 from aseba_vm.machine.code_memory import CodeMemory
 from aseba_vm.machine.costs import NO_COSTS, Costs
 from aseba_vm.machine.data_memory import Variables
-from aseba_vm.machine.interpreter import ACTIVE, interpret
+from aseba_vm.machine.interpreter import interpret
 from aseba_vm.machine.machine_messages import (
     BadCode,
     BreakpointSet,
@@ -32,6 +32,7 @@ from aseba_vm.machine.machine_messages import (
 from aseba_vm.machine.native_call import Native
 from aseba_vm.machine.native_table import NativeTable
 from aseba_vm.machine.natives import NATIVES
+from aseba_vm.machine.reference import ACTIVE
 from aseba_vm.target import TargetDescription
 
 STEP_BY_STEP = 2

@@ -21,11 +21,12 @@ from aseba_vm.jit.structured_ir import CONTINUE, INTERPRET, STOPPED
 from aseba_vm.jit.translation import Translation, find_translation
 from aseba_vm.jit.wasm_host import CallSite, Run, WasmHost
 from aseba_vm.kernel.wasm_runtime import is_usable
-from aseba_vm.machine.interpreter import ACTIVE, InterpretedMachine, interpret
+from aseba_vm.machine.interpreter import interpret
 from aseba_vm.machine.machine_messages import Emitted
 from aseba_vm.machine.native_call import Native, NativeCall, Signature
 from aseba_vm.machine.native_faults import FAULTS, OK, NativeFault
 from aseba_vm.machine.natives import StandardNative
+from aseba_vm.machine.reference import ACTIVE, InterpretedMachine
 
 AUTO = "auto"
 INTERPRETER = "interpreter"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import MutableSequence, Sequence
 
 from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
-from aseba_vm.machine.operations import STOP, Decoded, decode
+from aseba_vm.machine.operations import OTHER, Decoded, decode
 
 _FLAG = WAS_TRUE.bit_length() - 1
 
@@ -27,7 +27,7 @@ class CodeMemory:
         """Address of the code of each event."""
         self.edges: MutableSequence[int] = [0] * size
         self.overlapped: set[int] = set()
-        self.operations: list[Decoded] = [(STOP, 0, 0)] * size
+        self.operations: list[Decoded] = [(OTHER, 0, 0)] * size
 
     def __len__(self) -> int:
         """Return the size of the memory in words."""
@@ -92,4 +92,4 @@ class CodeMemory:
         return is_operand or pc <= words[0]
 
     def _decode(self, pc: int) -> None:
-        self.operations[pc] = decode(self.word(pc), self.word(pc + 1), self.word(pc + 2))
+        self.operations[pc] = decode(self.word(pc), self.word(pc + 1))

@@ -11,7 +11,7 @@ from typing import Any
 from aseba_vm.bytecode import EDGE, Op, signed, signed12
 from aseba_vm.kernel.integers import quotient, remainder, wrap
 
-# Kinds of decoded operations, frequent ones first: the order in which the loop tests them.
+# Kinds of decoded operations, frequent ones first: the order in which the loop tests them. OTHER: what it leaves out.
 LOAD = 0
 PUSH = 1
 STORE = 2
@@ -22,12 +22,9 @@ LOADX = 6
 STOREX = 7
 WHEN = 8
 UNARY = 9
-STOP = 10
-CALL = 11
-RET = 12
-EMIT = 13
-NATIVE = 14
-BAD = 15
+CALL = 10
+RET = 11
+OTHER = 12
 BRANCHES = (IF, WHEN)
 
 Decoded = tuple[int, Any, Any]
@@ -63,12 +60,10 @@ UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
 )
 
 
-def decode(word: int, second: int, third: int) -> Decoded:
-    """Return kind and operands of the operation that starts with ``word``, given the two words after it."""
+def decode(word: int, second: int) -> Decoded:
+    """Return kind and operands of the operation that starts with ``word``, given the word after it."""
     op, operand = word >> 12, word & 0xFFF
     match op:
-        case Op.STOP:
-            return (STOP, 0, 0)
         case Op.PUSH:
             return (PUSH, signed12(word), 1)
         case Op.PUSHL:
@@ -83,22 +78,14 @@ def decode(word: int, second: int, third: int) -> Decoded:
             return (STOREX, operand, second)
         case Op.UNARY if operand < len(UNARY_FUNCTIONS):
             return (UNARY, UNARY_FUNCTIONS[operand], 0)
-        case Op.UNARY:
-            return (BAD, "unknown-unary-operator", 0)
         case Op.BINARY if operand < len(BINARY_FUNCTIONS):
             return (BINARY, BINARY_FUNCTIONS[operand], 0)
         case Op.BRANCH if operand & 0xFF < len(BINARY_FUNCTIONS):
             return (WHEN if operand & EDGE else IF, BINARY_FUNCTIONS[operand & 0xFF], signed(second))
-        case Op.BINARY | Op.BRANCH:
-            return (BAD, "unknown-binary-operator", 0)
         case Op.JUMP:
             return (JUMP, signed12(word), 0)
-        case Op.EMIT:
-            return (EMIT, operand, (second, third))
-        case Op.NATIVE:
-            return (NATIVE, operand, 0)
         case Op.CALL:
             return (CALL, operand, 0)
         case Op.RET:
             return (RET, 0, 0)
-    return (BAD, "unknown-instruction", 0)
+    return (OTHER, 0, 0)

@@ -3,17 +3,45 @@
 Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
 
 An operation takes the machine and its word, and returns the address of the next instruction. Steps, breakpoints and
-traces execute it.
+traces execute it, and the quick loop (:mod:`aseba_vm.machine.interpreter`) what it leaves out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Protocol
 
 from aseba_vm.bytecode import EDGE, MAX_EMITTED, Op, signed, signed12
-from aseba_vm.machine.interpreter import ACTIVE, InterpretedMachine
-from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, OutOfBounds
+from aseba_vm.machine.code_memory import CodeMemory
+from aseba_vm.machine.costs import Costs
+from aseba_vm.machine.data_memory import Variables
+from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, Fault, Message, OutOfBounds
+from aseba_vm.machine.native_table import NativeTable
 from aseba_vm.machine.operations import BINARY_FUNCTIONS, UNARY_FUNCTIONS
+from aseba_vm.target import TargetDescription
+
+ACTIVE = 1
+"""Flag of a machine that is executing an event."""
+
+
+class InterpretedMachine(Protocol):
+    """What the loop needs of a machine."""
+
+    target: TargetDescription
+    costs: Costs
+    natives: NativeTable
+    code: CodeMemory
+    variables: Variables
+    stack: list[int]
+    pc: int
+    sp: int
+    flags: int
+    instructions: int
+    extra_cost: int
+    outbox: list[Message]
+
+    def stop_on(self, fault: Fault) -> None:
+        """Stop the event because of a fault."""
 
 
 class _Bad(Exception):  # noqa: N818  # control flow, not an error

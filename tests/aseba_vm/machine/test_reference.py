@@ -13,7 +13,8 @@ from aseba_vm.bytecode import Op
 from aseba_vm.jit.tiering import INTERPRETER
 from aseba_vm.machine import reference
 from aseba_vm.machine.costs import Cost, Costs
-from aseba_vm.machine.interpreter import ACTIVE, interpret
+from aseba_vm.machine.interpreter import interpret
+from aseba_vm.machine.reference import ACTIVE
 from aseba_vm.target import NativeFunction, Parameter, TargetDescription, Variable
 from aseba_vm.targets import THYMIO_II
 
