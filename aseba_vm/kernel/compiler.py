@@ -67,7 +67,7 @@ class KernelModule:
     def call(self, kernel: Kernel, arguments: Sequence[int]) -> tuple[str, Mapping[str, str]]:
         """The text of a call with these numbers, and the local variables that it needs: names and types.
 
-        The kernel becomes a part of the caller if all its loops can be unrolled. Raises KernelError.
+        The kernel becomes a part of the caller, unless it has loops that end on a condition. Raises KernelError.
         """
         given, result = parameters(kernel)
         names = [name for name in given if name not in self._places]

@@ -181,6 +181,8 @@ class Expressions:
                 return self._operation(node, left, op, right)
             case ast.IfExp(test=test, body=body, orelse=orelse):
                 (a, b), kind = self._alike(body, orelse)
+                if kind == "i32" and _is_simple(body) and _is_simple(orelse):
+                    return f"(select {a} {b} {self.condition(test)})", kind
                 return f"(if (result {kind}) {self.condition(test)} (then {a}) (else {b}))", kind
             case ast.Call():
                 text, kind = self.call(node)
@@ -265,6 +267,15 @@ class Expressions:
         line = first + getattr(node, "lineno", 1) - 1
         found = ast.unparse(node).splitlines()[0]
         return KernelError(f"{self.scope.kernel.__module__}, line {line}: kernels have no `{found}`")
+
+
+def _is_simple(node: ast.expr) -> bool:
+    """Whether an integer may be computed without need: it reads no array and neither calls nor divides."""
+    allowed = ast.Name | ast.Constant | ast.BinOp | ast.UnaryOp | ast.operator | ast.unaryop | ast.expr_context
+    match node:
+        case ast.Call(func=ast.Name(id="min" | "max"), args=arguments):
+            return all(map(_is_simple, arguments))
+    return all(isinstance(part, allowed) for part in ast.walk(node))
 
 
 def _constant(number: float) -> Typed:

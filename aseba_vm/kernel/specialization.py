@@ -1,4 +1,4 @@
-"""Kernels for given arguments: parameters become constants, and loops over constant ranges are unrolled."""
+"""Kernels for given arguments: parameters become constants, and short loops over constant ranges are unrolled."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ MAX_ITERATIONS = 16
 _OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul}
 
 
-class _NotUnrolled(Exception):  # noqa: N818  # control flow, not an error
-    """A loop remains, or a parameter is assigned."""
+class _NotSpecialized(Exception):  # noqa: N818  # control flow, not an error
+    """A kernel has other loops, or changes a parameter."""
 
 
 def specialize(kernel: ast.FunctionDef, arguments: Mapping[str, int]) -> list[ast.stmt] | None:
-    """Return the body of a kernel for the arguments by name; None if it would keep a loop or changes a parameter."""
+    """Return the body of a kernel for the arguments by name; None if it has other loops or changes a parameter."""
     try:
         return _Specializer(arguments).block(kernel.body)
-    except _NotUnrolled:
+    except _NotSpecialized:
         return None
 
 
@@ -48,7 +48,7 @@ class _Specializer(ast.NodeTransformer):
         if node.id not in self._known:
             return node
         if not isinstance(node.ctx, ast.Load):
-            raise _NotUnrolled
+            raise _NotSpecialized
         return ast.copy_location(ast.Constant(self._known[node.id]), node)
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
@@ -60,28 +60,28 @@ class _Specializer(ast.NodeTransformer):
         return node
 
     def visit_While(self, _node: ast.While) -> ast.stmt:
-        """A loop without a constant number of iterations remains."""
-        raise _NotUnrolled
+        """Such a loop is worth a function of its own."""
+        raise _NotSpecialized
 
     def visit_Break(self, _node: ast.Break) -> ast.stmt:
-        """A loop that ends early is not unrolled."""
-        raise _NotUnrolled
+        """A loop that ends early cannot be unrolled."""
+        raise _NotSpecialized
 
     def visit_Continue(self, _node: ast.Continue) -> ast.stmt:
-        """Nor is one that skips the rest of an iteration."""
-        raise _NotUnrolled
+        """Nor can one that skips the rest of an iteration."""
+        raise _NotSpecialized
 
-    def visit_For(self, node: ast.For) -> list[ast.stmt]:
-        """The iterations one after the other."""
+    def visit_For(self, node: ast.For) -> ast.stmt | list[ast.stmt]:
+        """The iterations one after the other; the loop if there are too many."""
         if not isinstance(node.target, ast.Name) or not isinstance(node.iter, ast.Call):
-            raise _NotUnrolled
-        limits: list[int] = []
-        for limit in map(self.visit, node.iter.args):
-            if not isinstance(limit, ast.Constant) or not isinstance(limit.value, int):
-                raise _NotUnrolled
-            limits.append(limit.value)
-        if len(range(*limits)) > MAX_ITERATIONS:
-            raise _NotUnrolled
+            raise _NotSpecialized
+        node.iter.args = [self.visit(limit) for limit in node.iter.args]
+        limits = [
+            limit.value for limit in node.iter.args if isinstance(limit, ast.Constant) and isinstance(limit.value, int)
+        ]
+        if len(limits) < len(node.iter.args) or len(range(*limits)) > MAX_ITERATIONS:
+            node.body = self.block(node.body)
+            return node
         found: list[ast.stmt] = []
         for number in range(*limits):
             self._known[node.target.id] = number

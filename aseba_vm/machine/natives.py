@@ -97,9 +97,9 @@ def math_max(memory: Shorts, target: int, left: int, right: int, size: int) -> i
 def math_clamp(memory: Shorts, target: int, source: int, low: int, high: int, size: int) -> int:
     for i in range(size):
         value = memory[source + i]
+        least = memory[low + i]
         most = memory[high + i]
-        # the order matters when low is above high
-        memory[target + i] = most if value > most else max(value, memory[low + i])
+        memory[target + i] = most if value > most else max(value, least)  # the order matters if least > most
     return OK
 
 
@@ -123,8 +123,10 @@ def math_stat(memory: Shorts, source: int, low: int, high: int, mean: int, size:
     total = 0
     for i in range(size):
         value = memory[source + i]
-        memory[low] = min(memory[low], value)
-        memory[high] = max(memory[high], value)
+        if value < memory[low]:
+            memory[low] = value
+        if value > memory[high]:
+            memory[high] = value
         total = total + value
     memory[mean] = wrap(quotient(wrap32(total), size))
     return OK
@@ -152,16 +154,16 @@ def math_sort(memory: Shorts, source: int, size: int) -> int:
     while gap < size:
         gap = 3 * gap + 1
     while gap > 0:
-        for i in range(gap, size):
-            value = memory[source + i]
+        for i in range(source + gap, source + size):
+            value = memory[i]
             hole = i
-            while hole >= gap:
-                other = memory[source + hole - gap]
+            while hole >= source + gap:
+                other = memory[hole - gap]
                 if other <= value:
                     break
-                memory[source + hole] = other
+                memory[hole] = other
                 hole = hole - gap
-            memory[source + hole] = value
+            memory[hole] = value
         gap = quotient(gap - 1, 3)
     return OK
 

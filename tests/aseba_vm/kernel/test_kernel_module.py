@@ -61,6 +61,15 @@ def counted(count: Ints, value: int) -> int:
 
 
 @kernel
+def halved(memory: Shorts, start: int) -> int:
+    value = start
+    while value > 3:
+        value = value >> 1
+        memory[value] = value
+    return value
+
+
+@kernel
 def renamed(memory: Shorts, count: Ints, start: int) -> int:
     return table_of(count, start)
 
@@ -126,11 +135,17 @@ def test_words_that_overlap_are_read_and_written_in_order(size: int) -> None:
     assert python == called == inlined
 
 
-def test_a_long_loop_is_called() -> None:
-    for size, is_inlined in ((16, True), (17, False)):
+def test_short_loops_are_unrolled() -> None:
+    for size, is_unrolled in ((16, True), (17, False)):
         text, names = KernelModule(PLACES, TABLES).call(shifted_sum, (1, 0, size))
-        assert text.startswith("(block" if is_inlined else "(call $shifted_sum")
-        assert bool(names) == is_inlined
+        assert ("(loop" not in text) == is_unrolled
+        assert "$inlined1.total" in names
+
+
+def test_a_kernel_with_a_loop_that_ends_on_a_condition_is_called() -> None:
+    assert KernelModule(PLACES, TABLES).call(halved, (40,)) == ("(call $halved (i32.const 40))", {})
+    python, called, inlined = both(halved, [0] * WORDS, 40)
+    assert python == called == inlined
 
 
 def test_an_array_at_a_fixed_place_has_one_name() -> None:
