@@ -58,6 +58,7 @@ from aseba_vm.jit.wasm_host import (
 )
 from aseba_vm.kernel.compiler import KernelModule, Place, parameters
 from aseba_vm.kernel.wasm_runtime import WasmRuntime
+from aseba_vm.machine.native_faults import OK
 
 _TRAPPED = -1
 """Kind of exit before there is one; it remains if the code traps."""
@@ -289,10 +290,13 @@ class _Writer:
         site = f"(i32.const {len(self.calls)})"
         write, emit_line = self.expressions, self.lines.append
         if native.kernel is not None and popped is not None:
-            text, names = self.kernels.call(native.kernel, popped)
-            self.locals.update(names)
+            call = self.kernels.call(native.kernel, popped)
+            self.locals.update(call.locals)
             self._spill(node)
-            condition = f"(local.tee $h {text})"
+            if call.result == OK:
+                emit_line(f"(drop {call.text})")
+                return
+            condition = f"(local.tee $h {call.text})"
             if "cost" in parameters(native.kernel)[0]:
                 condition = f"(i32.or {condition} (i32.load (i32.const {COST})))"
             finish = f"(drop (call $native {site} (i32.add (local.get $h) (i32.const 1))))"

@@ -17,6 +17,7 @@ import inspect
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
+from typing import NamedTuple
 
 from aseba_vm.kernel.expressions import Expressions, Place, Scope, Tables, Typed
 from aseba_vm.kernel.record import fields
@@ -24,7 +25,7 @@ from aseba_vm.kernel.signatures import ARRAYS, SCALARS, KernelError, Signature, 
 from aseba_vm.kernel.specialization import specialize
 from aseba_vm.kernel.types import Kernel, is_kernel
 
-__all__ = ["KernelError", "KernelModule", "Place", "Signature", "parameters", "translate"]
+__all__ = ["KernelCall", "KernelError", "KernelModule", "Place", "Signature", "parameters", "translate"]
 
 
 def translate(kernels: Iterable[Kernel]) -> str:
@@ -37,6 +38,14 @@ def translate(kernels: Iterable[Kernel]) -> str:
     for kernel in kernels:
         module.use(kernel, is_exported=True)
     return f'(module (import "" "memory" (memory 1))\n{module.text()})'
+
+
+class KernelCall(NamedTuple):
+    """The text of a call, the local variables that it needs, and its result if that is the same in every case."""
+
+    text: str
+    locals: Mapping[str, str]
+    result: int | None = None
 
 
 class KernelModule:
@@ -64,8 +73,8 @@ class KernelModule:
         if is_exported:
             self._exported.add(kernel.__name__)
 
-    def call(self, kernel: Kernel, arguments: Sequence[int]) -> tuple[str, Mapping[str, str]]:
-        """The text of a call with these numbers, and the local variables that it needs: names and types.
+    def call(self, kernel: Kernel, arguments: Sequence[int]) -> KernelCall:
+        """Translate a call with these numbers.
 
         The kernel becomes a part of the caller, unless it has loops that end on a condition. Raises KernelError.
         """
@@ -74,16 +83,16 @@ class KernelModule:
         body = specialize(_tree(kernel), dict(zip(names, arguments, strict=True)))
         if body is None:
             self.use(kernel)
-            return f"(call ${kernel.__name__} {' '.join(f'(i32.const {number})' for number in arguments)})", {}
+            numbers = " ".join(f"(i32.const {number})" for number in arguments)
+            return KernelCall(f"(call ${kernel.__name__} {numbers})", {})
         for called in _called(kernel):
             self.use(called)
         self._inlined += 1
         label = f"$inlined{self._inlined}"
         function = _Function(Scope(kernel, self._tables, self._places, f"{label[1:]}."), f"br {label}")
         text = function.body(body)
-        return f"(block {label} {_result(result)} {text})", {
-            function.expressions.local(name): kind for name, kind in function.local_types.items()
-        }
+        types = {function.expressions.local(name): kind for name, kind in function.local_types.items()}
+        return KernelCall(f"(block {label} {_result(result)} {text})", types, _constant_result(kernel, body))
 
     def text(self) -> str:
         """The functions and tables. Raises KernelError for what the language of kernels lacks."""
@@ -92,6 +101,14 @@ class KernelModule:
             for name, kernel in self._kernels.items()
         ]
         return "\n".join([*functions, self._tables.text])
+
+
+def _constant_result(kernel: Kernel, body: Sequence[ast.stmt]) -> int | None:
+    """The result of a kernel if every `return` names the same number of its module."""
+    returns = [node.value for statement in body for node in ast.walk(statement) if isinstance(node, ast.Return)]
+    names = {node.id if isinstance(node, ast.Name) else None for node in returns}
+    found = getattr(kernel, "__globals__", {}).get(names.pop()) if len(names) == 1 else None
+    return found if isinstance(found, int) else None
 
 
 def _called(kernel: Kernel) -> list[Kernel]:

@@ -11,7 +11,7 @@ from aseba_vm.kernel.integers import wrap32
 
 __all__ = ["MAX_ITERATIONS", "specialize"]
 
-MAX_ITERATIONS = 16
+MAX_ITERATIONS = 32
 """Largest number of iterations of a loop that is unrolled."""
 
 _OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul}

@@ -76,7 +76,9 @@ def deque_pop_back(memory: Shorts, cost: Ints, queue: int, destination: int, len
 
 @kernel
 def ring_place(queue: int, length: int, position: int) -> int:
-    """The address of a position in the ring; it is not negative."""
+    """Return the address of a position in the ring, which is not negative."""
+    if position < length - 2:
+        return queue + 2 + position  # a division is slow
     return queue + 2 + remainder(position, length - 2)
 
 
@@ -158,7 +160,7 @@ def move_words(memory: Shorts, cost: Ints, queue: int, length: int, first: int, 
     # Positions behave as in C: 16-bit unsigned target, remainder with the sign of the dividend. A negative one can
     # therefore be that of the words before the ring; addresses outside the memory are skipped.
     while (end - target) * step >= 0:
-        origin = ring_place(queue, length, target + distance)
+        origin = queue + 2 + remainder(target + distance, length - 2)
         if 0 <= origin < len(memory):
             memory[ring_place(queue, length, target)] = memory[origin]
         target = (target + step) & 0xFFFF

@@ -11,12 +11,13 @@ import pytest
 
 from aseba_vm.kernel.compiler import KernelError, KernelModule, Place
 from aseba_vm.kernel.integers import floor_log2, quotient, remainder, wrap, wrap32
+from aseba_vm.kernel.specialization import MAX_ITERATIONS
 from aseba_vm.kernel.types import Ints, Shorts, kernel
 from aseba_vm.kernel.wasm_runtime import WasmRuntime, is_usable
 
 pytestmark = pytest.mark.skipif(not is_usable(), reason="wasmtime does not work here")
 
-WORDS = 24
+WORDS = 40
 PLACES = {"memory": Place(0, WORDS), "count": Place(0x100, 1)}
 TABLES = 0x200
 SQUARES = tuple(number * number - 5 for number in range(20))
@@ -102,7 +103,8 @@ def both(function: Callable[..., int], words: Sequence[int], *arguments: int) ->
     called.use(function)
     numbers = " ".join(f"(i32.const {number})" for number in arguments)
     inlined = KernelModule(PLACES, TABLES)
-    text, names = inlined.call(function, arguments)
+    text, names, result = inlined.call(function, arguments)
+    assert result in (None, found[0][0])
     for module, code, locals_ in ((called, f"(call ${function.__name__} {numbers})", {}), (inlined, text, names)):
         run, memory, count = compiled(module, code, dict(locals_))
         memory[:] = words
@@ -123,7 +125,7 @@ def test_tables_and_lengths_are_those_of_python(index: int) -> None:
     assert python == called == inlined
 
 
-@pytest.mark.parametrize("size", [0, 1, 4, 16, 17])
+@pytest.mark.parametrize("size", [0, 1, 4, MAX_ITERATIONS, MAX_ITERATIONS + 1])
 def test_words_that_overlap_are_read_and_written_in_order(size: int) -> None:
     dice = random.Random(size)
     words = [dice.randrange(30000) for _ in range(WORDS)]
@@ -136,14 +138,14 @@ def test_words_that_overlap_are_read_and_written_in_order(size: int) -> None:
 
 
 def test_short_loops_are_unrolled() -> None:
-    for size, is_unrolled in ((16, True), (17, False)):
-        text, names = KernelModule(PLACES, TABLES).call(shifted_sum, (1, 0, size))
-        assert ("(loop" not in text) == is_unrolled
-        assert "$inlined1.total" in names
+    for size, is_unrolled in ((MAX_ITERATIONS, True), (MAX_ITERATIONS + 1, False)):
+        call = KernelModule(PLACES, TABLES).call(shifted_sum, (1, 0, size))
+        assert ("(loop" not in call.text) == is_unrolled
+        assert "$inlined1.total" in call.locals
 
 
 def test_a_kernel_with_a_loop_that_ends_on_a_condition_is_called() -> None:
-    assert KernelModule(PLACES, TABLES).call(halved, (40,)) == ("(call $halved (i32.const 40))", {})
+    assert KernelModule(PLACES, TABLES).call(halved, (40,)) == ("(call $halved (i32.const 40))", {}, None)
     python, called, inlined = both(halved, [0] * WORDS, 40)
     assert python == called == inlined
 
