@@ -19,7 +19,7 @@ from aseba_vm.jit.ir import KnownNative
 from aseba_vm.jit.program_state import TRANSITIONS, Change, State
 from aseba_vm.jit.structured_ir import CONTINUE, INTERPRET, STOPPED
 from aseba_vm.jit.translation import Translation, find_translation
-from aseba_vm.jit.wasm_host import CallSite, Run, WasmHost
+from aseba_vm.jit.wasm_host import CallSite, EmitSite, Run, WasmHost
 from aseba_vm.kernel.wasm_runtime import is_usable
 from aseba_vm.machine.interpreter import interpret
 from aseba_vm.machine.machine_messages import Emitted
@@ -217,9 +217,23 @@ class Tiering:
             raise RuntimeError(f"internal error (please report): translated code trapped at {machine.pc}")
         return done
 
-    # -- called by translated code (aseba_vm.jit.wasm_host.NativeCaller)
+    # -- called by translated code (aseba_vm.jit.wasm_host.Caller)
 
-    def prepare(self, site: CallSite) -> Callable[[Sequence[int]], int]:
+    def prepare(self, site: CallSite | EmitSite) -> Callable[[Sequence[int]], int]:
+        """Return the function that executes a native call or emits an event."""
+        return self._prepare_call(site) if isinstance(site, CallSite) else self._prepare_event(site)
+
+    def _prepare_event(self, site: EmitSite) -> Callable[[Sequence[int]], int]:
+        memory, outbox = self._machine.variables.words, self._machine.outbox
+        number, start, end = site.number, site.address, site.address + site.words
+
+        def emit(_popped: Sequence[int]) -> int:
+            outbox.append(Emitted(number, tuple(memory[start:end])))
+            return 0
+
+        return emit
+
+    def _prepare_call(self, site: CallSite) -> Callable[[Sequence[int]], int]:
         """Return the function that executes a native call. An exception of the native is raised after the exit."""
         machine, number, pc = self._machine, site.number, site.pc
 
@@ -255,10 +269,6 @@ class Tiering:
         self._machine.charge(cost)
         if result != OK:
             self._machine.natives.stop_on(site.pc, FAULTS[result]())
-
-    def emit(self, number: int, words: tuple[int, ...]) -> None:
-        """Emit an event."""
-        self._machine.outbox.append(Emitted(number, words))
 
 
 def _known(function: Native, signature: Signature) -> KnownNative:

@@ -44,8 +44,6 @@ from aseba_vm.jit.wasm_host import (
     ARGUMENTS,
     COST,
     EDGES,
-    EMIT,
-    EMITTED,
     EXIT,
     IMPORTS,
     INNER,
@@ -54,6 +52,7 @@ from aseba_vm.jit.wasm_host import (
     TABLES,
     VARIABLES,
     CallSite,
+    EmitSite,
     WasmCode,
 )
 from aseba_vm.kernel.compiler import KernelModule, Place, parameters
@@ -67,7 +66,7 @@ _TRAPPED = -1
 def translate(blocks: Blocks, structure: StructuredProgram, natives: Sequence[KnownNative]) -> WasmCode:
     """Return the code of a program, for :meth:`aseba_vm.jit.wasm_host.WasmHost.instantiate`."""
     writer = _Writer(structure, natives, blocks.memories.variables)
-    return WasmCode(WasmRuntime.get().compile(writer.text()), tuple(writer.calls))
+    return WasmCode(WasmRuntime.get().compile(writer.text()), tuple(writer.sites))
 
 
 class _Writer:
@@ -78,8 +77,7 @@ class _Writer:
         self.natives = natives
         self.lines: list[str] = []
         self.is_sub = False
-        self.is_emitting = False
-        self.calls: list[CallSite] = []
+        self.sites: list[CallSite | EmitSite] = []
         self.kernels = KernelModule(
             {"memory": Place(VARIABLES, memory_words), "random": Place(RANDOM, 1), "cost": Place(COST, 1)}, TABLES
         )
@@ -92,11 +90,9 @@ class _Writer:
 
     def text(self) -> str:
         """Return the module; its export ``run`` reads the budget from memory and writes the exit there."""
-        self.is_emitting = emits(self.structure)
         subs = [self._routine(sub, f"$f{sub.pc}") for sub in self.structure.subs.values()]
         main = self._routine(self.structure.main, '$run (export "run")')
-        own = [EMIT] if self.is_emitting else []
-        return "\n".join(["(module", IMPORTS, *own, self.kernels.text(), *subs, main, ")"])
+        return "\n".join(["(module", IMPORTS, self.kernels.text(), *subs, main, ")"])
 
     def _routine(self, routine: Routine, name: str) -> str:
         self.lines.clear()
@@ -128,8 +124,6 @@ class _Writer:
             at = f"(i32.shl {depth} (i32.const 2))"
             stores.append(f"(i32.store offset={STACK + 4 * number} {at} {self.expressions.word(atom)})")
         more = f"(i32.add {depth} (i32.const {len(place.pending)}))" if place.pending else depth
-        if self.is_emitting:
-            more = f"(i32.add {more} (i32.shl (i32.load (i32.const {EMITTED})) (i32.const 12)))"
         stores.append(f"(i32.store (i32.const {EXIT + 16}) {more})")
         left = f"(i64.sub (local.get $n) (i64.const {uncharged}))"
         if not self.is_sub:
@@ -271,7 +265,7 @@ class _Writer:
                 emit_line(f"(i32.store16 offset={2 * base} {place} {text})")
             case Emit(number=number, address=address, length=length):
                 self._spill(node)
-                emit_line(f"(call $emit (i32.const {number}) (i32.const {address}) (i32.const {length}))")
+                emit_line(f"(drop {self._python(EmitSite(number, address, length))})")
             case Call():
                 self._call(node, uncharged)
 
@@ -287,7 +281,7 @@ class _Writer:
         after = self._exit(node.after, INTERPRET, uncharged + node.cost)
         is_constant = arguments(node.popped, native.signature) is not None
         popped = tuple(word.value & 0xFFFF for word in node.popped if isinstance(word, Const)) if is_constant else None
-        site = f"(i32.const {len(self.calls)})"
+        site = CallSite(node.number, node.pc, len(node.popped), popped)
         write, emit_line = self.expressions, self.lines.append
         if native.kernel is not None and popped is not None:
             call = self.kernels.call(native.kernel, popped)
@@ -299,28 +293,18 @@ class _Writer:
             condition = f"(local.tee $h {call.text})"
             if "cost" in parameters(native.kernel)[0]:
                 condition = f"(i32.or {condition} (i32.load (i32.const {COST})))"
-            finish = f"(drop (call $native {site} (i32.add (local.get $h) (i32.const 1))))"
+            finish = f"(drop {self._python(site, '(i32.add (local.get $h) (i32.const 1))')})"
             emit_line(f"(if {condition} (then {finish} {after}))")
         else:
             words = [] if is_constant else [write.word(word) for word in node.popped]
             self._spill(node)
             for place, text in enumerate(words):
                 emit_line(f"(i32.store (i32.const {ARGUMENTS + 4 * place}) {text})")
-            emit_line(f"(local.set $h (call $native {site} (i32.const 0)))")
+            emit_line(f"(local.set $h {self._python(site)})")
             before = self._exit(node.place, INTERPRET, uncharged)
             emit_line(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")
-        self.calls.append(CallSite(node.number, node.pc, len(node.popped), popped))
 
-
-def emits(structure: StructuredProgram) -> bool:
-    """Return whether the program emits events."""
-    waiting: list[Node] = [*structure.main.nodes, *(node for sub in structure.subs.values() for node in sub.nodes)]
-    while waiting:
-        match waiting.pop():
-            case Emit():
-                return True
-            case If(_, then, otherwise):
-                waiting += then + otherwise
-            case Loop(_, before, _, body):
-                waiting += before + body
-    return False
+    def _python(self, site: CallSite | EmitSite, done: str = "(i32.const 0)") -> str:
+        """Return a call of Python; ``done`` is 1 plus the result of a translated native."""
+        self.sites.append(site)
+        return f"(call $python (i32.const {len(self.sites) - 1}) {done})"
