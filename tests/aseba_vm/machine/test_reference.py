@@ -33,7 +33,8 @@ SMALL = TargetDescription(
 COSTS = Costs({"charge": Cost(3, 1)}, Cost(2), Cost(5, 1))
 
 numbers = st.integers(-32768, 32767) | st.integers(-3, 40) | st.sampled_from((0, 1, -1, 32767, -32768))
-operands = st.integers(0, 0xFFF) | st.integers(0, 50) | st.integers(0xFD0, 0xFFF)
+limits = st.sampled_from((SMALL.variables_size, SMALL.variables_size - 1, SMALL.bytecode_size, SMALL.bytecode_size - 1))
+operands = st.integers(0, 0xFFF) | st.integers(0, 50) | st.integers(0xFD0, 0xFFF) | limits
 instructions = st.builds(lambda op, operand: op << 12 | operand, st.sampled_from(Op), operands)
 branches = st.builds(lambda operator, flags: 0xA000 | operator | flags << 8, st.integers(0, 19), st.integers(0, 3))
 words = instructions | branches | st.integers(0, 0xFFFF) | st.integers(0, 30)
