@@ -9,12 +9,12 @@ PAGE := web_ui/dist/index.html
 ifneq ($(and $(ROS_DISTRO),$(AMENT_PREFIX_PATH)),)
 VENV := .venv-$(ROS_DISTRO)
 VENV_OPTIONS := --system-site-packages
-EXTRAS_RUN := [fast]
+EXTRAS_RUN :=
 EXTRAS_TEST := [test]
 else
 VENV := .venv
 VENV_OPTIONS :=
-EXTRAS_RUN := [ros,fast]
+EXTRAS_RUN := [ros]
 EXTRAS_TEST := [ros,test]
 ifneq ($(shell uname -s)-$(shell uname -m),Linux-x86_64)
 NO_ROS := yes

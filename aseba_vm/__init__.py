@@ -18,7 +18,8 @@ from aseba_vm.errors import AeslError, AsebaError, CompileError, SourcePos, Targ
 from aseba_vm.frontend.pipeline import Program, Stages, compile, compile_stages
 from aseba_vm.frontend.syntax_tree import Memory
 from aseba_vm.machine import machine_messages
-from aseba_vm.machine.native_call import Native, NativeCall, NativeFault
+from aseba_vm.machine.native_call import Native, NativeCall
+from aseba_vm.machine.native_faults import NativeFault
 from aseba_vm.target import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
 from aseba_vm.vm import VirtualMachine
 

@@ -8,29 +8,31 @@ A program can never make the machine raise: a fault stops it, is appended to ``o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, MutableSequence, Sequence
 
 from aseba_vm.frontend.pipeline import Program
 from aseba_vm.frontend.symbols import INIT_EVENT
+from aseba_vm.jit.program_state import Change
 from aseba_vm.jit.tiering import AUTO, Tiering, create_tiering
+from aseba_vm.kernel.integers import wrap
+from aseba_vm.machine import reference
 from aseba_vm.machine.code_memory import CodeMemory
 from aseba_vm.machine.costs import NO_COSTS, Costs
 from aseba_vm.machine.data_memory import Variables
-from aseba_vm.machine.interpreter import ACTIVE, interpret
+from aseba_vm.machine.interpreter import interpret
 from aseba_vm.machine.machine_messages import (
     BadCode,
     BreakpointSet,
-    DivisionByZero,
     EventKilled,
     ExecutionState,
     Fault,
     Message,
-    NodeSpecific,
-    OutOfBounds,
     VariablesRead,
 )
-from aseba_vm.machine.native_call import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
+from aseba_vm.machine.native_call import Native
+from aseba_vm.machine.native_table import NativeTable
 from aseba_vm.machine.natives import NATIVES
+from aseba_vm.machine.reference import ACTIVE
 from aseba_vm.target import TargetDescription
 
 STEP_BY_STEP = 2
@@ -80,17 +82,18 @@ class VirtualMachine:
         self.instructions = 0
         self.extra_cost = 0
         """Cost of the native that is being called, until it is added to ``instructions``."""
-        self.random_state = 0
+        self.random: MutableSequence[int] = [0]
+        """The state of the random number generator, in whatever storage the active engine needs."""
         self.tracer: Callable[[int], None] | None = None
         self.stack: list[int] = [0] * target.stack_size
         self.code = CodeMemory(target.bytecode_size)
         self._breakpoints: list[int] = []
         self._on_reset = on_reset
         self._kills_long_events = kills_long_events
-        self._functions = {**NATIVES, **(natives or {})}
-        self._natives = [
-            (Signature.of(native, costs.of(native.name)), self._functions.get(native.name)) for native in target.natives
-        ]
+        self.natives = NativeTable(self, target.natives, {**NATIVES, **(natives or {})}, costs)
+        sizes = [variable.size for variable in target.variables[:3]]
+        self._source_address = sizes[1] if len(sizes) > 1 else target.variables_size
+        self._arguments_size = sizes[2] if len(sizes) > 2 else 0
         self._tiering: Tiering | None = None
         self.use_engine(engine)
 
@@ -99,8 +102,16 @@ class VirtualMachine:
     @property
     def bytecode(self) -> tuple[int, ...]:
         """The bytecode memory, unsigned words."""
-        self._flush_edges()
-        return tuple(self.code.words)
+        return self.code.words
+
+    @property
+    def random_state(self) -> int:
+        """The state of the random number generator, 16 bits."""
+        return self.random[0]
+
+    @random_state.setter
+    def random_state(self, value: int) -> None:
+        self.random[0] = value & 0xFFFF
 
     @property
     def is_active(self) -> bool:
@@ -127,9 +138,8 @@ class VirtualMachine:
 
     def set_bytecode(self, words: Sequence[int], start: int = 0) -> None:
         """Write words and reset. Raises ValueError if they do not fit into the memory."""
-        if start < 0 or start + len(words) > len(self.code.words):
-            raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self.code.words)}")
-        self._flush_edges()
+        if start < 0 or start + len(words) > len(self.code):
+            raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self.code)}")
         self.code.write(start, words)
         self.reset()
 
@@ -146,12 +156,11 @@ class VirtualMachine:
 
         The conditions are cleared as far as the reference clears them (:meth:`CodeMemory.clear_edges`).
         """
-        self._flush_edges()
         self.flags = STEP_BY_STEP
         self.fault = None
         self.code.clear_edges()
         if self._tiering is not None:
-            self._tiering.invalidate()
+            self._tiering.apply(Change.WRITTEN)
         if self._on_reset is not None:
             self._on_reset(self)
         if not self.setup(INIT_EVENT):
@@ -186,7 +195,7 @@ class VirtualMachine:
 
     def set_breakpoint(self, pc: int) -> None:
         """Add a breakpoint if fewer than MAX_BREAKPOINTS are set, and report whether it was added."""
-        if not 0 <= pc < len(self.code.words):
+        if not 0 <= pc < len(self.code):
             self.stop_on(BadCode(pc, "breakpoint-out-of-range"))
             return
         has_room = len(self._breakpoints) < MAX_BREAKPOINTS
@@ -217,19 +226,20 @@ class VirtualMachine:
 
     def address_of(self, event: int) -> int:
         """Return the address of the code of an event, 0 if there is none."""
-        return self.code.address_of(event)
+        return self.code.addresses.get(event, 0)
 
     def setup(self, event: int) -> int:
         """Start an event; return the address of its code, or 0 if the program does not handle it."""
-        address = self.code.address_of(event)
+        address = self.code.addresses.get(event, 0)
         if address == 0:
             return 0
-        if self.flags & ACTIVE:
+        flags = self.flags
+        if flags & ACTIVE:
             self.outbox.append(EventKilled(self.pc))
         self.pc = address
         self.sp = -1
-        self.flags |= ACTIVE
-        if self.flags & STEP_BY_STEP:
+        self.flags = flags | ACTIVE
+        if flags & STEP_BY_STEP:
             self.report_state()
         return address
 
@@ -241,23 +251,25 @@ class VirtualMachine:
         """
         if self.flags & STEP_BY_STEP and self.flags & ACTIVE:
             return
-        declared = self.target.variables
-        if len(declared) > 1:
-            address = declared[1].size
-            capacity = declared[2].size if len(declared) > 2 else 0
-            words = [source, *arguments[:capacity]][: len(self.variables) - address]
-            self.write_variables(address, words)
+        self._write_source(source, arguments)
         self.setup(event)
 
     def start_local(self, index: int) -> bool:
         """Start local event ``index`` of the target; return False if another event is active. Raises no error."""
         if self.flags & ACTIVE:
             return False
-        declared = self.target.variables
-        if len(declared) > 1:
-            self.write_variables(declared[1].size, [self.node_id][: len(self.variables) - declared[1].size])
+        self._write_source(self.node_id, ())
         self.setup(0xFFFE - index)
         return True
+
+    def _write_source(self, source: int, arguments: Sequence[int]) -> None:
+        """Write the source of an event and its arguments, as far as the target has variables for them."""
+        memory, address = self.variables.words, self._source_address
+        if address < len(memory):
+            memory[address] = wrap(source)
+        if arguments:
+            words = arguments[: min(self._arguments_size, max(len(memory) - address - 1, 0))]
+            memory[address + 1 : address + 1 + len(words)] = [wrap(word) for word in words]
 
     # -- running (docs/spec/aseba-bytecode-vm.md section 10.3)
 
@@ -301,12 +313,12 @@ class VirtualMachine:
         return executed, False
 
     def _interpret_one(self) -> int:
-        """Execute one instruction in the interpreter and mark the translation as stale; return the number executed."""
+        """Execute one instruction as the reference does, which may change the bytecode; return its cost."""
         try:
-            return self.interpret(1)
+            return reference.step(self)
         finally:
             if self._tiering is not None:
-                self._tiering.mark_stale()
+                self._tiering.apply(Change.WRITTEN)
 
     def _trace(self) -> None:
         if self.tracer is not None:
@@ -318,62 +330,12 @@ class VirtualMachine:
         """Select how events are executed. Raises ValueError for a name that is not in ``ENGINES``."""
         if self._tiering is not None:
             self._tiering.close()
-        self._tiering = create_tiering(name, self, self._functions)
-
-    def interpret(self, limit: int) -> int:
-        """Execute without translation up to ``limit``; return the budget used. Called by the tiering."""
-        self._flush_edges()
-        return interpret(self, limit)
-
-    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native with the words it pops; return False if an argument lies outside memory.
-
-        Called by the interpreter and the tiering.
-        """
-        signature, function = self._natives[number]
-        call = NativeCall(self, signature, popped)
-        if not call.is_inside_memory:
-            return False
-        if function is None:
-            self.outbox.append(call.record(number))
-            return True
-        try:
-            function(call)
-        except NativeFault as error:
-            call.report(error)
-        for fault in call.faults:
-            self.stop_on_native_fault(pc, fault)
-        return True
-
-    def stop_on_native_fault(self, pc: int, fault: NativeFault) -> None:
-        """Stop because a native called at ``pc`` raised ``fault``. Called by the tiering."""
-        if isinstance(fault, DivisionFault):
-            self.stop_on(DivisionByZero(pc))
-        elif isinstance(fault, DequeFault):
-            self.stop_on(OutOfBounds(pc))
-        else:
-            self.stop_on(NodeSpecific(pc, fault.reason))
+        self._tiering = create_tiering(name, self)
 
     def charge(self, instructions: int) -> None:
         """Add to the cost of the native that is being called, if costs are enabled."""
         if self.costs is not NO_COSTS:
             self.extra_cost += instructions
-
-    def native_cost(self, number: int, popped: Sequence[int]) -> int:
-        """Return the cost of a native call beyond its instruction. Called by the interpreter."""
-        return self._natives[number][0].call_cost(popped)
-
-    def emit_cost(self, words: int) -> int:
-        """Return the cost of an emitted event beyond its instruction. Called by the interpreter."""
-        return self.costs.emit.of(words)
-
-    def count_popped(self, number: int) -> int:
-        """Return how many words a native pops. Called by the interpreter."""
-        return self._natives[number][0].count
-
-    def _flush_edges(self) -> None:
-        if self._tiering is not None:
-            self._tiering.flush_edges()
 
     def stop_on(self, fault: Fault) -> None:
         """Stop the event because of a fault and report the fault. Called by the interpreter."""

@@ -1,4 +1,4 @@
-"""Bytecode as basic blocks of statements over expression trees: the input of both translators.
+"""Bytecode as basic blocks of statements over expression trees: the input of the translator.
 
 Symbolic execution turns stack operations back into trees. A statement is the smallest unit with an effect. Between
 statements the state of the machine is known: ``pc``, and a stack that holds only ``pending``, constants and

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from aseba_vm.kernel.types import Kernel
 from aseba_vm.machine.native_call import Signature
 
 
@@ -109,15 +110,10 @@ class Call(NamedTuple):
 
 
 class KnownNative(NamedTuple):
-    """What a translator may assume about a native.
-
-    ``is_confined``: it accesses nothing but its arguments. ``is_standard``: it is the function of
-    docs/spec/aseba-bytecode-vm.md section 12.
-    """
+    """What the translator knows of a native: ``kernel`` is its definition if it is a standard native."""
 
     signature: Signature
-    is_confined: bool
-    is_standard: bool
+    kernel: Kernel | None
 
 
 Statement = Assign | AssignIndex | Emit | Call

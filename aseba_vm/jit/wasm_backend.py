@@ -1,12 +1,12 @@
-"""Translation to WebAssembly with the optional ``wasmtime`` (extra ``[fast]``): one module per event.
+"""Translation to WebAssembly: one module per event.
 
-Modules work directly on the variables of the machine (:mod:`aseba_vm.jit.wasm_host`). A subroutine is a function that
+Modules work directly on the state of the machine (:mod:`aseba_vm.jit.wasm_host`). A subroutine is a function that
 takes the budget and the stack depth, and returns the budget left, or -1 if translated code was left inside it. An exit
-writes the remaining budget, address, kind and the words of the stack into memory. Structure and rules are those of
-:mod:`aseba_vm.jit.python_backend`.
+writes the remaining budget, address, kind and the words of the stack into memory. Standard natives are compiled from
+their kernels.
 
 Locals in the generated code: ``$n`` budget, ``$d`` stack depth, ``$h`` scratch, ``$t<number>`` temporaries of
-expressions, ``$s<number>`` temporaries of statements.
+expressions, ``$s<number>`` temporaries of statements, ``$inlined<number>.<name>`` those of natives.
 """
 
 from __future__ import annotations
@@ -14,7 +14,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aseba_vm.jit.basic_blocks import Blocks
-from aseba_vm.jit.ir import Assign, AssignIndex, Branch, Call, Emit, KnownNative, ProgramPoint, Statement, arguments
+from aseba_vm.jit.ir import (
+    Assign,
+    AssignIndex,
+    Branch,
+    Call,
+    Const,
+    Emit,
+    KnownNative,
+    ProgramPoint,
+    Statement,
+    arguments,
+)
 from aseba_vm.jit.structured_ir import (
     INTERPRET,
     Charge,
@@ -31,51 +42,46 @@ from aseba_vm.jit.structured_ir import (
 from aseba_vm.jit.wasm_expressions import WasmExpressions
 from aseba_vm.jit.wasm_host import (
     ARGUMENTS,
-    BRANCHES,
-    EMIT,
-    EMITTED,
+    COST,
+    EDGES,
     EXIT,
-    FAULTED,
     IMPORTS,
     INNER,
+    RANDOM,
     STACK,
+    TABLES,
+    VARIABLES,
+    CallSite,
+    EmitSite,
     WasmCode,
 )
-from aseba_vm.jit.wasm_natives import call, functions, has_standard_parameters, unrolled
-from aseba_vm.kernel.wasm_runtime import WasmRuntime, is_usable
+from aseba_vm.kernel.compiler import KernelModule, Place, parameters
+from aseba_vm.kernel.wasm_runtime import WasmRuntime
+from aseba_vm.machine.native_faults import OK
 
 _TRAPPED = -1
 """Kind of exit before there is one; it remains if the code traps."""
 
 
-def is_available() -> bool:
-    """Return whether ``wasmtime`` works here."""
-    return is_usable()
-
-
 def translate(blocks: Blocks, structure: StructuredProgram, natives: Sequence[KnownNative]) -> WasmCode:
     """Return the code of a program, for :meth:`aseba_vm.jit.wasm_host.WasmHost.instantiate`."""
-    order = {pc: place for place, pc in enumerate(blocks.branches)}
-    writer = _Writer(structure, order, natives, blocks.memories.variables)
-    module = WasmRuntime.get().compile(writer.text())
-    return WasmCode(module, "math.rand" in writer.called)
+    writer = _Writer(structure, natives, blocks.memories.variables)
+    return WasmCode(WasmRuntime.get().compile(writer.text()), tuple(writer.sites))
 
 
 class _Writer:
     """Generates the text of a module."""
 
-    def __init__(
-        self, structure: StructuredProgram, order: dict[int, int], natives: Sequence[KnownNative], memory_words: int
-    ) -> None:
-        self.memory_words = memory_words
+    def __init__(self, structure: StructuredProgram, natives: Sequence[KnownNative], memory_words: int) -> None:
         self.structure = structure
-        self.order = order
         self.natives = natives
         self.lines: list[str] = []
         self.is_sub = False
-        self.is_emitting = False
-        self.called: set[str] = set()
-        self.temps: set[int] = set()
+        self.sites: list[CallSite | EmitSite] = []
+        self.kernels = KernelModule(
+            {"memory": Place(VARIABLES, memory_words), "random": Place(RANDOM, 1), "cost": Place(COST, 1)}, TABLES
+        )
+        self.locals: dict[str, str] = {}
         self.expressions = WasmExpressions(self.emit_line)
 
     def emit_line(self, line: str) -> None:
@@ -84,15 +90,13 @@ class _Writer:
 
     def text(self) -> str:
         """Return the module; its export ``run`` reads the budget from memory and writes the exit there."""
-        self.is_emitting = emits(self.structure)
         subs = [self._routine(sub, f"$f{sub.pc}") for sub in self.structure.subs.values()]
         main = self._routine(self.structure.main, '$run (export "run")')
-        own = [EMIT] if self.is_emitting else []
-        return "\n".join(["(module", IMPORTS, *own, functions(self.called, self.memory_words), *subs, main, ")"])
+        return "\n".join(["(module", IMPORTS, self.kernels.text(), *subs, main, ")"])
 
     def _routine(self, routine: Routine, name: str) -> str:
         self.lines.clear()
-        self.temps.clear()
+        self.locals.clear()
         self.expressions.temporaries = 0
         self.is_sub = routine.is_sub
         if routine.is_sub:
@@ -102,9 +106,9 @@ class _Writer:
             self.lines.append(f"(local.set $n (i64.load (i32.const {EXIT})))")
             self.lines.append(f"(i32.store (i32.const {EXIT + 12}) (i32.const {_TRAPPED}))")
         self._nodes(routine.nodes, 0)
-        names = [f"$t{number + 1}" for number in range(self.expressions.temporaries)]
-        names += [f"$s{number}" for number in sorted(self.temps)]
-        local = "".join(f"(local {name} i32)" for name in (*names, "$h"))
+        temporaries = {f"$t{number + 1}": "i32" for number in range(self.expressions.temporaries)}
+        names = {**temporaries, **self.locals, "$h": "i32"}
+        local = "".join(f"(local {name} {kind})" for name, kind in names.items())
         body = "\n".join(self.lines)
         return f"(func {name} {head} {local}\n{body}\n(unreachable))"
 
@@ -120,8 +124,6 @@ class _Writer:
             at = f"(i32.shl {depth} (i32.const 2))"
             stores.append(f"(i32.store offset={STACK + 4 * number} {at} {self.expressions.word(atom)})")
         more = f"(i32.add {depth} (i32.const {len(place.pending)}))" if place.pending else depth
-        if self.is_emitting:
-            more = f"(i32.add {more} (i32.shl (i32.load (i32.const {EMITTED})) (i32.const 12)))"
         stores.append(f"(i32.store (i32.const {EXIT + 16}) {more})")
         left = f"(i64.sub (local.get $n) (i64.const {uncharged}))"
         if not self.is_sub:
@@ -180,7 +182,11 @@ class _Writer:
         emit_line(f"(if (i64.lt_s (local.get $n) (i64.const 0)) (then {leave}))")
 
     def _if(self, node: If, uncharged: int) -> int | None:
-        """Generate a condition; :class:`aseba_vm.jit.python_backend._Writer` explains edge flags and charging."""
+        """Generate a condition.
+
+        A ``when`` whose condition was true before takes the other arm and keeps its edge flag. Both arms must end with
+        the same number of uncharged instructions.
+        """
         branch = node.branch
         self.expressions.bail_out = self._exit(branch.place, INTERPRET, uncharged)
         test = self.expressions.condition(branch.operator, branch.left, branch.right)
@@ -237,7 +243,7 @@ class _Writer:
         return uncharged + branch.cost
 
     def _edge_address(self, branch: Branch) -> int:
-        return BRANCHES + 2 * self.order[branch.pc]
+        return EDGES + 2 * branch.pc
 
     def _set_edge(self, branch: Branch, value: int) -> None:
         self.lines.append(f"(i32.store16 (i32.const {self._edge_address(branch)}) (i32.const {value}))")
@@ -259,57 +265,46 @@ class _Writer:
                 emit_line(f"(i32.store16 offset={2 * base} {place} {text})")
             case Emit(number=number, address=address, length=length):
                 self._spill(node)
-                emit_line(f"(call $emit (i32.const {number}) (i32.const {address}) (i32.const {length}))")
+                emit_line(f"(drop {self._python(EmitSite(number, address, length))})")
             case Call():
                 self._call(node, uncharged)
 
     def _spill(self, node: Statement) -> None:
         for temp, expression in node.keep:
-            self.temps.add(temp.number)
+            self.locals[f"$s{temp.number}"] = "i32"
             text = self.expressions.word(expression)
             self.lines.append(f"(local.set $s{temp.number} {text})")
 
     def _call(self, node: Call, uncharged: int) -> None:
+        """Generate a native call: of its kernel if it has one and its arguments are constant, otherwise of Python."""
         native = self.natives[node.number]
-        known = arguments(node.popped, native.signature)
         after = self._exit(node.after, INTERPRET, uncharged + node.cost)
-        if known is not None and native.is_standard and has_standard_parameters(native.signature):
-            lines = unrolled(native.signature.native.name, known)
-            if lines is not None:
-                self._spill(node)
-                self.lines += lines
-                return
-            expression = call(native.signature, known)
-            if expression is not None:
-                self._spill(node)
-                self.called.add(native.signature.native.name)
-                reason = f"(i32.add (i32.const {FAULTED}) (local.get $h))"
-                refuse = f"(drop (call $native {reason} (i32.const {node.pc}) (i32.const 0)))"
-                self.lines.append(f"(if (local.tee $h {expression}) (then {refuse} {after}))")
-                return
+        is_constant = arguments(node.popped, native.signature) is not None
+        popped = tuple(word.value & 0xFFFF for word in node.popped if isinstance(word, Const)) if is_constant else None
+        site = CallSite(node.number, node.pc, len(node.popped), popped)
         write, emit_line = self.expressions, self.lines.append
-        popped = [write.word(word) for word in node.popped]
-        self._spill(node)
-        for place, text in enumerate(popped):
-            emit_line(f"(i32.store (i32.const {ARGUMENTS + 4 * place}) {text})")
-        head = f"(i32.const {node.number}) (i32.const {node.pc}) (i32.const {len(popped)})"
-        emit_line(f"(local.set $h (call $native {head}))")
-        before = self._exit(node.place, INTERPRET, uncharged)
-        emit_line(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")
+        if native.kernel is not None and popped is not None:
+            call = self.kernels.call(native.kernel, popped)
+            self.locals.update(call.locals)
+            self._spill(node)
+            if call.result == OK:
+                emit_line(f"(drop {call.text})")
+                return
+            condition = f"(local.tee $h {call.text})"
+            if "cost" in parameters(native.kernel)[0]:
+                condition = f"(i32.or {condition} (i32.load (i32.const {COST})))"
+            finish = f"(drop {self._python(site, '(i32.add (local.get $h) (i32.const 1))')})"
+            emit_line(f"(if {condition} (then {finish} {after}))")
+        else:
+            words = [] if is_constant else [write.word(word) for word in node.popped]
+            self._spill(node)
+            for place, text in enumerate(words):
+                emit_line(f"(i32.store (i32.const {ARGUMENTS + 4 * place}) {text})")
+            emit_line(f"(local.set $h {self._python(site)})")
+            before = self._exit(node.place, INTERPRET, uncharged)
+            emit_line(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")
 
-
-def emits(structure: StructuredProgram) -> bool:
-    """Return whether the program emits events."""
-    waiting: list[Node] = [*structure.main.nodes, *(node for sub in structure.subs.values() for node in sub.nodes)]
-    while waiting:
-        match waiting.pop():
-            case Emit():
-                return True
-            case If(_, then, otherwise):
-                waiting += then + otherwise
-            case Loop(_, before, _, body):
-                waiting += before + body
-    return False
-
-
-__all__ = ["is_available", "translate"]
+    def _python(self, site: CallSite | EmitSite, done: str = "(i32.const 0)") -> str:
+        """Return a call of Python; ``done`` is 1 plus the result of a translated native."""
+        self.sites.append(site)
+        return f"(call $python (i32.const {len(self.sites) - 1}) {done})"

@@ -7,7 +7,7 @@ same memory as Python reads it fastest: a memoryview, whose elements are Python'
 from __future__ import annotations
 
 import inspect
-from typing import Any, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self
 
 from aseba_vm.kernel.types import ALIGNMENT, DTYPES, ITEM_SIZES
 
@@ -21,16 +21,6 @@ class ArrayMemory(Protocol):
         """Allocate an array of zeros of a type of `DTYPES`. Raises MemoryError when there is no room."""
 
 
-def fields(record: type[Record]) -> dict[str, str]:
-    """The arrays of a record class by name, and their types `Floats`, `Ints` or `Words`; in the order of the class."""
-    found = {}
-    for base in reversed(record.__mro__):
-        for name, kind in inspect.get_annotations(base).items():
-            if kind in DTYPES:
-                found[name] = str(kind)
-    return found
-
-
 class Record:
     """Base of all records. `count` is the length of all arrays."""
 
@@ -38,6 +28,12 @@ class Record:
     memory: ArrayMemory
     view: Self
     """The same record with memoryviews in place of arrays, for Python that reads single elements."""
+    _fields: ClassVar[dict[str, str]] = {}
+
+    def __init_subclass__(cls) -> None:
+        """Add the arrays that the class lists to those of its base."""
+        own = {name: str(kind) for name, kind in inspect.get_annotations(cls).items() if kind in DTYPES}
+        cls._fields = {**cls._fields, **own}
 
     def __init__(self, memory: ArrayMemory, count: int) -> None:
         """Allocate the arrays, all zero.
@@ -47,12 +43,12 @@ class Record:
         """
         self.count, self.memory = count, memory
         view: Any = object.__new__(type(self))
-        view.count, view.view = count, view
+        self.view = view.view = view
+        view.count = count
         for name, kind in fields(type(self)).items():
             array = memory.array(count, DTYPES[kind])
             setattr(self, name, array)
             setattr(view, name, memoryview(array))
-        self.view = view
 
     @classmethod
     def size(cls, count: int) -> int:
@@ -71,3 +67,8 @@ class Record:
             array = getattr(self, name)
             array[index:-1] = array[index + 1 :]
             array[-1] = 0
+
+
+def fields(record: type[Record]) -> dict[str, str]:
+    """The arrays of a record class by name, and their types as `DTYPES` names them; in the order of the class."""
+    return record._fields

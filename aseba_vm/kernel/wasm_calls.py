@@ -42,11 +42,14 @@ def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
         bindings = wasmtime._bindings
         found = bindings.wasmtime_func_t()
 
-        def call(*_: object) -> int:
+        def call(_environment: int, _caller: int, _values: int, _count: int) -> int:
             function()
             return 0
 
-        callback = bindings.wasmtime_func_unchecked_callback_t(call)
+        # Numbers in place of the pointers that the bindings declare: ctypes would build objects for them in each call.
+        pointer = ctypes.c_size_t
+        function_type = ctypes.PYFUNCTYPE(ctypes.c_size_t, pointer, pointer, pointer, ctypes.c_size_t)
+        callback = ctypes.cast(function_type(call), bindings.wasmtime_func_unchecked_callback_t)
         bindings.wasmtime_func_new_unchecked(
             store._context(), kind.ptr(), callback, None, type(wasmtime._func.finalize)(), ctypes.byref(found)
         )

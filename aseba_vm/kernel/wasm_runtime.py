@@ -20,18 +20,16 @@ _SAMPLE = '(module (import "" "memory" (memory 1)) (func (export "run") (i32.sto
 def is_usable() -> bool:
     """Return whether WebAssembly can be compiled and run here. Never raises.
 
-    If ``wasmtime`` is installed but fails, the reason is logged once: the package may be broken (a missing system
-    library, a binary for another platform), or a memory limit too low.
+    If not, the reason is logged once: ``wasmtime`` may be missing (it has no wheel for every platform) or broken (a
+    missing system library, a binary for another platform), or a memory limit too low.
     """
     try:
         _try()
-    except ModuleNotFoundError as error:
-        if error.name == "wasmtime":
-            return False
-        _log(error)
-        return False
     except Exception as error:  # a broken package can raise anything, and everything works without it
-        _log(error)
+        reason = " ".join(str(error).split()) or type(error).__name__
+        logging.getLogger(__name__).warning(
+            "wasmtime cannot be used, programs and batches of robots run slower: %s", reason
+        )
         return False
     return True
 
@@ -48,13 +46,6 @@ def _try() -> None:
         store.close()
     if found != 42:
         raise RuntimeError(f"a sample gave {found}, expected 42")
-
-
-def _log(error: Exception) -> None:
-    reason = " ".join(str(error).split()) or type(error).__name__
-    logging.getLogger(__name__).warning(
-        "wasmtime cannot be used, programs and batches of robots run slower: %s", reason
-    )
 
 
 class StoreOwner(Protocol):

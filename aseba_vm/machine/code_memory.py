@@ -2,68 +2,94 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import MutableSequence, Sequence
 
 from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
-from aseba_vm.machine.operations import STOP, Decoded, decode
+from aseba_vm.machine.operations import OTHER, Decoded, decode
+
+_FLAG = WAS_TRUE.bit_length() - 1
 
 
 class CodeMemory:
-    """``words`` are unsigned; ``operations`` has the decoded operation at each address.
+    """The bytecode of a machine, changed by its methods only.
 
-    Change the words through the methods only, which keep both in step.
+    ``operations`` has the decoded operation at each address. ``edges`` has the edge flag of each word that is a BRANCH,
+    0 or 1, in whatever storage the active engine needs; the flag in a word is that of its last writing. Whoever changes
+    the flag of an ``overlapped`` word, which another instruction may read as its operand, calls ``refresh``.
     """
 
-    __slots__ = ("_events", "operations", "words")
+    __slots__ = ("_words", "addresses", "edges", "operations", "overlapped")
 
     def __init__(self, size: int) -> None:
         """Create a memory of zeros."""
-        self._events: dict[int, int] | None = None
-        self.words: list[int] = [0] * size
-        self.operations: list[Decoded] = [(STOP, 0, 0)] * size
+        self._words = [0] * size
+        self.addresses: dict[int, int] = {}
+        """Address of the code of each event."""
+        self.edges: MutableSequence[int] = [0] * size
+        self.overlapped: set[int] = set()
+        self.operations: list[Decoded] = [(OTHER, 0, 0)] * size
 
-    def address_of(self, event: int) -> int:
-        """Return the address of the code of an event, 0 if there is none."""
-        if self._events is None:
-            words = self.words
-            places = range(1, min(words[0], len(words) - 1), 2) if words else range(0)
-            # Reversed, so that the first of several entries for an event wins.
-            self._events = {words[place]: words[place + 1] for place in reversed(places)}
-        return self._events.get(event, 0)
+    def __len__(self) -> int:
+        """Return the size of the memory in words."""
+        return len(self._words)
+
+    def word(self, pc: int) -> int:
+        """Return an unsigned word with its edge flag; 0 beyond the memory."""
+        word = self._words[pc] if pc < len(self._words) else 0
+        return (word & ~WAS_TRUE) | self.edges[pc] << _FLAG if word >> 12 == Op.BRANCH else word
+
+    @property
+    def words(self) -> tuple[int, ...]:
+        """All words, unsigned, with their edge flags."""
+        return tuple(
+            (word & ~WAS_TRUE) | edge << _FLAG if word >> 12 == Op.BRANCH else word
+            for word, edge in zip(self._words, self.edges, strict=True)
+        )
 
     def write(self, start: int, words: Sequence[int]) -> None:
         """Write words, which must fit, and decode them."""
-        self.words[start : start + len(words)] = [word & 0xFFFF for word in words]
-        self._decode(start, start + len(words))
+        end = start + len(words)
+        self._words[start:end] = [word & 0xFFFF for word in words]
+        self.edges[start:end] = [word >> _FLAG & 1 for word in self._words[start:end]]
+        self.overlapped = {
+            pc for pc, word in enumerate(self._words) if word >> 12 == Op.BRANCH and self._is_overlapped(pc)
+        }
+        for pc in range(max(start - 2, 0), end):
+            self._decode(pc)
+        self._find_events()
 
-    def toggle_edge(self, pc: int) -> None:
-        """Toggle the edge flag of the BRANCH at ``pc``."""
-        self.words[pc] ^= WAS_TRUE
-        self._decode(pc, pc + 1)
-
-    def store_edges(self, edges: Iterable[tuple[int, int]]) -> None:
-        """Set the edge flags of branches: pairs of address and flag, 0 or 1."""
-        for pc, value in edges:
-            if self.words[pc] >> 9 & 1 != value:
-                self.toggle_edge(pc)
+    def refresh(self, pc: int) -> None:
+        """Decode what may contain the word at ``pc`` again, because its edge flag may have changed."""
+        for place in range(max(pc - 2, 0), pc):
+            self._decode(place)
+        if pc <= self.word(0):
+            self._find_events()
 
     def clear_edges(self) -> None:
         """Clear the edge flags, from the word on at which the reference starts its scan.
 
         Source: docs/spec/aseba-bytecode-vm.md section 10.4.
         """
-        words = self.words
-        pc = 2 * words[0] + 1 if words else 0
-        while pc < len(words):
-            word = words[pc]
+        pc = 2 * self.word(0) + 1
+        while pc < len(self):
+            word = self.word(pc)
             if word >> 12 == Op.BRANCH and word & WAS_TRUE:
-                self.toggle_edge(pc)
+                self.edges[pc] = 0
+                if pc in self.overlapped:
+                    self.refresh(pc)
             pc += LENGTH[word >> 12]
 
-    def _decode(self, start: int, end: int) -> None:
-        """Decode the operations that contain the words start..end-1; an operation has up to three words."""
-        if start == 0 or start < self.words[0]:
-            self._events = None
-        words = [*self.words[max(start - 2, 0) : end], *self.words[end : end + 2], 0, 0]
-        for place, pc in enumerate(range(max(start - 2, 0), end)):
-            self.operations[pc] = decode(words[place], words[place + 1], words[place + 2])
+    def _find_events(self) -> None:
+        """Read the table of events."""
+        size = min(self.word(0), len(self) - 1)
+        # Reversed, so that the first of several entries for an event wins.
+        self.addresses = {self.word(place): self.word(place + 1) for place in reversed(range(1, size, 2))}
+
+    def _is_overlapped(self, pc: int) -> bool:
+        """Whether another instruction, or the table of events, may contain the word at ``pc``."""
+        words = self._words
+        is_operand = any(LENGTH[words[pc - place] >> 12] > place for place in (1, 2) if pc >= place)
+        return is_operand or pc <= words[0]
+
+    def _decode(self, pc: int) -> None:
+        self.operations[pc] = decode(self.word(pc), self.word(pc + 1))

@@ -2,53 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, MutableSequence, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from aseba_vm.kernel.integers import wrap
 from aseba_vm.machine.costs import FREE, Cost
 from aseba_vm.machine.data_memory import Variables
 from aseba_vm.machine.machine_messages import NativeCalled
 from aseba_vm.target import NativeFunction
 
 
-def wrap(value: int) -> int:
-    """Wrap a number to 16 bits, two's complement. This is the only place that does it."""
-    return ((value + 0x8000) & 0xFFFF) - 0x8000
-
-
-def wrap32(value: int) -> int:
-    """Wrap a number to 32 bits, two's complement."""
-    return ((value + 0x80000000) & 0xFFFFFFFF) - 0x80000000
-
-
-class NativeFault(Exception):  # noqa: N818  # a fault, in the words of section 11
-    """Raised by a native that cannot do its work; the event ends and the reason is reported."""
-
-    def __init__(self, reason: str) -> None:
-        super().__init__(reason)
-        self.reason = reason
-
-
-class DivisionFault(NativeFault):
-    """A division by zero in a native."""
-
-    def __init__(self) -> None:
-        super().__init__("division-by-zero")
-
-
-class DequeFault(NativeFault):
-    """A wrong index or too many values for a deque."""
-
-    def __init__(self) -> None:
-        super().__init__("deque")
-
-
 class NativeMachine(Protocol):
     """The part of the machine that natives may access."""
 
     variables: Variables
-    random_state: int
+    random: MutableSequence[int]
     node_id: int
 
     def charge(self, instructions: int) -> None:
@@ -93,24 +62,23 @@ def _size_key(native: NativeFunction, index: int) -> int:
 
 
 class NativeCall:
-    """One call: address and size of each argument, and access to the words.
+    """A call from one place of a program: address and size of each argument, and access to the words.
 
-    ``memory`` is the whole variable memory; ``faults`` are the faults reported so far (a native may continue after
-    one).
+    ``memory`` is the whole variable memory, ``popped`` the words that the call pops, unsigned.
     """
 
-    __slots__ = ("addresses", "faults", "machine", "memory", "native", "sizes")
+    __slots__ = ("addresses", "machine", "memory", "native", "popped", "sizes")
 
     def __init__(self, machine: NativeMachine, signature: Signature, popped: Sequence[int]) -> None:
         """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
         self.machine = machine
         self.memory = machine.variables.words
         self.native = signature.native
-        self.faults: list[NativeFault] = []
-        self.addresses = tuple([word & 0xFFFF for word in popped[: len(signature.sizes)]])
+        self.popped = words = tuple([word & 0xFFFF for word in popped])
         self.sizes = signature.sizes
-        if len(popped) > len(self.sizes):
-            self.sizes = tuple([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes])
+        self.addresses = words[: len(self.sizes)]
+        if len(words) > len(self.sizes):
+            self.sizes = tuple([size if size > 0 else words[-size] for size in self.sizes])
 
     @property
     def is_inside_memory(self) -> bool:
@@ -150,10 +118,6 @@ class NativeCall:
         """Add to the declared cost, for work whose amount only the call itself knows."""
         self.machine.charge(instructions)
 
-    def report(self, fault: NativeFault) -> None:
-        """Record a fault without ending the native."""
-        self.faults.append(fault)
-
     def record(self, number: int) -> NativeCalled:
         """Return the call as a value."""
         arguments = tuple(
@@ -164,4 +128,4 @@ class NativeCall:
 
 
 Native = Callable[[NativeCall], None]
-"""Implementation of a native function of the target."""
+"""Implementation of a native function of the target; it may raise `NativeFault`."""

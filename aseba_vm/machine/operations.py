@@ -8,54 +8,38 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from aseba_vm.bytecode import EDGE, WAS_TRUE, Op, signed, signed12
-from aseba_vm.machine.native_call import wrap
+from aseba_vm.bytecode import EDGE, Op, signed, signed12
+from aseba_vm.kernel.integers import quotient, remainder, wrap
 
-# Kinds of decoded operations, frequent ones first: the order in which the loop tests them.
+# Kinds of decoded operations, frequent ones first: the order in which the loop tests them. OTHER: what it leaves out.
 LOAD = 0
 PUSH = 1
 STORE = 2
 BINARY = 3
-IF_FALSE = 4
-IF_TRUE = 5
-JUMP = 6
-LOADX = 7
-STOREX = 8
-WHEN_FALSE = 9
-WHEN_TRUE = 10
-UNARY = 11
-STOP = 12
-CALL = 13
-RET = 14
-EMIT = 15
-NATIVE = 16
-BAD = 17
-IF = (IF_FALSE, IF_TRUE)
-WHEN = (WHEN_FALSE, WHEN_TRUE)
+IF = 4
+JUMP = 5
+LOADX = 6
+STOREX = 7
+WHEN = 8
+UNARY = 9
+CALL = 10
+RET = 11
+OTHER = 12
+BRANCHES = (IF, WHEN)
 
 Decoded = tuple[int, Any, Any]
 """Kind, and two operands whose meaning depends on the kind."""
 
 
-def _divide(left: int, right: int) -> int:
-    quotient = abs(left) // abs(right)
-    return wrap(quotient if (left < 0) == (right < 0) else -quotient)
-
-
-def _remainder(left: int, right: int) -> int:
-    remainder = abs(left) % abs(right)
-    return -remainder if left < 0 else remainder
-
-
 #: Indexed by the number of the operator.
-_BINARY_FUNCTIONS: Sequence[Callable[[int, int], int]] = (
+BINARY_FUNCTIONS: Sequence[Callable[[int, int], int]] = (
     lambda left, right: wrap(left << (right & 31)),
     lambda left, right: left >> (right & 31),
     lambda left, right: wrap(left + right),
     lambda left, right: wrap(left - right),
     lambda left, right: wrap(left * right),
-    _divide,
-    _remainder,
+    lambda left, right: wrap(quotient(left, right)),
+    remainder,
     lambda left, right: left | right,
     lambda left, right: left ^ right,
     lambda left, right: left & right,
@@ -69,19 +53,17 @@ _BINARY_FUNCTIONS: Sequence[Callable[[int, int], int]] = (
     lambda left, right: 1 if left and right else 0,
 )
 
-_UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
+UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
     lambda value: wrap(-value),
     lambda value: wrap(abs(value)),
     lambda value: ~value,
 )
 
 
-def decode(word: int, second: int, third: int) -> Decoded:
-    """Return kind and operands of the operation that starts with ``word``, given the two words after it."""
+def decode(word: int, second: int) -> Decoded:
+    """Return kind and operands of the operation that starts with ``word``, given the word after it."""
     op, operand = word >> 12, word & 0xFFF
     match op:
-        case Op.STOP:
-            return (STOP, 0, 0)
         case Op.PUSH:
             return (PUSH, signed12(word), 1)
         case Op.PUSHL:
@@ -94,25 +76,16 @@ def decode(word: int, second: int, third: int) -> Decoded:
             return (LOADX, operand, second)
         case Op.STOREX:
             return (STOREX, operand, second)
-        case Op.UNARY if operand < len(_UNARY_FUNCTIONS):
-            return (UNARY, _UNARY_FUNCTIONS[operand], 0)
-        case Op.UNARY:
-            return (BAD, "unknown-unary-operator", 0)
-        case Op.BINARY if operand < len(_BINARY_FUNCTIONS):
-            return (BINARY, _BINARY_FUNCTIONS[operand], 0)
-        case Op.BRANCH if operand & 0xFF < len(_BINARY_FUNCTIONS):
-            kind = WHEN_FALSE if operand & EDGE else IF_FALSE
-            return (kind + bool(operand & WAS_TRUE), _BINARY_FUNCTIONS[operand & 0xFF], signed(second))
-        case Op.BINARY | Op.BRANCH:
-            return (BAD, "unknown-binary-operator", 0)
+        case Op.UNARY if operand < len(UNARY_FUNCTIONS):
+            return (UNARY, UNARY_FUNCTIONS[operand], 0)
+        case Op.BINARY if operand < len(BINARY_FUNCTIONS):
+            return (BINARY, BINARY_FUNCTIONS[operand], 0)
+        case Op.BRANCH if operand & 0xFF < len(BINARY_FUNCTIONS):
+            return (WHEN if operand & EDGE else IF, BINARY_FUNCTIONS[operand & 0xFF], signed(second))
         case Op.JUMP:
             return (JUMP, signed12(word), 0)
-        case Op.EMIT:
-            return (EMIT, operand, (second, third))
-        case Op.NATIVE:
-            return (NATIVE, operand, 0)
         case Op.CALL:
             return (CALL, operand, 0)
         case Op.RET:
             return (RET, 0, 0)
-    return (BAD, "unknown-instruction", 0)
+    return (OTHER, 0, 0)

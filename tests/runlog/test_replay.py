@@ -94,7 +94,7 @@ def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
     def engine(name: str) -> None:
         monkeypatch.undo()
         if name == "plain":
-            monkeypatch.setattr("thymio_sim_ros.sim.kernel.memory.is_available", lambda: False)
+            monkeypatch.setattr("thymio_sim_ros.sim.kernel.memory.is_usable", lambda: False)
 
     path = tmp_path / "run.jsonl"
     engine(recorded)

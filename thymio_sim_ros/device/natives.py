@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from aseba_vm import Native, NativeCall
-from aseba_vm.machine.native_call import NativeFault
+from aseba_vm import Native, NativeCall, NativeFault
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION
+from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION, COSTS
 from thymio_sim_ros.device.firmware.services import RESTART, SWITCH_OFF, FirmwareServices
 from thymio_sim_ros.device.programs.load import LoadMeter
 from thymio_sim_ros.sim.commands import Command
@@ -33,14 +32,17 @@ def native_functions(send: Send, services: FirmwareServices, meter: LoadMeter) -
 
 
 def _commanding(native: aseba_binding.Native, send: Send, meter: LoadMeter) -> Native:
+    name, make_command, writes = native.name, native.command, native.writes
+    charge = COSTS.of(name).of(sum(size for _, size in native.signature))
+
     def call_native(call: NativeCall) -> None:
-        meter.count_call(native.name, sum(call.sizes))
+        meter.count_call(name, charge)
         words = call.words()
         try:
-            command = native.command(words)
+            command = make_command(words)
         except ValueError as error:
             raise NativeFault(str(error)) from error
-        send(command, native.writes(words))
+        send(command, writes(words))
 
     return call_native
 
@@ -48,8 +50,10 @@ def _commanding(native: aseba_binding.Native, send: Send, meter: LoadMeter) -> N
 def _serving(
     name: str, serve: Callable[[NativeCall, FirmwareServices], None], services: FirmwareServices, meter: LoadMeter
 ) -> Native:
+    cost = COSTS.of(name)
+
     def call_native(call: NativeCall) -> None:
-        meter.count_call(name, sum(call.sizes))
+        meter.count_call(name, cost.of(sum(call.sizes)))
         serve(call, services)
 
     return call_native

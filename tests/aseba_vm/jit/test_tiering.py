@@ -11,9 +11,9 @@ import pytest
 
 from aseba_vm import CompileError, VirtualMachine, compile
 from aseba_vm.bytecode import Op
-from aseba_vm.jit import python_backend, tiering, wasm_backend
+from aseba_vm.jit import tiering, wasm_backend
 from aseba_vm.jit.tiering import INTERPRETER, WASM
-from aseba_vm.jit.wasm_backend import is_available
+from aseba_vm.kernel.wasm_runtime import is_usable
 from aseba_vm.machine.costs import NO_COSTS, Cost, Costs
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.engines import AVAILABLE, TRANSLATORS
@@ -311,31 +311,33 @@ def test_an_unknown_engine_is_rejected():
 
 
 def test_webassembly_by_name_needs_its_package(monkeypatch):
-    monkeypatch.setattr(wasm_backend, "is_usable", lambda: False)
-    with pytest.raises(ValueError, match=r"needs the package wasmtime, which the extra \[fast\] installs"):
+    monkeypatch.setattr(tiering, "is_usable", lambda: False)
+    with pytest.raises(ValueError, match="needs the package wasmtime, which does not work here"):
         VirtualMachine(THYMIO_II, engine=WASM)
 
 
-@pytest.mark.skipif(not is_available(), reason="wasmtime is not installed")
-def test_a_machine_without_memory_for_webassembly_is_translated_to_python(monkeypatch, caplog):
-    def fail(_machine):
+@pytest.mark.skipif(not is_usable(), reason="wasmtime is not installed")
+def test_a_machine_without_memory_for_webassembly_interprets_and_logs_it_once(monkeypatch, caplog):
+    def fail(*_arguments):
         raise MemoryError
 
     monkeypatch.setattr(tiering, "WasmHost", fail)
     machine = VirtualMachine(THYMIO_II)
-    machine.load(compile("var n = 0\nwhile n < 9000 do\nn = n + 3\nend", THYMIO_II))
-    machine.run()
-    assert machine.variables[128] == 9000
-    assert "translating to Python instead" in caplog.text
+    for _ in range(2):
+        machine.load(compile("var n = 0\nwhile n < 9000 do\nn = n + 3\nend", THYMIO_II))
+        machine.run()
+        assert machine.variables[128] == 9000
+    assert caplog.text.count("no memory for WebAssembly, programs are interpreted") == 1
 
 
+@pytest.mark.skipif(not is_usable(), reason="wasmtime is not installed")
 def test_a_translator_that_fails_leaves_the_program_to_the_interpreter(monkeypatch, caplog):
     def broken(*_arguments):
         raise RuntimeError("this cannot be translated")
 
-    monkeypatch.setattr(python_backend, "translate", broken)
-    program = compile("var n = 0\nwhile n < 1000 do\nn = n + 3\nend", THYMIO_II)
-    machine = VirtualMachine(THYMIO_II, engine="python")
+    monkeypatch.setattr(wasm_backend, "translate", broken)
+    program = compile("var n = 0\nwhile n < 1000 do\nn = n + 6 - 3\nend", THYMIO_II)
+    machine = VirtualMachine(THYMIO_II, engine=WASM)
     machine.load(program)
     machine.run()
     address, _ = program.addresses["n"]
@@ -344,7 +346,7 @@ def test_a_translator_that_fails_leaves_the_program_to_the_interpreter(monkeypat
     caplog.clear()
 
 
-@pytest.mark.skipif(not is_available(), reason="wasmtime is not installed")
+@pytest.mark.skipif(not is_usable(), reason="wasmtime is not installed")
 def test_a_process_with_translated_programs_ends_in_silence():
     script = (
         "from aseba_vm import VirtualMachine, compile\n"

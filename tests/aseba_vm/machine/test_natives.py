@@ -3,6 +3,7 @@ import pytest
 from aseba_vm import NativeFault, NativeFunction, Parameter, TargetDescription, Variable, VirtualMachine, compile
 from aseba_vm.machine import machine_messages
 from aseba_vm.targets import THYMIO_II
+from tests.aseba_vm.engines import AVAILABLE
 
 
 def after(source, address=128, count=1, **options):
@@ -69,6 +70,18 @@ def test_a_function_of_the_node_reads_and_writes_its_arguments():
     machine.load(compile("a = [3, 20000] call double(a, b)", target))
     machine.run()
     assert machine.variables[:4] == [3, 20000, 6, -25536]
+
+
+@pytest.mark.parametrize("engine", AVAILABLE)
+def test_a_standard_function_may_be_declared_with_other_sizes(engine):
+    parameters = (Parameter("destination", 2), Parameter("source", 2))
+    target = TargetDescription(
+        "t", 100, 100, 10, (Variable("a", 2), Variable("b", 2)), (), (NativeFunction("math.copy", parameters),)
+    )
+    machine = VirtualMachine(target, engine=engine)
+    machine.load(compile("a = [3, 20000] call math.copy(b, a)", target))
+    machine.run()
+    assert machine.variables[:4] == [3, 20000, 3, 20000]
 
 
 def test_a_function_of_the_node_may_refuse():

@@ -83,7 +83,7 @@ def test_kernels_that_python_runs_give_the_same_bits(
     options: dict[str, Any] = {"seed": 3, "proximity_model": model, "motor_model": motor_model}
     compiled = play(scene, 60, **options)
     list(map(list, (step.readings for step in compiled)))
-    monkeypatch.setattr("thymio_sim_ros.sim.kernel.memory.is_available", lambda: False)
+    monkeypatch.setattr("thymio_sim_ros.sim.kernel.memory.is_usable", lambda: False)
     assert play(scene, 60, **options) == compiled
     counts = [max(reading.words) for step in compiled for _, name, reading in step.readings if name == "proximity"]
     assert 0 < sum(count > 0 for count in counts) < len(counts)

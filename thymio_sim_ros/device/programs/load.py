@@ -62,14 +62,14 @@ class LoadMeter:
         self.charged = 0
         """Instructions charged for native calls and events since the start."""
         self._cuts = self._runs = 0
-        self._calls: Counter[str] = Counter()
+        self._calls: dict[str, int] = {}
         self._emitted: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
 
-    def count_call(self, native: str, words: int) -> None:
-        """Count a native call; `words` is the total length of its arguments."""
-        self._calls[native] += 1
-        self.charged += COSTS.of(native).of(words)
+    def count_call(self, native: str, cost: int) -> None:
+        """Count a native call and its cost in instructions."""
+        self._calls[native] = self._calls.get(native, 0) + 1
+        self.charged += cost
 
     def count_event(self, event: str, words: int) -> None:
         """Count an emitted event with arguments of `words` words."""
@@ -89,8 +89,8 @@ class LoadMeter:
         """Return and clear the counts."""
         load = Load(self._cuts, self._runs, dict(self._calls), dict(self._emitted), dict(self._lost))
         self._cuts = self._runs = 0
-        for counter in (self._calls, self._emitted, self._lost):
-            counter.clear()
+        for counts in (self._calls, self._emitted, self._lost):
+            counts.clear()
         return load
 
 

@@ -6,8 +6,8 @@ regular announcement is what the new participant discovers it by (measured: some
 
 `ALONE`: also, the endpoints of one participant do not match each other, and memory for messages is allocated on demand.
 By default Fast DDS compares every endpoint with all others of its participant and allocates memory for a hundred
-messages of each: the suite with a hundred robots took 153 s of processor time to start, and takes 11 s with this profile
-(docs/performance-method.md). Nodes that need each other's topics then need `rclpy_ext/peers.py`.
+messages of each: the suite with a hundred robots took 153 s of processor time to start, and takes 11 s with this
+profile (docs/performance-method.md). Nodes that need each other's topics then need `rclpy_ext/peers.py`.
 """
 
 from __future__ import annotations

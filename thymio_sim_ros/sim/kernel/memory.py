@@ -7,7 +7,6 @@ compiled kernel that reads beyond its arrays would not be noticed; the tests run
 from __future__ import annotations
 
 import ctypes
-import logging
 from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
@@ -21,21 +20,12 @@ from aseba_vm.kernel.types import ALIGNMENT, DTYPES, Kernel
 from aseba_vm.kernel.wasm_calls import make_caller
 from aseba_vm.kernel.wasm_runtime import WasmRuntime, is_usable
 
-__all__ = ["Argument", "KernelMemory", "is_available"]
+__all__ = ["Argument", "KernelMemory"]
 
 _PAGE = 0x10000
 
 Shape = int | tuple[int, ...]
 Argument = Record | npt.NDArray[Any] | float
-
-
-@cache
-def is_available() -> bool:
-    """Whether kernels can be compiled here; logged once if not."""
-    if is_usable():
-        return True
-    logging.getLogger(__name__).warning("wasmtime does not work here: the simulator runs some fifty times slower")
-    return False
 
 
 class KernelMemory:
@@ -44,7 +34,7 @@ class KernelMemory:
     def __init__(self, size: int, *, is_compiled: bool | None = None) -> None:
         """Allocate `size` bytes. `is_compiled`: whether kernels are compiled; None: if that is possible."""
         self._wasmtime: Any = None
-        if is_available() if is_compiled is None else is_compiled:
+        if is_usable() if is_compiled is None else is_compiled:
             runtime = WasmRuntime.get()
             self._wasmtime = wasmtime = runtime.wasmtime
             self._store = wasmtime.Store(runtime.engine)

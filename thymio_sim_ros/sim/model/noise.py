@@ -11,15 +11,16 @@ from __future__ import annotations
 import hashlib
 import math
 
+from aseba_vm.kernel.integers import wrap32
 from aseba_vm.kernel.record import Record
-from aseba_vm.kernel.types import Ints, kernel, wrap_int
+from aseba_vm.kernel.types import Ints, kernel
 from thymio_sim_ros.sim.kernel.elementary import cos, log
 from thymio_sim_ros.sim.model.clock import TICK_NS, SimClock
 
 __all__ = ["Noise", "NoiseKeys", "noise_keys", "normal", "tick_number", "uniform"]
 
 _FACTOR_1 = 0x7FEB352D
-_FACTOR_2 = wrap_int(0x846CA68B)
+_FACTOR_2 = wrap32(0x846CA68B)
 _HALF = 2147483648.5
 _WHOLE = 4294967296.0
 _TURN = math.tau
@@ -29,9 +30,9 @@ _TURN = math.tau
 def _mix(x: int) -> int:
     """Return a number that looks random for each number of 32 bits; no two give the same."""
     x = x ^ ((x >> 16) & 0xFFFF)
-    x = wrap_int(x * _FACTOR_1)
+    x = wrap32(x * _FACTOR_1)
     x = x ^ ((x >> 15) & 0x1FFFF)
-    x = wrap_int(x * _FACTOR_2)
+    x = wrap32(x * _FACTOR_2)
     return x ^ ((x >> 16) & 0xFFFF)
 
 

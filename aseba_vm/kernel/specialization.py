@@ -1,0 +1,90 @@
+"""Kernels for given arguments: parameters become constants, and short loops over constant ranges are unrolled."""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Mapping
+from copy import deepcopy
+
+from aseba_vm.kernel.integers import wrap32
+
+__all__ = ["MAX_ITERATIONS", "specialize"]
+
+MAX_ITERATIONS = 32
+"""Largest number of iterations of a loop that is unrolled."""
+
+_OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul}
+
+
+class _NotSpecialized(Exception):  # noqa: N818  # control flow, not an error
+    """A kernel has other loops, or changes a parameter."""
+
+
+def specialize(kernel: ast.FunctionDef, arguments: Mapping[str, int]) -> list[ast.stmt] | None:
+    """Return the body of a kernel for the arguments by name; None if it has other loops or changes a parameter."""
+    try:
+        return _Specializer(arguments).block(kernel.body)
+    except _NotSpecialized:
+        return None
+
+
+class _Specializer(ast.NodeTransformer):
+    """Replaces the names that are known, and computes what then is constant."""
+
+    def __init__(self, known: Mapping[str, int]) -> None:
+        self._known = dict(known)
+
+    def block(self, body: list[ast.stmt]) -> list[ast.stmt]:
+        """Return a new list of statements; the given ones stay as they are."""
+        found: list[ast.stmt] = []
+        for statement in body:
+            made = self.visit(deepcopy(statement))
+            found += made if isinstance(made, list) else [made]
+        return found
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        """A known name is a constant."""
+        if node.id not in self._known:
+            return node
+        if not isinstance(node.ctx, ast.Load):
+            raise _NotSpecialized
+        return ast.copy_location(ast.Constant(self._known[node.id]), node)
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        """Sums and products of constants are constants."""
+        self.generic_visit(node)
+        match node.left, type(node.op), node.right:
+            case ast.Constant(value=int() as left), kind, ast.Constant(value=int() as right) if kind in _OPERATORS:
+                return ast.copy_location(ast.Constant(wrap32(_OPERATORS[kind](left, right))), node)
+        return node
+
+    def visit_While(self, _node: ast.While) -> ast.stmt:
+        """Such a loop is worth a function of its own."""
+        raise _NotSpecialized
+
+    def visit_Break(self, _node: ast.Break) -> ast.stmt:
+        """A loop that ends early cannot be unrolled."""
+        raise _NotSpecialized
+
+    def visit_Continue(self, _node: ast.Continue) -> ast.stmt:
+        """Nor can one that skips the rest of an iteration."""
+        raise _NotSpecialized
+
+    def visit_For(self, node: ast.For) -> ast.stmt | list[ast.stmt]:
+        """The iterations one after the other; the loop if there are too many."""
+        if not isinstance(node.target, ast.Name) or not isinstance(node.iter, ast.Call):
+            raise _NotSpecialized
+        node.iter.args = [self.visit(limit) for limit in node.iter.args]
+        limits = [
+            limit.value for limit in node.iter.args if isinstance(limit, ast.Constant) and isinstance(limit.value, int)
+        ]
+        if len(limits) < len(node.iter.args) or len(range(*limits)) > MAX_ITERATIONS:
+            node.body = self.block(node.body)
+            return node
+        found: list[ast.stmt] = []
+        for number in range(*limits):
+            self._known[node.target.id] = number
+            found += self.block(node.body)
+        self._known.pop(node.target.id, None)
+        return found
