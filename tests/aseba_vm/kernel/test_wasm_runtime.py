@@ -74,7 +74,7 @@ def broken(request, tmp_path) -> Path:
 
 def check_reported_once(stderr: list[str]) -> None:
     reason, usable = stderr
-    assert reason.startswith("wasmtime cannot be used, programs and batches of robots run slower: ")
+    assert reason.startswith("wasmtime cannot be used, programs and robots run slower: ")
     assert usable == "False"
 
 
