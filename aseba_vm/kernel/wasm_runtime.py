@@ -27,9 +27,7 @@ def is_usable() -> bool:
         _try()
     except Exception as error:  # a broken package can raise anything, and everything works without it
         reason = " ".join(str(error).split()) or type(error).__name__
-        logging.getLogger(__name__).warning(
-            "wasmtime cannot be used, programs and robots run slower: %s", reason
-        )
+        logging.getLogger(__name__).warning("wasmtime cannot be used, programs and robots run slower: %s", reason)
         return False
     return True
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -11,7 +12,6 @@ import pymunk
 from thymio_sim_ros.sim.model.primitives import Solid, Trigger
 from thymio_sim_ros.sim.physics.door_body import DoorBody
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.raycast.broadphase import Broadphase
 
 __all__ = ["DoorController"]
 
@@ -34,15 +34,17 @@ class DoorController:
         """Whether no door moves."""
         return not any(door.is_moving for door in self._doors.values())
 
-    def begin_tick(self, broadphase: Broadphase) -> None:
+    def begin_tick(self, robots: Iterable[RobotBody]) -> None:
         """Open the doors that have a robot on a pressure plate, close the others."""
         if not self._doors:
             return
         wanted_open = {
             area.door
             for area, x, y, reach_m in self._areas
-            for robot in broadphase.movers(x, y, reach_m)
-            if isinstance(robot, RobotBody) and area.holds(robot.pose.x_m, robot.pose.y_m)
+            for robot in robots
+            if math.hypot(robot.pose.x_m - x, robot.pose.y_m - y) <= reach_m
+            and not robot.is_fallen
+            and area.holds(robot.pose.x_m, robot.pose.y_m)
         }
         for name, door in self._doors.items():
             door.begin_tick(is_wanted_open=name in wanted_open)

@@ -10,6 +10,7 @@ import pymunk
 
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Disc, Solid, Trigger
+from thymio_sim_ros.sim.model.spatial_grid import SpatialGrid
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.contact_tracker import ContactTracker
 from thymio_sim_ros.sim.physics.door_body import DoorBody
@@ -17,7 +18,6 @@ from thymio_sim_ros.sim.physics.door_controller import DoorController
 from thymio_sim_ros.sim.physics.movable_body import AT_REST_M_S, MovableBody
 from thymio_sim_ros.sim.physics.robot_bodies import RobotBodies
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.raycast.broadphase import Broadphase, Mover
 from thymio_sim_ros.sim.raycast.scalar import Obstacle, Surroundings, obstacle_of
 
 __all__ = ["Physics"]
@@ -65,9 +65,11 @@ class Physics:
         self._numbers = {body: number for number, body in enumerate(self.objects)}
         self.fixed: tuple[Obstacle, ...] = tuple(obstacle_of(solid) for solid in solids if solid.is_fixed)
         """Obstacles that never move."""
-        self._broadphase = Broadphase(self.fixed)
+        self._fixed_grid: SpatialGrid[Obstacle] = SpatialGrid()
+        for obstacle in self.fixed:
+            self._fixed_grid.add(obstacle, obstacle.bounds)
         self.robots = RobotBodies(self._space, len(self._numbers), len(solids), robots)
-        self._list_movers()
+        self._was_still = False
 
     @property
     def movables(self) -> Mapping[str, MovableBody]:
@@ -97,27 +99,27 @@ class Physics:
         """Add the body of a robot, at rest at a pose."""
         robot = self.robots.add(name, pose)
         self._contact_tracker.watch(robot.shape, robot)
-        self._list_movers()
+        self._was_still = False
         return robot
 
     def remove_robot(self, robot: RobotBody) -> None:
         """Remove a robot's body and its contacts."""
         self._contact_tracker.unwatch(robot.shape)
         self.robots.remove(robot)
-        self._list_movers()
+        self._was_still = False
 
     def drop_robot(self, robot: RobotBody) -> None:
         """Make a robot fall; nothing touches or sees it until it is placed."""
         self._contact_tracker.forget(robot.shape)
         self.robots.drop(robot)
-        self._list_movers()
+        self._was_still = False
 
     def drop_movable(self, movable: MovableBody) -> None:
         """Make an object fall."""
         self._space.remove(movable.shape, movable.body, *movable.joints)
         self._contact_tracker.forget(movable.shape)
         movable.fall()
-        self._list_movers()
+        self._was_still = False
 
     def place(self, body: RobotBody | MovableBody, pose: Pose) -> None:
         """Place a robot or an object at a pose, at rest; a fallen one stands on the floor again."""
@@ -128,9 +130,6 @@ class Physics:
             body.place(pose)
             if was_fallen:
                 self._space.add(body.body, body.shape, *body.joints)
-        if was_fallen:
-            self._list_movers()
-        self._broadphase.invalidate_movers()
         self._was_still = False
 
     @property
@@ -143,8 +142,7 @@ class Physics:
         was_still, self._was_still = self._was_still, self._is_still
         if was_still and self._was_still:
             return ()
-        self._broadphase.invalidate_movers()
-        self._door_controller.begin_tick(self._broadphase)
+        self._door_controller.begin_tick(self.robots)
         self.robots.begin_tick()
         for earlier in range(SUB_STEPS):
             self.robots.push()
@@ -173,29 +171,21 @@ class Physics:
         if robot.is_fallen:
             return Surroundings(())
         x, y = robot.pose.x_m, robot.pose.y_m
-        low_x, low_y, high_x, high_y = x - reach_m, y - reach_m, x + reach_m, y + reach_m
-        near = []
-        # First the bounds, which are cheap, then the exact test.
-        for obstacle in self._broadphase.fixed(x, y, reach_m):
-            left, bottom, right, top = obstacle.bounds
-            if (
-                left <= high_x and right >= low_x and bottom <= high_y and top >= low_y
-                and obstacle.height_m >= height_m and obstacle.is_within(x, y, reach_m)
-            ):  # fmt: skip
-                near.append(obstacle)
-        near.extend(
-            mover.obstacle
-            for mover in self._broadphase.movers(x, y, reach_m)
-            if mover is not robot and mover.obstacle.height_m >= height_m
-        )
+        near = [
+            obstacle
+            for obstacle in self._fixed_grid.near((x - reach_m, y - reach_m, x + reach_m, y + reach_m))
+            if obstacle.height_m >= height_m and obstacle.is_within(x, y, reach_m)
+        ]
+        bodies: list[RobotBody | MovableBody | DoorBody] = [*self.robots, *self.objects]
+        near += [
+            body.obstacle
+            for body in bodies
+            if math.hypot(body.pose.x_m - x, body.pose.y_m - y) <= reach_m + body.reach_m
+            and body is not robot
+            and not body.is_fallen
+            and body.obstacle.height_m >= height_m
+        ]
         return Surroundings(near)
-
-    def _list_movers(self) -> None:
-        """Update the list of moving bodies in the broadphase: a body has come or gone."""
-        self._was_still = False
-        movers: list[Mover] = [robot for robot in self.robots if not robot.is_fallen]
-        movers += [movable for movable in self._movables.values() if not movable.is_fallen]
-        self._broadphase.replace_movers([*movers, *self.doors.values()])
 
     def _add(self, owner: str, shape: pymunk.Shape, *parts: pymunk.Body | pymunk.Constraint) -> None:
         self._contact_tracker.watch(shape, owner)
