@@ -39,7 +39,7 @@ def test_messages_before_the_node_spins_are_not_lost(ros):
 
 def test_the_simulator_handles_them_as_messages_of_the_topic(ros, simulator_with):
     simulator = simulator_with(playground="two_robots")
-    for robot in ("red", "nobody"):
+    for robot in ("red", "unknown"):
         simulator.local_commands.post(robot, "_motor/target", Int16MultiArray(data=[100, 100]))
     simulator.local_commands.deliver()
     robots = simulator.runner.world.robots
