@@ -14,8 +14,8 @@ class CodeMemory:
     """The bytecode of a machine, changed by its methods only.
 
     ``operations`` has the decoded operation at each address. ``edges`` has the edge flag of each word that is a BRANCH,
-    0 or 1, in whatever storage the active engine needs; the flag in a word is that of its last writing. Code that changes
-    the flag of an ``overlapped`` word, which another instruction may read as its operand, calls ``refresh``.
+    0 or 1, in whatever storage the active engine needs; the flag in a word is that of its last writing. Code that
+    changes the flag of an ``overlapped`` word, which another instruction may read as its operand, calls ``refresh``.
     """
 
     __slots__ = ("_words", "addresses", "edges", "operations", "overlapped")
