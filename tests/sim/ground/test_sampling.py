@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from tests.sim.images import printed
@@ -130,3 +131,16 @@ def test_a_print_of_tiles_reads_as_floors_of_tiles() -> None:
     assert [on_paper.sample(*place).reflectance for place in places] == pytest.approx(
         [tiled.sample(*place).reflectance for place in places], abs=1e-9
     )
+
+
+def test_many_footprints_at_once_see_what_each_sees_alone_also_after_drawing() -> None:
+    alone, together = (Ground([floor(255, -0.5, -0.5, 0.5, 0.5)], []) for _ in range(2))
+    places = np.random.default_rng(1).uniform(-0.6, 0.6, (2, 600))
+    for step in range(3):
+        reflectances, floors = np.zeros(600), np.zeros(600)
+        together.sample_all(*places, reflectances, floors)
+        found = [GroundSample(*pair) for pair in zip(reflectances.tolist(), floors.tolist(), strict=True)]
+        assert found == [alone.sample(*place) for place in places.T.tolist()]
+        for ground in (alone, together):
+            ground.draw_segment(-0.4, 0.1 * step, 0.4, -0.2, 0.03, BLACK)
+    assert len(set(found)) > 30

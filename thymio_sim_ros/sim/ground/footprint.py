@@ -12,7 +12,19 @@ import math
 from aseba_vm.kernel.record import Record
 from aseba_vm.kernel.types import Floats, Ints, Words, kernel
 
-__all__ = ["CELLS_PER_PIXEL", "MIXED", "TAPS", "TAP_STEP_M", "TILE_CELLS", "UNKNOWN", "Grid", "Spots", "Taps", "sample"]
+__all__ = [
+    "CELLS_PER_PIXEL",
+    "MIXED",
+    "TAPS",
+    "TAP_STEP_M",
+    "TILE_CELLS",
+    "UNKNOWN",
+    "Grid",
+    "Spots",
+    "Taps",
+    "sample",
+    "survey",
+]
 
 TAPS = 9
 """Taps along each axis."""
@@ -116,6 +128,16 @@ def _examine(grid: Grid, taps: Taps, pixels: Words, tile_x: int, tile_y: int) ->
 
 
 @kernel
+def survey(grid: Grid, taps: Taps, tiles: Ints, pixels: Words) -> None:
+    """Find the only color of all tiles that are not examined yet."""
+    for row in range(grid.tile_rows[0]):
+        for column in range(grid.tile_columns[0]):
+            tile = row * grid.tile_columns[0] + column
+            if tiles[tile] == UNKNOWN:
+                tiles[tile] = _examine(grid, taps, pixels, column + grid.tile_x[0], row + grid.tile_y[0])
+
+
+@kernel
 def sample(spots: Spots, count: Ints, grid: Grid, taps: Taps, tiles: Ints, pixels: Words, grays: Floats) -> None:
     """Write reflectance and part of floor of the first `count[0]` spots.
 
@@ -128,8 +150,11 @@ def sample(spots: Spots, count: Ints, grid: Grid, taps: Taps, tiles: Ints, pixel
         pixels: color numbers of the ground, shape (rows, columns).
         grays: gray of each color number.
     """
+    # Locals: WebAssembly reads an element of a record from memory each time.
     pixel_m = grid.pixel[0]
     cell_m = pixel_m / CELLS_PER_PIXEL
+    rows = grid.rows[0]
+    columns = grid.columns[0]
     for spot in range(count[0]):
         cell_x = math.floor(spots.x[spot] / cell_m)
         cell_y = math.floor(spots.y[spot] / cell_m)
@@ -147,16 +172,20 @@ def sample(spots: Spots, count: Ints, grid: Grid, taps: Taps, tiles: Ints, pixel
             spots.floor[spot] = 1.0 if color != 0 else 0.0
             continue
         for tap in range(_TAPS):
-            taps.column[tap] = _pixel(cell_x, taps.offset[tap], pixel_m, grid.origin_x[0], grid.columns[0])
-            taps.row[tap] = _pixel(cell_y, taps.offset[tap], pixel_m, grid.origin_y[0], grid.rows[0])
+            taps.column[tap] = _pixel(cell_x, taps.offset[tap], pixel_m, grid.origin_x[0], columns)
+            taps.row[tap] = _pixel(cell_y, taps.offset[tap], pixel_m, grid.origin_y[0], rows)
         # A Gaussian is separable: the weight of a tap is the product of the weights of its column and its row.
         gray = 0.0
         missing = 0.0
         for along in range(_TAPS):
+            row = taps.row[along]
             gray_across = 0.0
             missing_across = 0.0
             for across in range(_TAPS):
-                color = _color(grid, pixels, taps.row[along], taps.column[across])
+                column = taps.column[across]
+                color = 0
+                if 0 <= row < rows and 0 <= column < columns:
+                    color = pixels[row * columns + column]
                 gray_across += taps.weight[across] * grays[color]
                 if color == 0:
                     missing_across += taps.weight[across]

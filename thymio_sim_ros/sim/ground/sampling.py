@@ -28,6 +28,8 @@ __all__ = ["NO_FLOOR", "Ground", "GroundSample"]
 
 _SPOTS = 256
 """Footprints that are sampled at once."""
+_MANY = 32
+"""With more footprints than this, all tiles are examined before the first measurement; else each when it is met."""
 _TILE_PIXELS = TILE_CELLS // CELLS_PER_PIXEL
 
 Values = npt.NDArray[np.float64]
@@ -74,7 +76,8 @@ class Ground:
         grid.origin_x[0], grid.origin_y[0] = origin_x, origin_y
         grid.tile_rows[0], grid.tile_columns[0] = tiles
         grid.tile_x[0], grid.tile_y[0] = self._corner
-        self._memory = memory
+        self._survey = memory.bind(footprint.survey, grid, taps, self._tiles, self._picture.pixels)
+        self._is_surveyed = False
         self._sample = memory.bind(
             footprint.sample, self._spots, self._count, grid, taps, self._tiles, self._picture.pixels,
             self._picture.grays,
@@ -94,6 +97,9 @@ class Ground:
 
     def sample_all(self, xs_m: Values, ys_m: Values, reflectances: Values, floors: Values) -> None:
         """Write what footprints at many positions see; all arrays have the same shape (footprints,)."""
+        if len(xs_m) > _MANY and not self._is_surveyed:
+            self._survey()
+            self._is_surveyed = True
         spots = self._spots
         for first in range(0, len(xs_m), _SPOTS):
             part = slice(first, first + _SPOTS)
