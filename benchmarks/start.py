@@ -104,7 +104,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--robots", type=int, nargs="+", default=[1, 20, 100], help="numbers of robots")
     parser.add_argument("--rounds", type=int, default=5, help="starts with more than one robot")
     parser.add_argument("--starts", type=int, default=200, help="starts with one robot")
-    parser.add_argument("--order", choices=("listener", "suite"), default="listener", help="which process starts first")
+    parser.add_argument("--order", choices=("suite", "listener"), default="suite", help="which process starts first")
     parser.add_argument("--profile", action="store_true", help="the listener uses the profile of `thymio-sim env`")
 
 
