@@ -17,6 +17,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +99,10 @@ class Class:
         status = self.states.get(name)
         return "" if status is None else {item.key: item.value for item in status.values}.get(key, "")
 
+    def is_stopped(self, name: str) -> bool:
+        """Whether the program of a robot is stopped."""
+        return self.state(name, "state") == "stopped"
+
     def close(self) -> None:
         """Leave ROS."""
         self._executor.shutdown()
@@ -156,7 +161,7 @@ def run(program: Path, options: argparse.Namespace, folder: Path) -> Figures:
                 name = f"r{number}"
                 begin = time.monotonic()
                 figures.stop = max(figures.stop, pupils.call(pupils.stops[name], Trigger.Request()))
-                pupils.until(lambda name=name: pupils.state(name, "state") == "stopped", ANSWER_S)  # type: ignore[misc]
+                pupils.until(partial(pupils.is_stopped, name), ANSWER_S)
                 figures.acts = max(figures.acts, time.monotonic() - begin)
             begin = time.monotonic()
             running.process.signal(signal.SIGINT)

@@ -17,7 +17,7 @@ MAX_ITERATIONS = 32
 _OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul}
 
 
-class _NotSpecialized(Exception):  # noqa: N818  # control flow, not an error
+class _SpecializationError(Exception):
     """A kernel has other loops, or changes a parameter."""
 
 
@@ -25,7 +25,7 @@ def specialize(kernel: ast.FunctionDef, arguments: Mapping[str, int]) -> list[as
     """Return the body of a kernel for the arguments by name; None if it has other loops or changes a parameter."""
     try:
         return _Specializer(arguments).block(kernel.body)
-    except _NotSpecialized:
+    except _SpecializationError:
         return None
 
 
@@ -48,7 +48,7 @@ class _Specializer(ast.NodeTransformer):
         if node.id not in self._known:
             return node
         if not isinstance(node.ctx, ast.Load):
-            raise _NotSpecialized
+            raise _SpecializationError
         return ast.copy_location(ast.Constant(self._known[node.id]), node)
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
@@ -61,20 +61,20 @@ class _Specializer(ast.NodeTransformer):
 
     def visit_While(self, _node: ast.While) -> ast.stmt:
         """Such a loop is worth a function of its own."""
-        raise _NotSpecialized
+        raise _SpecializationError
 
     def visit_Break(self, _node: ast.Break) -> ast.stmt:
         """A loop that ends early cannot be unrolled."""
-        raise _NotSpecialized
+        raise _SpecializationError
 
     def visit_Continue(self, _node: ast.Continue) -> ast.stmt:
         """Nor can one that skips the rest of an iteration."""
-        raise _NotSpecialized
+        raise _SpecializationError
 
     def visit_For(self, node: ast.For) -> ast.stmt | list[ast.stmt]:
         """The iterations one after the other; the loop if there are too many."""
         if not isinstance(node.target, ast.Name) or not isinstance(node.iter, ast.Call):
-            raise _NotSpecialized
+            raise _SpecializationError
         node.iter.args = [self.visit(limit) for limit in node.iter.args]
         limits = [
             limit.value for limit in node.iter.args if isinstance(limit, ast.Constant) and isinstance(limit.value, int)

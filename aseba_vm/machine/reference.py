@@ -44,7 +44,7 @@ class InterpretedMachine(Protocol):
         """Stop the event because of a fault."""
 
 
-class _Bad(Exception):  # noqa: N818  # control flow, not an error
+class _BadInstructionError(Exception):
     """The instruction cannot be executed; the argument is the reason."""
 
 
@@ -53,10 +53,10 @@ def step(machine: InterpretedMachine) -> int:
     pc = machine.pc
     try:
         if not 0 <= pc < len(machine.code):
-            raise _Bad("jump-out-of-range")
+            raise _BadInstructionError("jump-out-of-range")
         word = machine.code.word(pc)
         machine.pc = _OPERATIONS[word >> 12](machine, word)
-    except _Bad as bad:
+    except _BadInstructionError as bad:
         machine.stop_on(BadCode(pc, str(bad)))
         return 0
     finally:
@@ -67,7 +67,7 @@ def step(machine: InterpretedMachine) -> int:
 
 def _need(machine: InterpretedMachine, count: int) -> None:
     if machine.sp + 1 < count:
-        raise _Bad("stack-underflow")
+        raise _BadInstructionError("stack-underflow")
 
 
 def _pop(machine: InterpretedMachine, count: int = 1) -> list[int]:
@@ -86,18 +86,18 @@ def _push(machine: InterpretedMachine, value: int) -> None:
 
 def _need_room(machine: InterpretedMachine) -> None:
     if machine.sp + 1 >= len(machine.stack):
-        raise _Bad("stack-overflow")
+        raise _BadInstructionError("stack-overflow")
 
 
 def _variable(machine: InterpretedMachine, address: int) -> int:
     if address >= len(machine.variables):
-        raise _Bad("variable-out-of-range")
+        raise _BadInstructionError("variable-out-of-range")
     return address
 
 
 def _target(machine: InterpretedMachine, address: int) -> int:
     if not 0 <= address < len(machine.code):
-        raise _Bad("jump-out-of-range")
+        raise _BadInstructionError("jump-out-of-range")
     return address
 
 
@@ -156,7 +156,7 @@ def _index(machine: InterpretedMachine, needed: int = 1) -> int:
 
 def _unary(machine: InterpretedMachine, word: int) -> int:
     if word & 0xFFF >= len(UNARY_FUNCTIONS):
-        raise _Bad("unknown-unary-operator")
+        raise _BadInstructionError("unknown-unary-operator")
     (value,) = _pop(machine)
     _push(machine, UNARY_FUNCTIONS[word & 0xFFF](value))
     return machine.pc + 1
@@ -170,7 +170,7 @@ def _binary(machine: InterpretedMachine, word: int) -> int:
 def _result(machine: InterpretedMachine, operator: int) -> int:
     """Pop two words and return the result of an operator, 0 after a division by zero."""
     if operator >= len(BINARY_FUNCTIONS):
-        raise _Bad("unknown-binary-operator")
+        raise _BadInstructionError("unknown-binary-operator")
     right, left = _pop(machine, 2)
     try:
         return BINARY_FUNCTIONS[operator](left, right)
@@ -200,9 +200,9 @@ def _branch(machine: InterpretedMachine, word: int) -> int:
 def _emit(machine: InterpretedMachine, word: int) -> int:
     address, count = machine.code.word(machine.pc + 1), machine.code.word(machine.pc + 2)
     if count > MAX_EMITTED:
-        raise _Bad("emit-too-long")
+        raise _BadInstructionError("emit-too-long")
     if address + count > len(machine.variables):
-        raise _Bad("variable-out-of-range")
+        raise _BadInstructionError("variable-out-of-range")
     machine.outbox.append(Emitted(word & 0xFFF, tuple(machine.variables[address : address + count])))
     machine.extra_cost = machine.costs.emit.of(count)
     return machine.pc + 3
@@ -211,7 +211,7 @@ def _emit(machine: InterpretedMachine, word: int) -> int:
 def _native(machine: InterpretedMachine, word: int) -> int:
     number, pc = word & 0xFFF, machine.pc
     if number >= len(machine.natives):
-        raise _Bad("unknown-native")
+        raise _BadInstructionError("unknown-native")
     popped = _pop(machine, machine.natives.count_popped(number))
     machine.extra_cost = machine.natives.cost(number, popped)
     try:
@@ -222,7 +222,7 @@ def _native(machine: InterpretedMachine, word: int) -> int:
         raise
     if not is_possible:
         machine.extra_cost = 0
-        raise _Bad("variable-out-of-range")
+        raise _BadInstructionError("variable-out-of-range")
     return pc + 1
 
 
@@ -239,7 +239,7 @@ def _return(machine: InterpretedMachine, _word: int) -> int:
 
 
 def _unknown(_machine: InterpretedMachine, _word: int) -> int:
-    raise _Bad("unknown-instruction")
+    raise _BadInstructionError("unknown-instruction")
 
 
 _OPERATIONS: Mapping[int, Callable[[InterpretedMachine, int], int]] = {
