@@ -57,7 +57,7 @@ def test_an_object_that_turns_on_the_spot_is_not_at_rest() -> None:
     thing = MovableBody(solid, pymunk.Body(body_type=pymunk.Body.STATIC), set())
     for spin, is_moving in ((1.0, True), (1e-9, False)):
         thing.body.angular_velocity = spin
-        thing.finish_sub_step(0.5, 0.0, 0.1, 0.0, 0.0, spin)
+        thing.end_tick(0.5, 0.0, 0.1, 0.0, 0.0, spin)
         assert (thing.is_moving, thing.body.angular_velocity) == (is_moving, spin if is_moving else 0.0)
 
 

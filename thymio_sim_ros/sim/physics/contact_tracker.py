@@ -12,20 +12,19 @@ from thymio_sim_ros.sim.physics.robot_body import ROBOT_TYPE, RobotBody
 
 __all__ = ["ContactTracker"]
 
-_OBJECT_TYPE = 2
-"""pymunk's collision type of everything but robots."""
+_RIGID_TYPE, _BOUNCING_TYPE = 2, 3
+"""pymunk's collision types of what never bounces, as walls and doors, and of objects that bounce."""
 
 
 class ContactTracker:
     """The contacts in a space. Invariant: every shape in it has a name here, every robot's shape its robot."""
 
-    def __init__(self, space: pymunk.Space, *, do_objects_bounce: bool) -> None:
+    def __init__(self, space: pymunk.Space) -> None:
         self._names: dict[pymunk.Shape, str] = {}
         self._robots: dict[pymunk.Shape, RobotBody] = {}
-        space.on_collision(ROBOT_TYPE, _OBJECT_TYPE, self._on_begin, separate=self._on_separate)
-        space.on_collision(ROBOT_TYPE, ROBOT_TYPE, self._on_begin, separate=self._on_separate)
-        if do_objects_bounce:
-            space.on_collision(_OBJECT_TYPE, _OBJECT_TYPE, pre_solve=_bounce)
+        for other in (ROBOT_TYPE, _RIGID_TYPE, _BOUNCING_TYPE):
+            space.on_collision(ROBOT_TYPE, other, self._on_begin, separate=self._on_separate)
+        space.on_collision(_BOUNCING_TYPE, _BOUNCING_TYPE, pre_solve=_bounce)
 
     def watch(self, shape: pymunk.Shape, owner: RobotBody | str) -> None:
         """Register the shape of a robot, or of an object or wall of this name, before it is added to the space."""
@@ -33,7 +32,7 @@ class ContactTracker:
             self._robots[shape] = owner
             self._names[shape] = owner.name
         else:
-            shape.collision_type = _OBJECT_TYPE
+            shape.collision_type = _BOUNCING_TYPE if shape.elasticity > 0.0 else _RIGID_TYPE
             self._names[shape] = owner
 
     def forget(self, shape: pymunk.Shape) -> None:

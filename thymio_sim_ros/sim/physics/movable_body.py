@@ -97,18 +97,12 @@ class MovableBody:
         self.is_fallen, self.is_moving = True, False
         self._moved.add(self)
 
-    def end_tick(self) -> None:
-        """Update the pose from the body, unless it sleeps."""
-        body = self.body
-        if not (self.is_fallen or body.is_sleeping):
-            self.finish_sub_step(*body.position, body.angle, *body.velocity, body.angular_velocity)
-
-    def finish_sub_step(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
+    def end_tick(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
         """Update pose and flags from the state of the body (m, rad, s); stop it below `AT_REST_M_S`."""
         speed = math.hypot(vx, vy)
         speed += abs(spin) * self.reach_m
         self.is_moving = speed > AT_REST_M_S
-        if not self.is_moving and speed > 0.0:
+        if not self.is_moving and speed > 0.0 and not self.body.is_sleeping:
             self._stop()
         if (x_m, y_m, angle) != (self.pose.x_m, self.pose.y_m, self.pose.yaw_rad):
             self._set_pose(Pose(x_m, y_m, angle))

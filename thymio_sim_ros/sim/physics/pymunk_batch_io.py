@@ -64,6 +64,9 @@ class BodyReader:
         self._buffer = batch.Buffer()
         self._each = _prepared_reader(space, self._buffer)
         self._ids = b""
+        self._id_view: Any = b""
+        self._room = (-1, 0, 0)
+        """Values in the buffer, and the sizes of its arrays, when `state` and `_id_view` were made."""
         self._id_of: dict[pymunk.Body, int] = {}
         self.order = 0
         """Increases whenever the order of the rows changes; rows found by `rows` are then no longer valid."""
@@ -73,10 +76,16 @@ class BodyReader:
 
     def read(self) -> None:
         """Update `state`, and `order` if bodies were added or removed or come in another order."""
-        self._buffer.clear()
+        buffer = self._buffer
+        buffer.clear()
         self._each()
-        self.state = np.frombuffer(self._buffer.float_buf()).reshape(-1, 6)
-        ids = bytes(self._buffer.int_buf())
+        floats = buffer._float_arr
+        room = (floats.num, floats.max, buffer._int_arr.max)
+        if room != self._room:  # pymunk moves an array only when it grows
+            self._room = room
+            self.state = np.frombuffer(buffer.float_buf()).reshape(-1, 6)
+            self._id_view = buffer.int_buf()
+        ids = self._id_view[:]
         if ids != self._ids:
             self._ids = ids
             self.order += 1

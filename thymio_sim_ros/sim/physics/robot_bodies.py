@@ -42,7 +42,8 @@ class RobotBodies:
         """
         self._space, self._others, self._obstacles = space, bodies, obstacles
         self._robots: list[RobotBody] = []
-        self._reader = BodyReader(space)
+        self.reader = BodyReader(space)
+        """All bodies of the space as they were read last."""
         self._order = -1
         self._held: dict[RobotBody, None] = {}
         """Robots that are in contact or were in this tick."""
@@ -135,7 +136,7 @@ class RobotBodies:
         return tuple(contact for robot in touching for contact in robot.touching.values())
 
     def _read(self) -> None:
-        reader = self._reader
+        reader = self.reader
         reader.read()
         if reader.order != self._order:
             self._order = reader.order

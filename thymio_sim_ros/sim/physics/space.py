@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
+from typing import Any
 
 import pymunk
 
@@ -31,6 +32,8 @@ _DRAG_PER_S = 0.01
 
 Source: docs/spec/playground-formats.md section 1.3.
 """
+_STOPPED = (0.0, 0.0, 0.0)
+"""Velocities of a body that `MovableBody.end_tick` has stopped."""
 _DROWSY_S = 0.1
 """An object at rest for this long sleeps until it is touched."""
 
@@ -47,8 +50,7 @@ class Physics:
         self._space.idle_speed_threshold = AT_REST_M_S
         self._space.sleep_time_threshold = _DROWSY_S
         solids = tuple(solids)
-        bouncing = any(solid.load is not None and solid.load.restitution for solid in solids)
-        self._contact_tracker = ContactTracker(self._space, do_objects_bounce=bouncing)
+        self._contact_tracker = ContactTracker(self._space)
         self._movables: dict[str, MovableBody] = {}
         self._moved: set[MovableBody | DoorBody] = set()
         """Objects and doors that have moved since the last call of `moved_obstacles`."""
@@ -70,6 +72,13 @@ class Physics:
             self._fixed_grid.add(obstacle, obstacle.bounds)
         self.robots = RobotBodies(self._space, len(self._numbers), len(solids), robots)
         self._was_still = False
+        self._standing: list[MovableBody] = []
+        """Objects that have not fallen."""
+        self._motions: list[Any] = []
+        """What was read of each of them last, with the velocities that `end_tick` left."""
+        self._rows: Any = ()
+        """Their rows among the bodies that are read, in the order with the number `_order`."""
+        self._order = -1
 
     @property
     def movables(self) -> Mapping[str, MovableBody]:
@@ -149,10 +158,27 @@ class Physics:
             self._space.step(SUB_STEP_S)
             self.robots.finish_sub_step(earlier)
         self.robots.end_tick()
-        for movable in self._movables.values():
-            movable.end_tick()
+        self._read_movables()
         self._door_controller.end_tick(self._space)
         return self.robots.contacts()
+
+    def _read_movables(self) -> None:
+        """Update the objects whose motion differs from what was read last."""
+        reader = self.robots.reader
+        if reader.order != self._order:
+            self._order = reader.order
+            self._standing = [movable for movable in self._movables.values() if not movable.is_fallen]
+            self._motions = [None] * len(self._standing)
+            self._rows = reader.rows([movable.body for movable in self._standing])
+        if not self._standing:
+            return
+        before, self._motions = self._motions, reader.state[self._rows].tolist()
+        if self._motions != before:
+            for movable, motion, known in zip(self._standing, self._motions, before, strict=True):
+                if motion != known:
+                    movable.end_tick(*motion)
+                    if not movable.is_moving:
+                        motion[3:] = _STOPPED
 
     @property
     def _is_still(self) -> bool:
