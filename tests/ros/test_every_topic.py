@@ -160,6 +160,7 @@ SENT = {
     "_press/sound": (Float32(data=1.0), commands.SetNoiseLevel(255)),
     "_press/remote": (Int8(data=5), commands.RemoteKey(0, 5)),
     "_press/rc5": (Int16MultiArray(data=[1, 5]), commands.RemoteKey(1, 5)),
+    "_press/lift": (Bool(data=True), commands.Lift(True)),
     "_press/tilt": (Float32MultiArray(data=[0.5, 0.0]), commands.Tilt(0.5, 0.0)),
     "_press/light": (Float32(data=1.0), commands.SetAmbientLight(1023)),
     "_press/proximity": (Int16MultiArray(data=[9, -1] + [0] * 5), commands.SetProximity((9, -1, 0, 0, 0, 0, 0))),

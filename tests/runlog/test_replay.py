@@ -17,6 +17,7 @@ from thymio_sim_ros.sim.commands import (
     Clap,
     Command,
     ConnectCharger,
+    Lift,
     MotorTargets,
     MoveObject,
     MoveRobot,
@@ -102,7 +103,8 @@ def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
     runner = Runner(shipped("classroom"), read_program("line_follower"), seed=5, log=log)
     names = list(runner.world.robots)
     whims: list[Command] = [
-        Clap(200), Tap(), Tilt(0.3, -0.2), SetTemperature(31.5), RemoteKey(0, 80), SetBattery(3.5), SetAmbientLight(90),
+        Clap(200), Tap(), Lift(True), Lift(False),
+        Tilt(0.3, -0.2), SetTemperature(31.5), RemoteKey(0, 80), SetBattery(3.5), SetAmbientLight(90),
         SetNoiseLevel(60), PressButton("center", True), PressButton("center", False), ConnectCharger(True),
         SetProximity((-1, 2000, 4505, -1, -1, -1, 0)), SetGround((77, -1)), SetPen(down=True, width_m=0.02),
         SetMotorModel("firmware"), PlayTone(440.0, None),

@@ -42,7 +42,7 @@ class FakeView:
     twist: Twist = AT_REST
     tilt: Tilt = LEVEL
     is_falling: bool = False
-    is_fallen: bool = False
+    is_standing: bool = True
     wheels: Wheels = field(default_factory=lambda: Wheels(FakeBody()))
     contacts: tuple[Contact, ...] = ()
     noise: Noise = QUIET
@@ -71,6 +71,9 @@ class FakeView:
 
     def wake(self, kind: type[Any]) -> None:
         self.woken.append(kind)
+
+    def lift(self, *, is_lifted: bool) -> None:
+        self.is_standing = not is_lifted
 
     def place(self, pose: Pose) -> None:
         self.pose = pose
@@ -110,7 +113,7 @@ class FakeBatch(FakeBody):
         self.tick[0] = tick
         self.noise_keys.key_1[0], self.noise_keys.key_2[0] = view.noise._keys
         self.noise_keys.is_on[0] = view.noise.enabled
-        robots.is_standing[0] = not view.is_fallen
+        robots.is_standing[0] = view.is_standing
         robots.x[0], robots.y[0], robots.yaw[0] = view.pose.x_m, view.pose.y_m, view.pose.yaw_rad
         robots.speed[0], robots.turn_rate[0] = view.twist.linear_m_s, view.twist.angular_rad_s
 
@@ -125,6 +128,10 @@ class FakeBatch(FakeBody):
     @property
     def tilts(self) -> list[Tilt]:
         return [self._view.tilt]
+
+    @property
+    def heights_m(self) -> list[float]:
+        return [0.0]
 
     @property
     def falling(self) -> list[int]:

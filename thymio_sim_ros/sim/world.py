@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.batch.robot_batch import RobotBatch
-from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveRobot, SetMotorModel, SetPen
+from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, Lift, MoveObject, MoveRobot, SetMotorModel, SetPen
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.input_recorder import Input, InputRecorder, Posted, Removed, Reset, Spawned, WorldOptions
@@ -162,7 +162,10 @@ class World:
                 raise TypeError(f"no actuator or stimulus accepts a {type(command).__name__}")
             if isinstance(command, MoveRobot):
                 pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
-                self._check_place(footprint_of_robot(name, pose))
+                if not self._will_be_lifted(robot):
+                    self._check_place(footprint_of_robot(name, pose))
+            elif isinstance(command, Lift) and not command.is_lifted and self._will_be_lifted(robot):
+                self._check_place(footprint_of_robot(name, self._moving_to().get(name, robot.pose)))
         else:
             movable = self._movables[name]
             if not isinstance(command, MoveObject):
@@ -260,11 +263,7 @@ class World:
 
     def _check_place(self, wanted: Footprint) -> None:
         """Raise PlacementError if a position is occupied now or by a pending command."""
-        soon = {
-            name: Pose(command.x_m, command.y_m, command.yaw_rad)
-            for name, command in self._posted
-            if isinstance(command, MoveObject | MoveRobot)
-        }
+        soon = self._moving_to()
         standing = [
             footprint_of(body.solid.at(soon.get(body.name, body.pose)))
             for body in self._physics.objects
@@ -273,12 +272,25 @@ class World:
         standing += [
             footprint_of_robot(robot.name, soon.get(robot.name, robot.pose))
             for robot in self._robots.values()
-            if robot.name in soon or not robot.body.is_fallen
+            if not self._will_be_lifted(robot) and (robot.name in soon or robot.is_standing)
         ]
         here = (there.name for there in standing if there.name != wanted.name and there.overlaps(wanted))
         blocker = self._fixed.blocker(wanted) or next(here, None)
         if blocker is not None:
             raise PlacementError(wanted.name, Pose(*wanted.middle, 0.0), blocker)
+
+    def _moving_to(self) -> dict[str, Pose]:
+        """Return where pending commands place robots and objects, by name."""
+        return {
+            name: Pose(command.x_m, command.y_m, command.yaw_rad)
+            for name, command in self._posted
+            if isinstance(command, MoveObject | MoveRobot)
+        }
+
+    def _will_be_lifted(self, robot: Robot) -> bool:
+        """Return whether a robot is lifted after the pending commands."""
+        lifts = [command for name, command in self._posted if name == robot.name and isinstance(command, Lift)]
+        return lifts[-1].is_lifted if lifts else robot.is_lifted
 
     def _record(self, event: Input) -> None:
         if self.recorder is not None:

@@ -17,6 +17,7 @@ from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
     Clap,
     Command,
+    Lift,
     MoveRobot,
     PressButton,
     RemoteKey,
@@ -201,6 +202,14 @@ class Thymio:
     def tilt(self, roll_rad: float = 0.0, pitch_rad: float = 0.0) -> None:
         """Tilt it until the next `tilt`; positive roll lifts the left side, positive pitch lowers the front."""
         self.post(Tilt(roll_rad, pitch_rad))
+
+    def lift(self) -> None:
+        """Lift it off the floor."""
+        self.post(Lift(is_lifted=True))
+
+    def put_down(self) -> None:
+        """Put it down where it is. Raises PlacementError if something is in the way."""
+        self.post(Lift(is_lifted=False))
 
     def key(self, command: int, address: int = 0) -> None:
         """Press a key of a remote control."""

@@ -10,6 +10,7 @@ from thymio_sim_ros.ros.interface.operator_topics import ROWS
 from thymio_sim_ros.sim.commands import (
     Clap,
     ConnectCharger,
+    Lift,
     RemoteKey,
     SetAmbientLight,
     SetBattery,
@@ -40,6 +41,7 @@ def decode(topic, message):
         ("_press/remote", Int8(data=80), RemoteKey(0, 80)),
         ("_press/rc5", Int16MultiArray(data=[31, 127]), RemoteKey(31, 127)),
         ("_press/tilt", Float32MultiArray(data=[0.5, -0.25]), Tilt(0.5, -0.25)),
+        ("_press/lift", Bool(data=True), Lift(True)),
         ("_press/light", Float32(data=0.5), SetAmbientLight(512)),
         ("_press/light", Float32(data=2.0), SetAmbientLight(1023)),
         (

@@ -102,7 +102,7 @@ def test_a_fallen_robot_stands_again_where_it_is_put() -> None:
     send(world, MoveRobot(0.0, 0.0, 0.0))
     run(world, 1.0)
     robot = world.robots["thymio"]
-    assert (robot.tilt, robot.is_falling, robot.body.is_fallen) == (LEVEL, False, False)
+    assert (robot.tilt, robot.is_falling, robot.is_standing) == (LEVEL, False, True)
     assert robot.pose.x_m == pytest.approx(0.166)
 
 

@@ -148,14 +148,14 @@ def _joint_numbers(reading: readings.MotorReading, _options: Any) -> Sequence[fl
 
 
 def _odometry_patch(
-    place: Callable[[readings.PoseReading], tuple[Pose, Sequence[float]]],
+    place: Callable[[readings.PoseReading], tuple[Pose, float, Sequence[float]]],
     twist: Callable[[readings.PoseReading], Twist],
 ) -> Patch:
     """Return the patch of an Odometry: it ends with pose, covariance, twist, covariance; covariances stay."""
 
     def place_numbers(reading: readings.PoseReading, _options: Any) -> Sequence[float]:
-        pose, turn = place(reading)
-        return (pose.x_m, pose.y_m, 0.0, *turn)
+        pose, height_m, turn = place(reading)
+        return (pose.x_m, pose.y_m, height_m, *turn)
 
     def twist_numbers(reading: readings.PoseReading, _options: Any) -> Sequence[float]:
         moves = twist(reading)
@@ -200,10 +200,11 @@ def reflectance_patch(index: int) -> Patch:
 
 
 ODOMETRY = _odometry_patch(
-    lambda reading: (reading.odometry, rotation(reading.odometry.yaw_rad)), lambda reading: reading.odometry_twist
+    lambda reading: (reading.odometry, 0.0, rotation(reading.odometry.yaw_rad)), lambda reading: reading.odometry_twist
 )
 TRUTH = _odometry_patch(
-    lambda reading: (reading.truth, rotation(reading.truth.yaw_rad, reading.tilt)), lambda reading: reading.truth_twist
+    lambda reading: (reading.truth, reading.height_m, rotation(reading.truth.yaw_rad, reading.tilt)),
+    lambda reading: reading.truth_twist,
 )
 JOINTS = Patch((Span(struct.Struct("<2dI4x2d"), _joint_numbers, behind=8),))
 """Two positions and two velocities; the empty effort after them is aligned as if it had values."""

@@ -170,6 +170,7 @@ def odometry(reading: readings.PoseReading, names: RobotNames, options: ConvertO
 def truth(reading: readings.PoseReading, names: RobotNames, _options: ConvertOptions) -> Odometry:
     """Return the true pose and velocity."""
     message = _odometry_message(reading.truth, reading.truth_twist)
+    message.pose.pose.position.z = reading.height_m
     message.pose.pose.orientation = quaternion(reading.truth.yaw_rad, reading.tilt)
     message.child_frame_id = names.frame("base_link")
     return stamped(message, reading.stamp_ns, names.frame(MAP_FRAME))

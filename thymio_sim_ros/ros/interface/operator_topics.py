@@ -109,6 +109,13 @@ ROWS = (
         about="roll, pitch in rad: hold the robot at this angle until the next message",
     ),
     CommandRow(
+        "_press/lift",
+        Bool,
+        lambda message: commands.Lift(bool(message.data)),
+        profile=qos.EVENTS,
+        about="whether the robot is held over the floor; put down, it stands where it is",
+    ),
+    CommandRow(
         "_press/light",
         Float32,
         _light,

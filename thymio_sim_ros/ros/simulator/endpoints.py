@@ -83,7 +83,7 @@ class SimulatorEndpoints:
     def publish_poses(self, world: World) -> None:
         """Publish the true poses of all robots of a paused world for late subscribers."""
         for name, robot in world.robots.items():
-            self.robots[name].publish_pose(world.now_ns, robot.pose, robot.tilt)
+            self.robots[name].publish_pose(world.now_ns, robot.pose, robot.tilt, robot.height_m)
 
     def _set_frames(self) -> None:
         self._transforms.set_robots(tuple(self.robots.names.values()))

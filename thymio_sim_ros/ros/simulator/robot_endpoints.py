@@ -212,10 +212,10 @@ class RobotEndpoints:
                 if not target.row.always:
                     self._send(target, wanted=target.count() > 0)
 
-    def publish_pose(self, now_ns: int, pose: Pose, tilt: Tilt) -> None:
+    def publish_pose(self, now_ns: int, pose: Pose, tilt: Tilt, height_m: float) -> None:
         """Publish the true pose of a paused robot for late subscribers."""
         still = Twist(0.0, 0.0)
-        reading = PoseReading(now_ns, (), pose, still, pose, still, tilt)
+        reading = PoseReading(now_ns, (), pose, still, pose, still, tilt, height_m)
         for target in self._publishers["pose"]:
             if target.row.topic == sensor_topics.TRUTH:
                 target.publisher.publish(target.row.encode(reading, self.names, self._owner.convert_options))

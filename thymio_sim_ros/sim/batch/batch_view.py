@@ -99,6 +99,10 @@ class BatchView:
         return [robot.tilt for robot in self._robots]
 
     @property
+    def heights_m(self) -> Sequence[float]:
+        return [robot.height_m for robot in self._robots]
+
+    @property
     def falling(self) -> Sequence[int]:
         return [index for index, robot in enumerate(self._robots) if robot.is_falling]
 

@@ -11,6 +11,7 @@ __all__ = [
     "BUTTONS",
     "Clap",
     "ConnectCharger",
+    "Lift",
     "MoveObject",
     "MoveRobot",
     "Operating",
@@ -87,6 +88,16 @@ class Tilt:
 
     def __post_init__(self) -> None:
         check(self, -math.pi, math.pi, "roll_rad", "pitch_rad")
+
+
+@dataclass(frozen=True, slots=True)
+class Lift:
+    """Lift the robot off the floor, or put it down where it is.
+
+    While it is lifted its wheels turn in the air, and it neither meets nor sees anything; it can be moved.
+    """
+
+    is_lifted: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +222,7 @@ Operating = (
     | SetPen
     | Tap
     | Tilt
+    | Lift
     | Clap
     | SetNoiseLevel
     | SetAmbientLight

@@ -28,7 +28,7 @@ def list_unsafe(robots: RobotState, unsafe: Ints, count: Ints) -> None:
 
 
 class EdgeFall:
-    """The support of one robot. Invariant: its body has fallen exactly when `tilt` is not None."""
+    """The support of one robot. Invariant: its body is off the floor while `tilt` is not None."""
 
     __slots__ = ("_body", "_clock", "_fall", "_physics")
 
@@ -58,5 +58,5 @@ class EdgeFall:
         clearance_m = floor_support.clearance_m(x_m, y_m)
         if clearance_m < 0.0:
             self._fall = Fall(self._clock.now_ns + TICK_NS, self._body.course_rad)
-            self._physics.drop_robot(self._body)
+            self._physics.take_off_floor(self._body)
         state.safe_x[index], state.safe_y[index], state.safe_m[index] = x_m, y_m, max(0.0, clearance_m)

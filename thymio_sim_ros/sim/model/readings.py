@@ -61,7 +61,10 @@ class MotorReading:
 
 @dataclass(frozen=True, slots=True)
 class PoseReading:
-    """Where the robot is: wheel odometry since the start, and the truth; twists in the body's frame; how it leans."""
+    """Where the robot is: wheel odometry since the start, and the truth; twists in the body's frame.
+
+    `tilt` is how it leans, `height_m` how high an operator holds it.
+    """
 
     stamp_ns: int
     words: tuple[int, ...]
@@ -70,6 +73,7 @@ class PoseReading:
     truth: Pose
     truth_twist: Twist
     tilt: Tilt = LEVEL
+    height_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ __all__ = ["RobotState", "WheelState"]
 
 
 class RobotState(Record):
-    """One element per robot; elements without a robot, and robots that have fallen, have `is_standing` 0."""
+    """One element per robot; elements without a robot, and robots off the floor, have `is_standing` 0."""
 
     is_standing: Ints
     x: Floats

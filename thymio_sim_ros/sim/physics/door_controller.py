@@ -43,7 +43,7 @@ class DoorController:
             for area, x, y, reach_m in self._areas
             for robot in robots
             if math.hypot(robot.pose.x_m - x, robot.pose.y_m - y) <= reach_m
-            and not robot.is_fallen
+            and robot.is_standing
             and area.holds(robot.pose.x_m, robot.pose.y_m)
         }
         for name, door in self._doors.items():

@@ -26,9 +26,9 @@ costs only address space."""
 class RobotBodies:
     """The robots of a space. pymunk owns poses and velocities; `state` and `wheels` are what the last tick ended with.
 
-    A robot that has fallen is not in the space. `memory` holds the records; sensors allocate their arrays behind them,
-    from `first_free` on. `moving[0]` is set by what drives the wheels: whether one turns. All these are replaced when
-    more robots come than there is room for.
+    A robot that does not stand on the floor is not in the space. `memory` holds the records; sensors allocate their
+    arrays behind them, from `first_free` on. `moving[0]` is set by what drives the wheels: whether one turns. All these
+    are replaced when more robots come than there is room for.
     """
 
     def __init__(self, space: pymunk.Space, bodies: int, obstacles: int, robots: int) -> None:
@@ -70,7 +70,7 @@ class RobotBodies:
 
     def remove(self, robot: RobotBody) -> None:
         """Remove a robot; those behind it move up."""
-        if not robot.is_fallen:
+        if robot.is_standing:
             self._space.remove(robot.shape, robot.body)
         self._held.pop(robot, None)
         del self._robots[robot.index]
@@ -80,18 +80,18 @@ class RobotBodies:
         self._attach()
         self._choose()
 
-    def drop(self, robot: RobotBody) -> None:
-        """Make a robot fall."""
+    def take_off_floor(self, robot: RobotBody) -> None:
+        """Take a robot that stands off the floor."""
         self._space.remove(robot.shape, robot.body)
         self._held.pop(robot, None)
-        robot.fall()
+        robot.leave_floor()
         self._choose()
 
     def place(self, robot: RobotBody, pose: Pose) -> None:
-        """Place a robot at a pose, at rest; a fallen one stands on the floor again."""
-        was_fallen = robot.is_fallen
+        """Place a robot at a pose, at rest; it stands on the floor from now on."""
+        was_standing = robot.is_standing
         robot.place(pose)
-        if was_fallen:
+        if not was_standing:
             self._space.add(robot.body, robot.shape)
             self._choose()
 
@@ -140,7 +140,7 @@ class RobotBodies:
         reader.read()
         if reader.order != self._order:
             self._order = reader.order
-            standing = [robot for robot in self._robots if not robot.is_fallen]
+            standing = [robot for robot in self._robots if robot.is_standing]
             rows = reader.rows([robot.body for robot in standing])
             self._rows[[robot.index for robot in standing]] = rows
         self._poses[: len(reader.state)] = reader.state
@@ -152,7 +152,7 @@ class RobotBodies:
     def _choose(self) -> None:
         """Note which bodies are in the space."""
         self._order = -1
-        self._writer.choose([robot.body for robot in self._robots if not robot.is_fallen])
+        self._writer.choose([robot.body for robot in self._robots if robot.is_standing])
 
     def _allocate(self, count: int) -> None:
         """Arrays for so many robots, and the kernels bound to them."""

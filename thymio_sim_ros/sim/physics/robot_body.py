@@ -31,7 +31,7 @@ class RobotBody:
         "_pose",
         "body",
         "index",
-        "is_fallen",
+        "is_standing",
         "name",
         "shape",
         "state",
@@ -44,8 +44,8 @@ class RobotBody:
         self._held = held
         self.name = name
         self.touching: dict[pymunk.Shape, Contact] = {}
-        self.is_fallen = False
-        """Whether it has fallen; nothing touches or sees it until it is placed."""
+        self.is_standing = True
+        """Whether it stands on the floor; otherwise nothing touches or sees it until it is placed."""
         self.state: RobotState
         self.wheels: WheelState
         self.index = 0
@@ -104,8 +104,8 @@ class RobotBody:
         return wrap_angle(math.atan2(vy, vx) - self.pose.yaw_rad) if math.hypot(vx, vy) > _AT_REST_M_S else 0.0
 
     def place(self, pose: Pose) -> None:
-        """Place it at a pose, at rest; a fallen one stands on the floor again."""
-        self.is_fallen = False
+        """Place it at a pose, at rest; it stands on the floor from now on."""
+        self.is_standing = True
         body, state, index = self.body, self.state, self.index
         body.position, body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
         body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
@@ -115,9 +115,9 @@ class RobotBody:
         if body.space is not None:
             body.space.reindex_shapes_for_body(body)
 
-    def fall(self) -> None:
-        """Fall: from now on the wheels have no grip."""
-        self.is_fallen = True
+    def leave_floor(self) -> None:
+        """Leave the floor: from now on the wheels have no grip."""
+        self.is_standing = False
         self.touching.clear()
         state, index = self.state, self.index
         state.is_standing[index] = state.is_touching[index] = state.was_touching[index] = 0

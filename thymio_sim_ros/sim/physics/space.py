@@ -117,10 +117,10 @@ class Physics:
         self.robots.remove(robot)
         self._was_still = False
 
-    def drop_robot(self, robot: RobotBody) -> None:
-        """Make a robot fall; nothing touches or sees it until it is placed."""
+    def take_off_floor(self, robot: RobotBody) -> None:
+        """Take a robot that stands off the floor; nothing touches or sees it until it is placed."""
         self._contact_tracker.forget(robot.shape)
-        self.robots.drop(robot)
+        self.robots.take_off_floor(robot)
         self._was_still = False
 
     def drop_movable(self, movable: MovableBody) -> None:
@@ -131,11 +131,11 @@ class Physics:
         self._was_still = False
 
     def place(self, body: RobotBody | MovableBody, pose: Pose) -> None:
-        """Place a robot or an object at a pose, at rest; a fallen one stands on the floor again."""
-        was_fallen = body.is_fallen
+        """Place a robot or an object at a pose, at rest; it stands on the floor from now on."""
         if isinstance(body, RobotBody):
             self.robots.place(body, pose)
         else:
+            was_fallen = body.is_fallen
             body.place(pose)
             if was_fallen:
                 self._space.add(body.body, body.shape, *body.joints)
@@ -192,9 +192,9 @@ class Physics:
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """Return the obstacles within `reach_m` of a robot's origin that are at least `height_m` high.
 
-        A fallen robot has none. The robot itself is not among them.
+        A robot off the floor has none. The robot itself is not among them.
         """
-        if robot.is_fallen:
+        if not robot.is_standing:
             return Surroundings(())
         x, y = robot.pose.x_m, robot.pose.y_m
         near = [
@@ -202,13 +202,14 @@ class Physics:
             for obstacle in self._fixed_grid.near((x - reach_m, y - reach_m, x + reach_m, y + reach_m))
             if obstacle.height_m >= height_m and obstacle.is_within(x, y, reach_m)
         ]
-        bodies: list[RobotBody | MovableBody | DoorBody] = [*self.robots, *self.objects]
+        bodies: list[RobotBody | MovableBody | DoorBody] = [
+            *(other for other in self.robots if other.is_standing and other is not robot),
+            *(thing for thing in self.objects if not thing.is_fallen),
+        ]
         near += [
             body.obstacle
             for body in bodies
             if math.hypot(body.pose.x_m - x, body.pose.y_m - y) <= reach_m + body.reach_m
-            and body is not robot
-            and not body.is_fallen
             and body.obstacle.height_m >= height_m
         ]
         return Surroundings(near)

@@ -29,7 +29,7 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class RobotSnapshot:
-    """One robot: its true pose and tilt, the angles of the left and right wheel, and what its plug-ins show.
+    """One robot: its true pose, tilt and height over the floor, the angles of the left and right wheel.
 
     `shown` holds the items of all plug-ins that declare `shows`, by name.
     """
@@ -39,6 +39,7 @@ class RobotSnapshot:
     wheel_angles_rad: tuple[float, float]
     shown: Mapping[str, Any] = field(default_factory=dict)
     tilt: Tilt = LEVEL
+    height_m: float = 0.0
 
     @property
     def leds(self) -> tuple[tuple[str, tuple[int, ...]], ...]:

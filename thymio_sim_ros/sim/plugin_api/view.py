@@ -46,8 +46,8 @@ class OtherRobot(Protocol):
         ...
 
     @property
-    def is_fallen(self) -> bool:
-        """Whether it has fallen off an edge; it is then invisible to sensors."""
+    def is_standing(self) -> bool:
+        """Whether it stands on the floor. Sensors do not see a robot that is lifted or has fallen off an edge."""
         ...
 
     def state(self, kind: type[S]) -> S:
@@ -89,8 +89,8 @@ class SensorView(Protocol):
         ...
 
     @property
-    def is_fallen(self) -> bool:
-        """Whether it has fallen off an edge, still falling or not; it is then invisible to others."""
+    def is_standing(self) -> bool:
+        """Whether it stands on the floor; it is invisible to others while it is lifted or has fallen off an edge."""
         ...
 
     @property
@@ -189,6 +189,11 @@ class BatchSensorView(Protocol):
         ...
 
     @property
+    def heights_m(self) -> Sequence[float]:
+        """Height of every robot over the floor."""
+        ...
+
+    @property
     def falling(self) -> Sequence[int]:
         """Numbers of the robots that are in the air after an edge."""
         ...
@@ -251,6 +256,10 @@ class ActuatorView(Protocol):
 
     def wake(self, kind: type[Any]) -> None:
         """Wake the sensors that have this type in `wakes_on`; they measure at the end of the tick."""
+        ...
+
+    def lift(self, *, is_lifted: bool) -> None:
+        """Lift the robot off the floor, or put it down where it is."""
         ...
 
     def place(self, pose: Pose) -> None:

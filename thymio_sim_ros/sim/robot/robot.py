@@ -26,6 +26,9 @@ __all__ = ["Robot", "SharedState"]
 
 S = TypeVar("S")
 
+_LIFT_M = 0.06
+"""Height at which an operator holds a robot. Assumption."""
+
 
 class SharedState:
     """State that all robots of a world share."""
@@ -117,8 +120,8 @@ class _PluginView:
         return self._robot.is_falling
 
     @property
-    def is_fallen(self) -> bool:
-        return self._robot.is_fallen
+    def is_standing(self) -> bool:
+        return self._robot.is_standing
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
@@ -136,7 +139,7 @@ class _PluginView:
         return self._world.physics.surroundings(self._robot.body, reach_m, height_m)
 
     def ground_at(self, x_m: float, y_m: float) -> GroundSample:
-        if self._robot.is_fallen:
+        if not self._robot.is_standing:
             return NO_FLOOR
         return self._world.ground.sample(*self._robot.body.pose.place((x_m, y_m)))
 
@@ -150,6 +153,9 @@ class _PluginView:
 
     def wake(self, kind: type[Any]) -> None:
         self._robot.wake(kind)
+
+    def lift(self, *, is_lifted: bool) -> None:
+        self._robot.lift(is_lifted=is_lifted)
 
     def place(self, pose: Pose) -> None:
         self._robot.place(pose)
@@ -171,6 +177,8 @@ class Robot:
         self._clock, self._physics = shared.clock, shared.physics
         self.edge_fall = EdgeFall(shared.clock, shared.physics, self.body)
         """Detects when it falls off an edge."""
+        self.is_lifted = False
+        """Whether an operator holds it over the floor: its wheels turn in the air, and it meets and sees nothing."""
         self.states: dict[type[Any], Any] = {}
         """The states of actuators and stimuli, by type."""
         self._accepting: dict[type[Any], tuple[CommandPlugin, Any]] = {}
@@ -239,7 +247,17 @@ class Robot:
     @property
     def is_fallen(self) -> bool:
         """Whether it has fallen off an edge, falling still or not."""
-        return self.body.is_fallen
+        return self.edge_fall.tilt is not None
+
+    @property
+    def is_standing(self) -> bool:
+        """Whether it stands on the floor: it has neither fallen nor been lifted."""
+        return self.body.is_standing
+
+    @property
+    def height_m(self) -> float:
+        """Height over the floor at which an operator holds it; 0 if it is not lifted."""
+        return _LIFT_M if self.is_lifted else 0.0
 
     def sound_levels(self, now_ns: int) -> list[float]:
         """Return the levels of the sounds that it makes now."""
@@ -312,9 +330,17 @@ class Robot:
         return sensor.measure(view)
 
     def place(self, pose: Pose) -> None:
-        """Place it at a pose, at rest, also after a fall."""
+        """Place it at a pose, at rest, also after a fall; if it is lifted, over that pose."""
         self._physics.place(self.body, pose)
         self.edge_fall.clear()
+        if self.is_lifted:
+            self._physics.take_off_floor(self.body)
+
+    def lift(self, *, is_lifted: bool) -> None:
+        """Lift it off the floor, also after a fall, or put it down where it is."""
+        if is_lifted != self.is_lifted:
+            self.is_lifted = is_lifted
+            self.place(self.pose)
 
     def state(self, kind: type[S]) -> S:
         """Return the state of type `kind` of an actuator or stimulus. Raises KeyError if there is none."""
@@ -327,6 +353,7 @@ class Robot:
             name=self.name,
             pose=self.body.pose,
             tilt=self.tilt,
+            height_m=self.height_m,
             wheel_angles_rad=self.wheels.angles_rad,
             shown={name: value for shows, state in self._shown for name, value in shows(state).items()},
         )

@@ -99,14 +99,14 @@ def _received(receiver: _Mount, emitters: list[_Mount], around: Surroundings) ->
 
 
 def _measure(view: SensorView) -> CommReading | None:
-    if not view.state(CommState).is_enabled or view.is_fallen:
+    if not view.state(CommState).is_enabled or not view.is_standing:
         return None
     x, y, reach_m = view.pose.x_m, view.pose.y_m, RANGE_M + 2 * _MOUNT_M
     senders = [
         (_mounts(other.pose), other.state(CommState).payload)
         for other in view.others
         if other.state(CommState).is_sending
-        and not other.is_fallen
+        and other.is_standing
         and math.hypot(other.pose.x_m - x, other.pose.y_m - y) <= reach_m
     ]
     if not senders:

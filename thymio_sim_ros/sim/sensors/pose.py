@@ -22,7 +22,7 @@ def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
     )  # fmt: skip
 
     def measure() -> LazyReadings:
-        now_ns, tilts, speeds = batch.now_ns, batch.tilts, rim.tolist()
+        now_ns, tilts, heights_m, speeds = batch.now_ns, batch.tilts, batch.heights_m, rim.tolist()
         x, y, yaw, odometry_x, odometry_y, odometry_yaw, speed, turn_rate = [column.tolist() for column in columns]
 
         def make(robot: int) -> PoseReading:
@@ -34,6 +34,7 @@ def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
                 Pose(x[robot], y[robot], yaw[robot]),
                 Twist(speed[robot], turn_rate[robot]),
                 tilts[robot],
+                heights_m[robot],
             )
 
         return LazyReadings(len(batch), make)

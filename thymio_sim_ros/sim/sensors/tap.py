@@ -20,7 +20,7 @@ __all__ = ["SENSOR"]
 
 def _measure(view: SensorView) -> TapReading | None:
     memory, taps, is_falling = view.memory, view.state(HandlingState).taps, view.is_falling
-    has_landed = memory.get("is_falling", False) and not is_falling and view.is_fallen
+    has_landed = memory.get("is_falling", False) and not is_falling and not view.is_standing
     is_knocked = taps != memory.get("taps", 0)
     memory["taps"], memory["is_falling"] = taps, is_falling
     if has_landed or is_knocked or any(_is_knock(contact) for contact in view.contacts):

@@ -1,10 +1,10 @@
-"""Handling by an operator: to move the robot, hold it at an angle, tap it, or zero its odometry."""
+"""Handling by an operator: to move the robot, lift it, hold it at an angle, tap it, or zero its odometry."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tap, Tilt
+from thymio_sim_ros.sim.commands import Lift, MoveRobot, ResetOdometry, Tap, Tilt
 from thymio_sim_ros.sim.model import geometry
 from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 from thymio_sim_ros.sim.stimuli import Stimulus
@@ -16,12 +16,12 @@ __all__ = ["STIMULUS", "HandlingState"]
 class HandlingState:
     """Commands to run in this tick, in order; the angle at which the robot is held; the number of taps so far."""
 
-    pending: list[MoveRobot | ResetOdometry] = field(default_factory=list)
+    pending: list[MoveRobot | Lift | ResetOdometry] = field(default_factory=list)
     tilt: geometry.Tilt = geometry.LEVEL
     taps: int = 0
 
 
-def _apply(state: HandlingState, command: MoveRobot | ResetOdometry | Tilt | Tap, _now_ns: int) -> None:
+def _apply(state: HandlingState, command: MoveRobot | Lift | ResetOdometry | Tilt | Tap, _now_ns: int) -> None:
     if isinstance(command, Tilt):
         state.tilt = geometry.Tilt(command.roll_rad, command.pitch_rad)
     elif isinstance(command, Tap):
@@ -36,6 +36,8 @@ def _update(state: HandlingState, view: ActuatorView, _dt_s: float) -> None:
     for command in state.pending:
         if isinstance(command, MoveRobot):
             view.place(geometry.Pose(command.x_m, command.y_m, command.yaw_rad))
+        elif isinstance(command, Lift):
+            view.lift(is_lifted=command.is_lifted)
         else:
             view.wheels.reset_odometry()
     state.pending.clear()
@@ -43,7 +45,7 @@ def _update(state: HandlingState, view: ActuatorView, _dt_s: float) -> None:
 
 STIMULUS = Stimulus(
     name="handling",
-    accepts=(MoveRobot, ResetOdometry, Tilt, Tap),
+    accepts=(MoveRobot, Lift, ResetOdometry, Tilt, Tap),
     begin=HandlingState,
     apply=_apply,
     update=_update,

@@ -140,7 +140,7 @@ class Transforms:
     def _frames(self, names: RobotNames, reading: PoseReading, angles_rad: tuple[float, float]) -> list[Transform]:
         ns = reading.stamp_ns
         origin, odom, base, *wheels = _moving_frames(names)
-        frames = [_planar(ns, odom, base, reading.odometry, reading.tilt)]
+        frames = [_planar(ns, odom, base, reading.odometry, reading.tilt, reading.height_m)]
         if self._options.publish_map:
             frames.insert(0, _planar(ns, origin, odom, origin_of(reading.truth, reading.odometry)))
         if self._options.publish_wheels:
@@ -175,5 +175,5 @@ def frames_of(names: RobotNames, truth: Pose, odometry: Pose) -> dict[str, Pose]
     return {names.frame(usual): place for usual, place in places.items()}
 
 
-def _planar(ns: int, frame: str, child: str, pose: Pose, tilt: Tilt = LEVEL) -> Transform:
-    return Transform(ns, frame, child, (pose.x_m, pose.y_m, 0.0), rotation(pose.yaw_rad, tilt))
+def _planar(ns: int, frame: str, child: str, pose: Pose, tilt: Tilt = LEVEL, height_m: float = 0.0) -> Transform:
+    return Transform(ns, frame, child, (pose.x_m, pose.y_m, height_m), rotation(pose.yaw_rad, tilt))
