@@ -388,3 +388,18 @@ def test_fearful_cries_and_blinks_while_it_falls() -> None:
     assert not is_silent(runner)
     assert runner.until(lambda: runner.devices[ROBOT].variables.get("falling") == (0,), 1.0)
     assert runner.until(lambda: is_silent(runner), 0.5)
+
+
+def test_welcome_waits_with_a_light_that_breathes_in_four_seconds() -> None:
+    runner = alone("welcome", "line")
+    runner.run(0.2)
+    start, seen = runner.world.robots[ROBOT].pose, []
+    for _ in range(80):
+        seen.append(top(runner)[1])
+        runner.run(0.1)
+    assert (min(seen), max(seen)) == (14, 32)
+    tops = [index for index, level in enumerate(seen) if level == 32]
+    assert 36 <= tops[-1] - tops[0] <= 44
+    assert runner.world.robots[ROBOT].pose == start
+    assert is_silent(runner)
+    assert leds(runner, "circle") == (0,) * 8
