@@ -130,9 +130,10 @@ def test_the_target_lists_all_that_a_program_can_use():
         "size": 1,
         "address": target().addresses["button.center"][0],
         "hidden": False,
+        "topic": "sensors",
         "help": texts("help")["variables.button.center"],
     } in reported["variables"]
-    assert {"name": "prox", "help": texts("help")["events.prox"]} in reported["events"]
+    assert {"name": "prox", "topic": "sensors", "help": texts("help")["events.prox"]} in reported["events"]
     natives = {entry["name"]: entry for entry in reported["natives"]}
     assert natives["leds.top"]["parameters"][0] == {"name": "red", "size": 1}
     assert natives["_poweroff"]["hidden"]
@@ -157,6 +158,17 @@ def test_what_beginners_need_most_comes_first():
 def test_every_name_for_beginners_has_its_place_and_no_other_name(kind):
     known = [entry.name for entry in getattr(THYMIO_II, {"events": "local_events"}.get(kind, kind))]
     assert sorted(ORDER[kind]) == sorted(name for name in known if not is_hidden(name))
+
+
+def test_help_begins_with_what_beginners_need():
+    reported = describe_target()
+    assert reported["topics"][:4] == ["motors", "lights", "sound", "sensors"]
+    topics = {entry["name"]: entry["topic"] for kind in ("variables", "natives", "events") for entry in reported[kind]}
+    assert topics["motor.left.target"] == "motors"
+    assert topics["leds.bottom.left"] == "lights"
+    assert topics["prox.ground.delta"] == "sensors"
+    assert topics["prox.comm.rx"] == topics["prox.comm.enable"] == "messages"
+    assert {topic for name, topic in topics.items() if not is_hidden(name)} == set(reported["topics"]) - {"others"}
 
 
 def test_every_name_of_the_robot_has_help():

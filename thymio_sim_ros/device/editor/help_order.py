@@ -1,14 +1,15 @@
 """Order in which help and completion list the names of the Thymio: what beginners need most comes first.
 
-The layout has an order of its own (`layout.py`), which bytecode depends on; this one is for people only. Names that
-are not listed, such as those of plug-ins, follow in the order of the layout; names for experts come last.
+Completion lists the names of a kind, help those of a topic, such as the lights. The layout has an order of its own
+(`layout.py`), which bytecode depends on; this one is for people only. Names that are not listed, such as those of
+plug-ins, follow in the order of the layout; names for experts come last.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["ORDER", "rank"]
+__all__ = ["ORDER", "OTHERS", "TOPICS", "rank", "topic_of"]
 
 _VARIABLES = """
     motor.left.target motor.right.target prox.horizontal prox.ground.delta
@@ -41,6 +42,22 @@ ORDER: Mapping[str, tuple[str, ...]] = {
 }
 """Kind of name → names, the most useful first."""
 
+OTHERS = "others"
+"""The topic of a name that belongs to none of `TOPICS`."""
+TOPICS: Mapping[str, tuple[str, ...]] = {
+    "motors": ("motor",),
+    "lights": ("leds",),
+    "sound": ("sound", "mic"),
+    "sensors": ("prox", "button", "buttons", "acc", "tap", "temperature", "rc5"),
+    "time": ("timer", "timer0", "timer1"),
+    "messages": ("event", "prox.comm"),
+    "arithmetic": ("math",),
+    "lists": ("deque",),
+    "card": ("sd",),
+}
+"""Topic of the help → how its names begin, up to a dot or their end; of two that fit, the longer one counts."""
+
+_TOPIC_OF = {start: topic for topic, starts in TOPICS.items() for start in starts}
 _PLACES = {kind: {name: place for place, name in enumerate(names)} for kind, names in ORDER.items()}
 
 
@@ -48,3 +65,11 @@ def rank(kind: str, name: str, *, hidden: bool) -> int:
     """Key for a stable sort of the names of one `kind` (variables, events, natives) by usefulness."""
     places = _PLACES[kind]
     return len(places) + 1 if hidden else places.get(name, len(places))
+
+
+def topic_of(name: str) -> str:
+    """Topic of the help in which a name is listed: one of `TOPICS`, or `OTHERS`."""
+    start = name
+    while start not in _TOPIC_OF and start:
+        start = start.rpartition(".")[0]
+    return _TOPIC_OF.get(start, OTHERS)

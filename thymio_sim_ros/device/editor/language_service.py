@@ -19,7 +19,7 @@ from aseba_vm.languages import ENGLISH, texts
 from aseba_vm.messages import format_message
 from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros.device.editor.help import help_of
-from thymio_sim_ros.device.editor.help_order import rank
+from thymio_sim_ros.device.editor.help_order import OTHERS, TOPICS, rank, topic_of
 from thymio_sim_ros.device.editor.symbol_outline import outline
 from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.device.programs.program import (
@@ -91,7 +91,10 @@ def check(question: Question) -> dict[str, Any]:
 
 
 def describe_target(layout: str = THYMIO, language: str = ENGLISH) -> dict[str, Any]:
-    """What every program of a robot of this layout can use, the most useful first, and the limits it has to keep."""
+    """What every program of a robot of this layout can use, the most useful first, and the limits it has to keep.
+
+    `topics`: those of the help, in the order in which it lists them.
+    """
     memory = target(layout)
     return {
         "name": memory.name,
@@ -103,12 +106,17 @@ def describe_target(layout: str = THYMIO, language: str = ENGLISH) -> dict[str, 
                 "size": variable.size,
                 "address": memory.addresses[variable.name][0],
                 "hidden": is_hidden(variable.name),
+                "topic": topic_of(variable.name),
                 "help": help_of("variables", variable.name, language),
             }
             for variable in sorted(memory.variables, key=lambda variable: _rank("variables", variable.name))
         ],
         "events": [
-            {"name": event.name, "help": help_of("events", event.name, language, other=event.description)}
+            {
+                "name": event.name,
+                "topic": topic_of(event.name),
+                "help": help_of("events", event.name, language, other=event.description),
+            }
             for event in sorted(memory.local_events, key=lambda event: _rank("events", event.name))
         ],
         "natives": [
@@ -116,10 +124,12 @@ def describe_target(layout: str = THYMIO, language: str = ENGLISH) -> dict[str, 
                 "name": native.name,
                 "parameters": [{"name": parameter.name, "size": parameter.size} for parameter in native.parameters],
                 "hidden": is_hidden(native.name),
+                "topic": topic_of(native.name),
                 "help": help_of("natives", native.name, language, other=native.description),
             }
             for native in sorted(memory.natives, key=lambda native: _rank("natives", native.name))
         ],
+        "topics": [*TOPICS, OTHERS],
         "keywords": sorted(KEYWORDS),
         "limits": {
             "variables": memory.variables_size,
