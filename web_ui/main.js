@@ -145,6 +145,8 @@ async function main() {
   });
   const thumbnails = new ThumbnailCache((world) => scene.photograph(world));
 
+  const visit = visitOptions(location.search);
+  if (!visit.scene) document.body.dataset.scene = "off";
   let showTabs = () => {};
   let showBar = () => {};
   /** Create all texts in the current language. */
@@ -155,7 +157,7 @@ async function main() {
       setLanguage,
       address,
       announce,
-      visit: visitOptions(location.search),
+      visit,
       actions,
       store,
       scene,

@@ -16,7 +16,7 @@ export function bar(t, model) {
   const undo = button("undo", () => model.undo());
   const redo = button("redo", () => model.redo());
   const camera = button("camera", () => model.toggleCamera());
-  camera.append(t("bar.cameraLabel"));
+  camera.append(h("span", { class: "word" }, t("bar.cameraLabel")));
   const size = h("select", { class: "select quiet", "aria-label": t("bar.grid"), "data-verb": "grid" });
   size.append(...GRID_SIZES.map((meters) => h("option", { value: meters }, `${meters * 100} cm`)));
   size.addEventListener("change", () => model.setGrid({ size: Number(size.value) }));

@@ -113,7 +113,8 @@ export function filePanel({ session, labels, text: textOfPage, scene, report, an
   }
 
   return {
-    elements: [head, row, fault],
+    head,
+    elements: [row, fault],
     refuse,
     /** @param {File} file */
     open: (file) => void open(file),

@@ -65,8 +65,9 @@ export class Creator {
       side: h(
         "div",
         { class: "creator", role: "region", "aria-label": t("creator") },
-        ...this.files.elements,
+        this.files.head,
         tools.element,
+        ...this.files.elements,
         ...warnings.elements,
         form.element,
         sheet.element,

@@ -148,12 +148,12 @@ export class CreatorHost {
     const { context, session, creator } = this;
     if (context === null || session === null || creator === null) return;
     const { actions, store, text } = context;
-    const t = text("playground");
+    const playgroundText = text("playground");
     creator.refuse(null);
     await actions.loadPlayground(session.fileName, new TextEncoder().encode(session.text));
     const upload = store.state.uploads.playground;
     if (upload?.phase === "accepted") this.close();
-    else creator.refuse(faultView(t, t("playground.refused", { name: session.fileName }), upload?.fault ?? null));
+    else creator.refuse(faultView(playgroundText, playgroundText("playground.refused", { name: session.fileName }), upload?.fault ?? null));
   }
 
   #build() {

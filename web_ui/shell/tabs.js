@@ -58,9 +58,7 @@ export function fillTabs(list, { text, workspace }) {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
     if (step === undefined || at < 0) return;
     event.preventDefault();
-    const { tab, button } = shown[(at + step + shown.length) % shown.length];
-    if (workspace.tab !== null) workspace.select(tab);
-    button.focus();
+    shown[(at + step + shown.length) % shown.length].button.focus(); // Enter opens it
   });
 
   const show = () => {

@@ -17,7 +17,7 @@ function placeOfNotices() {
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function noticesPanel({ text, store }) {
-  const t = text("page");
+  const pageText = text("page");
   const element = h("div", { class: "notices", role: "alert" });
   /** @type {import("../state/index.js").Notice[] | null} */ let shown = null;
   /** @type {Map<number, ReturnType<typeof setTimeout>>} */ const ends = new Map();
@@ -59,7 +59,7 @@ export function noticesPanel({ text, store }) {
             h("p", { class: "grow" }, text),
             h(
               "button",
-              { type: "button", class: "btn icon", "aria-label": t("notice.dismiss"), onclick: () => dismiss(id) },
+              { type: "button", class: "btn icon", "aria-label": pageText("notice.dismiss"), onclick: () => dismiss(id) },
               icon("close"),
             ),
           ),
