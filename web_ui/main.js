@@ -111,7 +111,12 @@ async function main() {
     wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
-  const actions = new Actions({ client, store, t: (key, values) => text("page")(key, values), language: () => pageLanguage.language });
+  const actions = new Actions({
+    client,
+    store,
+    t: (key, values) => text("page")(key, values),
+    language: () => pageLanguage.language,
+  });
   const speaker = new Speaker({
     createContext: "AudioContext" in window ? () => new AudioContext() : null,
     muted: localStore.getItem(MUTED_KEY) === "true",

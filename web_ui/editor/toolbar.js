@@ -29,7 +29,14 @@ export function toolbar(t, commands, draftLabel) {
     const words = worded ? [h("span", {}, t(`editor.${name}`))] : [];
     return h(
       "button",
-      { type: "button", class: worded ? "btn line slim" : "btn icon", title, "aria-label": t(`editor.${name}`), "data-verb": name, onclick: act },
+      {
+        type: "button",
+        class: worded ? "btn line slim" : "btn icon",
+        title,
+        "aria-label": t(`editor.${name}`),
+        "data-verb": name,
+        onclick: act,
+      },
       icon(drawing, { small: true }),
       ...words,
     );
@@ -50,8 +57,11 @@ export function toolbar(t, commands, draftLabel) {
   /** @param {string} name @param {string} sign @param {number} step */
   const sizer = (name, sign, step) => {
     const title = t(`editor.${name}`);
-    const attributes = { type: "button", class: "btn icon", title, "aria-label": `${sign} ${title}`, onclick: () => commands.resize(step) };
-    return h("button", attributes, sign);
+    return h(
+      "button",
+      { type: "button", class: "btn icon", title, "aria-label": `${sign} ${title}`, onclick: () => commands.resize(step) },
+      sign,
+    );
   };
   const element = h(
     "div",

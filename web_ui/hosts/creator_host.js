@@ -153,7 +153,10 @@ export class CreatorHost {
     await actions.loadPlayground(session.fileName, new TextEncoder().encode(session.text));
     const upload = store.state.uploads.playground;
     if (upload?.phase === "accepted") this.close();
-    else creator.refuse(faultView(playgroundText, playgroundText("playground.refused", { name: session.fileName }), upload?.fault ?? null));
+    else {
+      const headline = playgroundText("playground.refused", { name: session.fileName });
+      creator.refuse(faultView(playgroundText, headline, upload?.fault ?? null));
+    }
   }
 
   #build() {

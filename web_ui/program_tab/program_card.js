@@ -30,7 +30,13 @@ export function programPanel(context) {
     verb,
     button: h(
       "button",
-      { type: "button", class: "btn line slim", "data-program": verb, title: t(`program.${verb}`), onclick: () => actions.program(verb) },
+      {
+        type: "button",
+        class: "btn line slim",
+        "data-program": verb,
+        title: t(`program.${verb}`),
+        onclick: () => void actions.program(verb),
+      },
       icon(drawing),
       t(`program.${verb}`),
     ),
@@ -86,7 +92,11 @@ export function programPanel(context) {
           "div",
           { class: "row" },
           h("small", {}, t("program.keeps")),
-          h("button", { type: "button", class: "btn you", onclick: () => void host.openText(now.name, now.text) }, t("program.edit")),
+          h(
+            "button",
+            { type: "button", class: "btn you", onclick: () => void host.openText(now.name, now.text) },
+            t("program.edit"),
+          ),
         ),
       );
     }

@@ -22,7 +22,14 @@ export function timePanel({ text, actions, store, announce }) {
   });
   const step = h(
     "button",
-    { type: "button", class: "btn", "data-verb": "step", title: t("time.stepHelp"), onclick: () => actions.step(Number(length.value)) },
+    {
+      type: "button",
+      class: "btn",
+      "data-verb": "step",
+      title: t("time.stepHelp"),
+      "aria-label": t("time.step"),
+      onclick: () => actions.step(Number(length.value)),
+    },
     icon("step"),
     h("span", { class: "word" }, t("time.step")),
   );
@@ -33,7 +40,14 @@ export function timePanel({ text, actions, store, announce }) {
   );
   const reset = h(
     "button",
-    { type: "button", class: "btn slim", "data-verb": "reset", title: t("time.reset"), "aria-label": t("time.reset"), onclick: () => actions.reset() },
+    {
+      type: "button",
+      class: "btn slim",
+      "data-verb": "reset",
+      title: t("time.reset"),
+      "aria-label": t("time.reset"),
+      onclick: () => actions.reset(),
+    },
     icon("reset"),
     h("span", { class: "word" }, t("time.reset")),
   );

@@ -173,7 +173,8 @@ export function moreStimuli({ text, actions, store }) {
 /** The pen in the hole between the wheels. @param {import("../../i18n/index.js").Translate} t @param {Context["actions"]} actions */
 function pen(t, actions) {
   const color = h("input", { type: "color", value: "#c0182a", "aria-label": t("pen.color"), title: t("pen.color") });
-  const width = h("input", { type: "number", class: "input", min: 1, max: 100, step: 1, value: 10, "aria-label": t("pen.width") });
+  const range = { min: 1, max: 100, step: 1, value: 10 };
+  const width = h("input", { type: "number", class: "input", "aria-label": t("pen.width"), ...range });
   const choose = (/** @type {string} */ tool) => {
     if (width.value !== "" && width.checkValidity()) {
       actions.operate("_pen/width", "std_msgs/msg/Float32", { data: Number(width.value) / 1000 });
