@@ -94,7 +94,7 @@ test("a program goes to the selected robot, to all, or to the only one", async (
   store.dispatch({ type: "address", all: true });
   const released = ["robots.a.script.path", "robots.a.script.source", "robots.b.script.path", "robots.b.script.source"];
   assert.deepEqual(await namesAfter(() => actions.load("z.aesl", "z")), [...released, "script.name", "script.source"]);
-  assert.deepEqual(await namesAfter(() => actions.loadExample("explorer")), [...released, "behaviour"]);
+  assert.deepEqual(await namesAfter(() => actions.loadExample("explorer")), [...released, "behaviour", "behaviour"]);
 });
 
 test("stop ends every program first, and then sets every speed to zero", async () => {
@@ -223,8 +223,17 @@ test("loading the same again restarts programs, because setting the same value h
     ],
   );
   await actions.loadExample("menu");
+  assert.deepEqual(
+    asked.splice(0).map(([, given]) => given.at(-1)),
+    [
+      { name: "/aseba_runtime.behaviour", value: "" },
+      { name: "/aseba_runtime.behaviour", value: "menu" },
+    ],
+  );
+  connect(store, ["/a/_ground_truth/odom"], []);
   await actions.loadExample("menu");
-  assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/b/aseba/reset", "/a/aseba/run", "/b/aseba/run"]);
+  await actions.loadExample("menu");
+  assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/a/aseba/run"]);
 });
 
 test("a rejected program is explained in the language of the page", async () => {

@@ -72,7 +72,7 @@ def test_one_finger_turns_the_view_and_two_zoom_it(suite, tablet):
     wait_for_position(tablet, "robot")
     turned = corners(tablet)
     touches.start(a=(60, 300), b=(100, 340))
-    touches.move(a=(20, 260), b=(200, 440))
+    touches.move(a=(40, 280), b=(140, 380))
     touches.end()
     tablet.wait_for_function(ZOOMED, arg=1.2 * math.dist(*turned))
 

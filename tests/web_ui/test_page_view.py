@@ -58,6 +58,7 @@ def test_a_context_that_is_not_restored_switches_to_2d(suite, page):
 
 
 def test_the_view_is_saved_as_an_image_and_the_robot_view_works(suite, page):
+    page.set_viewport_size({"width": 888, "height": 700})  # the view is as wide as the window
     open_page(page, suite(*RESTING))
     wait_for_position(page, "robot")
     open_menu(page, "[data-view=look]")

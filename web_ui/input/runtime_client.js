@@ -99,11 +99,15 @@ export class RuntimeClient {
    */
   async loadBuiltIn(robot, name, robots) {
     const owner = name === MENU ? null : robot;
-    const answer = await this.client.setParameters([
-      ...this.#released(owner, robots),
-      owner === null ? { name: `${RUNTIME}behaviour`, value: name } : { name: `${prefix(owner)}script.path`, value: name },
-    ]);
-    if (answer.ok) await this.#restartPrograms(owner, `behavior ${name}`, robots);
+    const isForSeveral = owner === null && robots.length > 1;
+    if (isForSeveral) {
+      // Some of them may have left the common behavior: ended first, it starts again on all.
+      await this.client.setParameters([...this.#released(null, robots), { name: `${RUNTIME}behaviour`, value: "" }]);
+    }
+    const parameter = owner === null ? `${RUNTIME}behaviour` : `${prefix(owner)}script.path`;
+    const answer = await this.client.setParameters([{ name: parameter, value: name }]);
+    if (isForSeveral) this.last.clear();
+    else if (answer.ok) await this.#restartPrograms(owner, `behavior ${name}`, robots);
     return answer;
   }
 
