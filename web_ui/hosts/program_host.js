@@ -5,6 +5,7 @@
 //
 //   element           its element in the tab
 //   start()           called once, when it has been added to the page
+//   show()            called when the tab is shown again: sizes were unknown while it was hidden
 //   redraw()          draws with the next frame
 //   openText(name, text)   opens a program
 //   openFile(file)    opens a program file
