@@ -211,7 +211,7 @@ export class Editor {
     this.head.render(file);
     this.markers.render();
     this.status.render(selection.status?.values ?? {}, simulator?.paused ?? false, this.checker.verdict?.use);
-    this.bar.render(workspace.fileStore.recent(), session.state.behaviors, reason);
+    this.bar.render(workspace.fileStore.recent(), store.state.behaviors, reason);
     this.tools.render({
       robot: selection.robot,
       target: selection.target,
