@@ -93,8 +93,26 @@ def test_no_sentence_is_left_in_english(language: str, file: str) -> None:
 
 # -- the page ----------------------------------------------------------------------------------------------------------
 
-PARTS = ("creator", "editor", "tour")
-"""Folders of the page with a file of texts of their own; all other folders use page.json."""
+PARTS = {
+    "creator": "creator",
+    "editor": "editor",
+    "examples": "examples",
+    "playground_tab": "playground",
+    "program_tab": "program",
+    "robot_tab": "robot",
+    "shell": "stage",
+    "stage": "stage",
+    "state/program_status.js": "program",
+    "tour": "tour",
+}
+"""Folders and modules of the page, and the file of texts that `t` means there; elsewhere it is page.json."""
+OTHER_FILES = {"pageText": "page", "playgroundText": "playground", "programText": "program"}
+"""Names of the texts of other files."""
+
+
+def texts_of(name: str) -> str:
+    """The file of texts that `t` means in a module."""
+    return next((file for start, file in PARTS.items() if name == start or name.startswith(f"{start}/")), "page")
 
 
 def sources() -> Iterator[tuple[str, str]]:
@@ -110,8 +128,8 @@ def test_every_text_that_the_page_names_exists() -> None:
         (name, file, key)
         for name, source in sources()
         for file, pattern in (
-            (name.split("/")[0] if name.startswith(PARTS) else "page", r'\bt\("([^"]+)"'),
-            ("page", r'\bpageText\("([^"]+)"'),
+            (texts_of(name), r'\bt\("([^"]+)"'),
+            *((file, rf'\b{word}\("([^"]+)"') for word, file in OTHER_FILES.items()),
             ("creator", r'\bword: "([^"]+)"'),
         )
         for key in re.findall(pattern, source)
@@ -120,7 +138,7 @@ def test_every_text_that_the_page_names_exists() -> None:
     assert {(name, file, key) for name, file, key in uses if key not in texts(file)} == set()
 
 
-@pytest.mark.parametrize("file", ["page", *PARTS])
+@pytest.mark.parametrize("file", sorted({"page", *PARTS.values()}))
 def test_the_page_uses_every_text(file: str) -> None:
     """A key occurs as a string, or fits a template string such as `button.${name}`."""
     everything = "\n".join(source for _, source in sources())
@@ -187,11 +205,11 @@ def test_the_page_offers_a_language_whose_folder_was_added(tmp_path: Path) -> No
     program = """
         import { LANGUAGES, translator } from "./i18n/index.js";
         const t = translator("zz");
-        console.log(JSON.stringify([LANGUAGES.zz, t("stop"), t("program.run")]));
+        console.log(JSON.stringify([LANGUAGES.zz, t("stop"), t("theme.dark")]));
     """
     command = [str(node.folder / "node"), "--input-type=module", "--eval", program]
     done = subprocess.run(command, cwd=tmp_path / "web_ui", capture_output=True, text=True, check=True)
-    assert json.loads(done.stdout) == ["Zzish", "Haltu", "Run"]
+    assert json.loads(done.stdout) == ["Zzish", "Haltu", "Dark"]
     assert build.script(tmp_path / "web_ui", "build") == 0
     scripts = list((tmp_path / "web_ui" / "dist" / "assets").glob("index-*.js"))
     assert any("Zzish" in script.read_text(encoding="utf-8") for script in scripts)

@@ -7,31 +7,43 @@
 //   DragController   moving robots and objects in the view
 //   Speaker          sound
 //   PageLanguage     language and texts
-//   PanelHost, EditorHost, CreatorHost, TourHost    parts of the page
+//   Theme, MotionSetting    how the page looks and moves
+//   Workspace, Frame        the open tab, and the layout of the page
+//   PanelHost, ProgramHost, CreatorHost, TourHost    parts of the page
 
-import { exposeForTests } from "./browser/test_access.js";
-import { resolveToken, tokenIn } from "./browser/access_token.js";
+import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
 import { localStore, tabStore } from "./browser/local_storage.js";
-import { ThumbnailCache } from "./gallery/thumbnail_cache.js";
+import { MotionSetting } from "./browser/motion_setting.js";
+import { exposeForTests } from "./browser/test_access.js";
+import { Theme } from "./browser/theme.js";
+import { visitOptions } from "./browser/visit_options.js";
+import { MUTED_KEY } from "./header/sound.js";
 import { CreatorHost } from "./hosts/creator_host.js";
-import { EditorHost } from "./hosts/editor_host.js";
-import { PanelHost } from "./hosts/panel_host.js";
+import { ProgramHost } from "./hosts/program_host.js";
 import { TourHost } from "./hosts/tour_host.js";
 import { PageLanguage } from "./i18n/page_language.js";
 import { Actions, isProgram } from "./input/actions.js";
 import { watchKeyboard } from "./input/keyboard.js";
 import { DragController } from "./move/drag_controller.js";
-import { GraphicsNotice } from "./panels/graphics_notice.js";
-import { MUTED_KEY } from "./panels/sound.js";
 import { fetchShapes } from "./playground/declarations.js";
 import { registerShapes } from "./playground/kinds/index.js";
+import { ThumbnailCache } from "./playground_tab/thumbnail_cache.js";
 import { bridgeAddress } from "./protocol/bridge_address.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
+import { fillBottomBar } from "./shell/bottom_bar.js";
+import { Frame } from "./shell/frame.js";
+import { watchGrip } from "./shell/grip.js";
+import { PanelHost } from "./shell/panel_host.js";
+import { fillTabs } from "./shell/tabs.js";
+import { fillTexts } from "./shell/texts.js";
+import { Workspace } from "./shell/workspace.js";
 import { Speaker } from "./sound/speaker.js";
+import { GraphicsNotice } from "./stage/graphics_notice.js";
 import { isWatched, PARAMETERS, subscriptionKey } from "./state/names.js";
 import { Store } from "./state/store.js";
+import { isSomethingOpen } from "./ui/sheet.js";
 
 /** @param {string} selector @returns {HTMLElement} */
 function element(selector) {
@@ -76,34 +88,35 @@ async function main() {
   if (shapes !== null) registerShapes(shapes); // before the first playground is read
   const store = new Store();
   const pageLanguage = new PageLanguage(navigator.languages);
-  const { t } = pageLanguage;
+  const { text } = pageLanguage;
   const redraw = () => scene.invalidate();
+  const root = document.documentElement;
+  const theme = new Theme({ storage: localStore, systemIsDark: matchMedia("(prefers-color-scheme: dark)"), root });
+  const systemIsCalm = matchMedia("(prefers-reduced-motion: reduce)");
+  const motion = new MotionSetting({ storage: localStore, systemIsCalm, root });
+  const workspace = new Workspace(localStore);
+  const frame = new Frame({ element, workspace });
 
-  const editor = new EditorHost({
-    slot: element('[data-slot="editor"]'),
-    client: () => client,
-    changed: () => {
-      if (editor.isOpen) creator.close();
-      redraw();
-    },
-  });
-  const creator = new CreatorHost({
-    slot: (name) => element(`[data-slot="${name}"]`),
-    scene: () => scene,
-  });
+  const program = new ProgramHost({ slot: element("#panel-program"), client: () => client });
+  const creator = new CreatorHost({ element, scene: () => scene });
   const tour = new TourHost();
-  const panels = new PanelHost(element);
+  const panels = new PanelHost(element, workspace);
   const client = new Client({
     address,
     token,
     emit: (event) => {
       store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event);
-      editor.receive(event, store.state.selected);
+      program.receive(event, store.state.selected);
     },
-    wants: (topic) => isWatched(store.state, topic) || editor.wants(topic),
+    wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
-  const actions = new Actions({ client, store, t, language: () => pageLanguage.language });
+  const actions = new Actions({
+    client,
+    store,
+    t: (key, values) => text("page")(key, values),
+    language: () => pageLanguage.language,
+  });
   const speaker = new Speaker({
     createContext: "AudioContext" in window ? () => new AudioContext() : null,
     muted: localStore.getItem(MUTED_KEY) === "true",
@@ -113,9 +126,9 @@ async function main() {
     state: () => store.state,
     place: (name, pose) => actions.place(name, pose),
     changed: redraw,
-    report: (key, values) => announce(t(key, values)),
+    report: (key, values) => announce(text("page")(key, values)),
   });
-  const graphics = new GraphicsNotice(element("#trouble"), t);
+  const graphics = new GraphicsNotice(element("#trouble"), (key) => text("page")(key));
   const scene = new SceneView({
     canvas: canvasElement("#view"),
     flatCanvas: canvasElement("#flat"),
@@ -132,18 +145,43 @@ async function main() {
       actions.press(robot, button, pressed);
     },
     dragController,
-    robotTitle: (name) => name || t("app.robot"),
+    robotTitle: (name) => name || text("page")("app.robot"),
     contextLost: (trouble) => graphics.set(trouble),
   });
   const thumbnails = new ThumbnailCache((world) => scene.photograph(world));
 
+  const visit = visitOptions(location.search);
+  if (!visit.scene) document.body.dataset.scene = "off";
+  let showTabs = () => {};
+  let showBar = () => {};
   /** Create all texts in the current language. */
   const build = () => {
-    const { language, translate } = pageLanguage;
-    const parts = { actions, store, scene, dragController, speaker, editor, creator, tour, thumbnails };
-    const context = { t: translate, language, setLanguage, address, announce, ...parts };
+    const context = {
+      text,
+      language: pageLanguage.language,
+      setLanguage,
+      address,
+      announce,
+      visit,
+      actions,
+      store,
+      scene,
+      dragController,
+      speaker,
+      workspace,
+      frame,
+      theme,
+      motion,
+      program,
+      creator,
+      tour,
+      thumbnails,
+    };
+    fillTexts(element, context);
+    showTabs = fillTabs(element("#tabs"), context);
+    showBar = fillBottomBar(element("#bar"), context);
     panels.build(context);
-    for (const host of [editor, creator, tour]) host.setContext(context);
+    for (const host of [program, creator, tour]) host.setContext(context);
     if (scene.renderer === null) graphics.set("gone");
     else graphics.render();
     redraw();
@@ -153,25 +191,37 @@ async function main() {
     pageLanguage.choose(language);
     build();
   };
+  /** Follow the workspace: hosts work only while their tab is shown. */
+  const followWorkspace = () => {
+    showTabs();
+    showBar();
+    void program.setVisible(workspace.tab === "program");
+    creator.setVisible(workspace.tab === "playground");
+    redraw();
+  };
 
   build();
+  watchGrip(element("#grip"), workspace, frame);
+  frame.subscribe(followWorkspace);
+  theme.subscribe(redraw);
+  motion.subscribe(redraw);
   store.subscribe(redraw);
-  store.subscribe(() => editor.redraw());
+  store.subscribe(() => program.redraw());
   store.subscribe(() => speaker.update(store.state));
   watchSubscriptions(store, client);
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
-  watchKeyboard(scene.canvas, scene, dragController, (button, pressed) =>
-    actions.press(store.state.selected, button, pressed),
-  );
+  watchKeyboard(scene.canvas, scene, dragController, (button, pressed) => actions.pressPad(button, pressed));
   watchDrops(element("#drop"), (file) => {
     if (creator.isOpen && !isProgram(file)) creator.openFile(file);
-    else if (editor.isOpen && isProgram(file)) void editor.editor?.commands.open(file);
+    else if (program.isOpen && isProgram(file)) void program.openFile(file);
     else void actions.loadFile(file);
   });
   window.addEventListener("keydown", ({ key }) => {
-    if (key === "Escape" && store.state.connection === "connected") void actions.stop();
+    if (key !== "Escape" || isSomethingOpen()) return; // it closes what is open first
+    if (store.state.connection === "connected") void actions.stop();
   });
   client.start();
+  followWorkspace();
   tour.start();
   exposeForTests({ store, scene, dragController, creator });
 }

@@ -21,7 +21,8 @@ function prepared({ ok = true, message = "", value = /** @type {any} */ (undefin
     },
   };
   const store = new Store();
-  const actions = new Actions({ client: /** @type {any} */ (client), store, t: (key) => key, language: () => "de" });
+  const options = { client: /** @type {any} */ (client), store, t: (/** @type {string} */ key) => key, language: () => "de" };
+  const actions = new Actions({ ...options, later: (act) => act() });
   return { actions, asked, store };
 }
 
@@ -41,17 +42,65 @@ test("a button press is published to its robot", () => {
   ]);
 });
 
+test("a button of the pad goes to the addressed robots, and is released where it was pressed", () => {
+  const { actions, asked, store } = prepared();
+  connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
+  store.dispatch({ type: "address", all: true });
+  actions.pressPad("left", true);
+  store.dispatch({ type: "select", robot: "b" });
+  actions.pressPad("left", false);
+  assert.deepEqual(
+    asked.map(([, topic, , { data }]) => `${topic} ${data}`),
+    ["/a/_press/left true", "/b/_press/left true", "/a/_press/left false", "/b/_press/left false"],
+  );
+});
+
 test("a stimulus is published to the selected robot", () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
   store.dispatch({ type: "select", robot: "b" });
   actions.operate("_press/clap", "std_msgs/msg/Float32", { data: 1 });
-  assert.deepEqual(asked, [["publish", "/b/_press/clap", "std_msgs/msg/Float32", { data: 1 }]]);
+  assert.deepEqual(asked.splice(0), [["publish", "/b/_press/clap", "std_msgs/msg/Float32", { data: 1 }]]);
+  store.dispatch({ type: "address", all: true });
+  actions.operate("_press/tap", "std_msgs/msg/Empty", {});
+  assert.deepEqual(
+    asked.map(([, topic]) => topic),
+    ["/a/_press/tap", "/b/_press/tap"],
+  );
+});
+
+test("of several robots, only the selected one is stopped", async () => {
+  const { actions, asked, store } = prepared();
+  connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], ["/a/aseba/stop", "/b/aseba/stop"]);
+  store.dispatch({ type: "select", robot: "b" });
+  await actions.stop();
+  assert.deepEqual(
+    asked.map(([, name]) => name),
+    ["/b/aseba/stop", "/b/cmd_vel"],
+  );
+});
+
+test("a program goes to the selected robot, to all, or to the only one", async () => {
+  const { actions, asked, store } = prepared();
+  /** @param {() => Promise<any>} act  @returns {Promise<string[]>} */
+  const namesAfter = async (act) => {
+    await act();
+    return asked.splice(0).flatMap(([, given]) => given.map((/** @type {any} */ { name }) => name.replace("/aseba_runtime.", "")));
+  };
+  assert.deepEqual(await namesAfter(() => actions.load("x.aesl", "x")), ["script.name", "script.source"]);
+  connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
+  assert.deepEqual(await namesAfter(() => actions.load("y.aesl", "y")), ["robots.a.script.name", "robots.a.script.source"]);
+  assert.deepEqual(await namesAfter(() => actions.loadExample("explorer")), ["robots.a.script.path"]);
+  store.dispatch({ type: "address", all: true });
+  const released = ["robots.a.script.path", "robots.a.script.source", "robots.b.script.path", "robots.b.script.source"];
+  assert.deepEqual(await namesAfter(() => actions.load("z.aesl", "z")), [...released, "script.name", "script.source"]);
+  assert.deepEqual(await namesAfter(() => actions.loadExample("explorer")), [...released, "behaviour", "behaviour"]);
 });
 
 test("stop ends every program first, and then sets every speed to zero", async () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], ["/a/aseba/stop", "/b/aseba/stop", "/a/aseba/run"]);
+  store.dispatch({ type: "address", all: true });
   await actions.stop();
   assert.deepEqual(
     asked.map(([kind, name]) => `${kind} ${name}`),
@@ -148,13 +197,14 @@ test("a simulator that cannot move objects is reported", async () => {
 
 test("a behavior is a parameter of the runtime", async () => {
   const { actions, asked } = prepared();
-  await actions.setBehavior("menu");
+  await actions.loadExample("menu");
   assert.deepEqual(asked, [["set", [{ name: "/aseba_runtime.behaviour", value: "menu" }]]]);
 });
 
 test("loading the same again restarts programs, because setting the same value has no effect", async () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
+  store.dispatch({ type: "address", all: true });
   store.dispatch({ type: "parameters", parameters: [{ name: "/simulator.playground", value: "base" }] });
   await actions.loadPlayground("base");
   assert.deepEqual(asked.splice(0).map(([, name]) => name).slice(1), ["/simulator/reset"]);
@@ -172,9 +222,18 @@ test("loading the same again restarts programs, because setting the same value h
       "/b/aseba/run",
     ],
   );
-  await actions.setBehavior("menu");
-  await actions.setBehavior("menu");
-  assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/b/aseba/reset", "/a/aseba/run", "/b/aseba/run"]);
+  await actions.loadExample("menu");
+  assert.deepEqual(
+    asked.splice(0).map(([, given]) => given.at(-1)),
+    [
+      { name: "/aseba_runtime.behaviour", value: "" },
+      { name: "/aseba_runtime.behaviour", value: "menu" },
+    ],
+  );
+  connect(store, ["/a/_ground_truth/odom"], []);
+  await actions.loadExample("menu");
+  await actions.loadExample("menu");
+  assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/a/aseba/run"]);
 });
 
 test("a rejected program is explained in the language of the page", async () => {

@@ -82,7 +82,7 @@ def other_page(browser) -> Iterator[Any]:
 
 def checked_page(browser: Any, **options: Any) -> Iterator[Any]:
     """A page with its own browser profile; asserts at the end that there were no problems."""
-    options = {"viewport": {"width": 800, "height": 600}, "bypass_csp": True} | options  # waiting evaluates
+    options = {"viewport": {"width": 1024, "height": 768}, "bypass_csp": True} | options  # waiting evaluates
     page = browser.new_page(**options)
     page.set_default_timeout(DEADLINE_MS)
     problems: list[str] = []

@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { firstFault } from "../../web_ui/editor/checking.js";
 import { HelpTexts } from "../../web_ui/editor/help_texts.js";
-import { RuntimeClient } from "../../web_ui/editor/runtime_client.js";
+import { RuntimeClient } from "../../web_ui/input/runtime_client.js";
 
 const TARGET = /** @type {any} */ ({
   variables: [{ name: "acc", size: 3, address: 0, hidden: false, help: "accelerometer" }],

@@ -7,7 +7,7 @@ import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
 import { repairLabel } from "../../web_ui/editor/hint.js";
 import { History } from "../../web_ui/editor/history.js";
-import { RuntimeClient } from "../../web_ui/editor/runtime_client.js";
+import { RuntimeClient } from "../../web_ui/input/runtime_client.js";
 import { csv, parseNumbers } from "../../web_ui/editor/numbers.js";
 import { roundStep } from "../../web_ui/editor/plot.js";
 import { INITIAL, MAX_LOGGED_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
@@ -374,7 +374,9 @@ test("a program for all replaces the programs of single robots", async () => {
     asked.map((given) => given.map((/** @type {any} */ each) => `${each.name}=${each.value}`)),
     [
       [
+        "/aseba_runtime.robots.anna.script.path=",
         "/aseba_runtime.robots.anna.script.source=",
+        "/aseba_runtime.robots.paul.script.path=",
         "/aseba_runtime.robots.paul.script.source=",
         "/aseba_runtime.script.name=a.aesl",
         "/aseba_runtime.script.source=x",

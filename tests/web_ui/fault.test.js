@@ -2,8 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
-import pageTexts from "../../web_ui/i18n/page.texts.js";
-import { faultText, isForeign, refusalOf } from "../../web_ui/panels/fault.js";
+import playgroundTexts from "../../web_ui/i18n/playground.texts.js";
+import { faultText, isForeign, refusalOf } from "../../web_ui/playground_tab/refusal.js";
 import { locate } from "../../web_ui/state/index.js";
 
 /** What the simulator's readers answer to files of another kind. */
@@ -22,8 +22,8 @@ for (const message of FOREIGN) {
   test(`'${message}' is shown in plain words, in every language`, () => {
     const fault = locate(`/simulator.playground: ${message}`, "a.json");
     for (const language of Object.keys(LANGUAGES)) {
-      const said = faultText(translator(language), fault);
-      assert.equal(said, pageTexts[language]["fault.notPlayground"] ?? pageTexts.en["fault.notPlayground"]);
+      const said = faultText(translator(language, playgroundTexts), fault);
+      assert.equal(said, playgroundTexts[language]["fault.notPlayground"] ?? playgroundTexts.en["fault.notPlayground"]);
       assert.ok(!/Expecting|JSON|None|byte/.test(said));
     }
   });

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import { test } from "node:test";
 
+import programTexts from "../../web_ui/i18n/program.texts.js";
 import { chooseLanguage, LANGUAGES, translator } from "../../web_ui/i18n/index.js";
 
 const FOLDER = new URL("../../aseba_vm/languages/", import.meta.url);
@@ -20,7 +21,7 @@ test("the first available language is chosen", () => {
 
 test("values are filled in", () => {
   assert.equal(
-    translator("en")("program.refusedAt", { name: "a", line: 1, column: 2 }),
+    translator("en", programTexts)("program.refusedAt", { name: "a", line: 1, column: 2 }),
     "a was not loaded: line 1, column 2",
   );
 });

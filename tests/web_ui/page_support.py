@@ -56,17 +56,69 @@ def drop_file(page: Any, path: Path, selector: str) -> None:
         developer.send("Input.dispatchDragEvent", {"type": kind, "data": data} | place)
 
 
-def without_tour(address: str) -> str:
-    """The address with the tour disabled, as for a kiosk."""
-    return f"{address}{'&' if '?' in address else '?'}tour=off"
+def without_welcome(address: str) -> str:
+    """The address with tour and welcome disabled, as for a kiosk."""
+    return f"{address}{'&' if '?' in address else '?'}tour=off&welcome=off"
 
 
-def open_page(page: Any, address: str) -> None:
-    """Load the page as soon as the suite answers, and wait for the robot and the state of the simulator."""
+def open_page(page: Any, address: str, *, unfold: bool = True) -> None:
+    """Load the page as soon as the suite answers, and wait for the robot and the state of the simulator.
+
+    In a low window the tray with the robot's buttons is folded; `unfold` unfolds it.
+    """
     wait_for_port(urlsplit(address).port or 80)
-    page.goto(without_tour(address))
+    page.goto(without_welcome(address))
     page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
     page.wait_for_function("window.thymio.state().simulator !== null")
+    if unfold:
+        page.evaluate("() => document.querySelector('#tray[data-folded] #tray-unfold')?.click()")
+
+
+def open_tab(page: Any, name: str) -> None:
+    """Open a tab of the workspace, on phones in the bar at the bottom: robot, program, playground or class."""
+    page.locator(f"#tab-{name}, #bar-{name}").locator("visible=true").click()
+    page.locator(f"#panel-{name}").wait_for()
+
+
+def open_menu(page: Any, button: str) -> None:
+    """Open the menu or sheet of a button, unless it is open."""
+    locator = page.locator(button)
+    if locator.get_attribute("aria-expanded") != "true":
+        locator.click()
+    page.wait_for_function("(button) => document.querySelector(button).ariaExpanded === 'true'", arg=button)
+
+
+def open_hands(page: Any) -> None:
+    """Open the sheet with the stimuli that have values."""
+    open_menu(page, "#hands-more")
+
+
+def open_editor(page: Any) -> None:
+    """Open the tab of the program, and wait for the text."""
+    open_tab(page, "program")
+    page.locator(".cm-content").wait_for()
+
+
+def build_playground(page: Any) -> None:
+    """Open the creator."""
+    open_tab(page, "playground")
+    if not page.locator(".palette").is_visible():
+        page.click("[data-build]")
+    page.locator(".palette").wait_for()
+
+
+def choose_robot(page: Any, name: str) -> None:
+    """Choose a robot by its name, or all of them by `*`."""
+    open_menu(page, "#robot-chooser")
+    page.locator(f"#robot-menu [data-robot='{name}']").click()
+
+
+def choose_language(page: Any, language: str) -> None:
+    """Choose the language, on phones in the sheet of the settings."""
+    if page.locator("#settings-open").is_visible():
+        open_menu(page, "#settings-open")
+    page.select_option("select.language", language)
+    page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
 
 
 def wait_for_program(page: Any, name: str) -> None:

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { asText, groupsOf } from "../../web_ui/panels/sensor_rows.js";
+import { asText, groupsOf } from "../../web_ui/robot_tab/sensor_rows.js";
 import { valueLabelsOf } from "../../web_ui/scene/value_labels.js";
 import { Quality } from "../../web_ui/scene/quality.js";
 import { robotColor } from "../../web_ui/state/robot_colors.js";

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { INITIAL, locate, programOf, reduce, snapshot } from "../../web_ui/state/index.js";
+import { INITIAL, locate, programOf, reduce, snapshot, targets } from "../../web_ui/state/index.js";
 import { Store } from "../../web_ui/state/store.js";
 import { applyMarkers } from "../../web_ui/state/markers.js";
 import { isWatched, splitTopic, subscriptionKey } from "../../web_ui/state/names.js";
@@ -384,4 +384,15 @@ test("fallen robots are listed by their names in topics", () => {
   ];
   const { simulator } = after([message("/simulator/_state", json({ playground: "table", robots }))]);
   assert.deepEqual(simulator?.fallen, [""]);
+});
+
+test("actions go to the selected robot, or to all of several until one is selected", () => {
+  const two = reduce(INITIAL, { type: "channels", topics: ["/a/_ground_truth/odom", "/b/_ground_truth/odom"] });
+  assert.deepEqual(targets(two), ["a"]);
+  const all = reduce(two, { type: "address", all: true });
+  assert.deepEqual([targets(all), all.selected], [["a", "b"], "a"]);
+  assert.deepEqual(targets(reduce(all, { type: "select", robot: "b" })), ["b"]);
+  const one = reduce(all, { type: "channels", topics: ["/a/_ground_truth/odom"] });
+  assert.deepEqual([one.toAll, targets(one)], [false, ["a"]]);
+  assert.equal(reduce(one, { type: "address", all: true }).toAll, false);
 });

@@ -7,7 +7,7 @@ import { test } from "node:test";
 const ROOT = new URL("../../web_ui/", import.meta.url);
 /** Lazily loaded parts: their sheet, and the files and folders that belong to them. */
 const PARTS = [
-  { sheet: "editor/editor.css", own: ["editor/", "hosts/editor_host.js"] },
+  { sheet: "editor/editor.css", own: ["editor/", "hosts/program_host.js"] },
   { sheet: "creator/creator.css", own: ["creator/", "hosts/creator_host.js"] },
   { sheet: "tour/tour.css", own: ["tour/", "hosts/tour_host.js"] },
 ];
@@ -56,3 +56,14 @@ for (const { sheet, own } of PARTS) {
     assert.deepEqual(loose, []);
   });
 }
+
+test("colors are written in the sheet of the tokens only", () => {
+  const sheets = readdirSync(ROOT, { recursive: true })
+    .map(String)
+    .filter((name) => name.endsWith(".css") && !/^(node_modules|dist)\b/.test(name) && name !== "styles/tokens.css");
+  assert.ok(sheets.length > 8);
+  const found = sheets.flatMap((name) =>
+    [...read(name).matchAll(/[:\s(](#[0-9a-f]{3,8}\b|(?:rgb|hsl)a?\()[^;]*/gi)].map(([text]) => `${name}: ${text.trim()}`),
+  );
+  assert.deepEqual(found, []);
+});

@@ -15,7 +15,11 @@ from tests.web_ui.conftest import DEADLINE_MS, LOCAL
 from tests.web_ui.page_support import (
     MARKS,
     TouchPoints,
+    build_playground,
+    choose_language,
+    open_editor,
     open_page,
+    open_tab,
     wait_for_frame,
     wait_until_still,
 )
@@ -47,7 +51,7 @@ MOVES = """async (moves) => {
 }"""
 CONTROLS = ".palette button, .creator-bar button, .creator-bar select, header button"
 OUT_OF_SIGHT = """(controls) => [...document.querySelectorAll(controls)]
-    .filter((one) => {
+    .filter((one) => one.checkVisibility()).filter((one) => {
         const {left, top, right, bottom} = one.getBoundingClientRect();
         const hit = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
         return left < 0 || top < 0 || right > innerWidth || bottom > innerHeight || !one.contains(hit);
@@ -56,8 +60,7 @@ OUT_OF_SIGHT = """(controls) => [...document.querySelectorAll(controls)]
 
 def open_creator(page, suite, *arguments):
     open_page(page, suite("--playground", "base", "--program", "none", *arguments))
-    page.click("#creator-switch")
-    page.locator(".palette").wait_for()
+    build_playground(page)
     wait_for_camera(page)
 
 
@@ -119,7 +122,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
 
     page.reload()
     page.wait_for_function("window.thymio && window.thymio.connected")
-    page.click("#creator-switch")
+    build_playground(page)
     page.wait_for_function("window.thymio.built()?.playground.title === 'A way out'")
     page.click("#creator-new")
     wait_for_items(page, 2)
@@ -132,6 +135,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
     page.locator("#view").focus()
     page.keyboard.press("t")
     start = page.evaluate("window.thymio.state().robot.latest.pose")
+    open_tab(page, "program")
     page.select_option(".behavior select", "thesis_basic")
     page.wait_for_function(
         "window.thymio.state().program?.state === 'running' && window.thymio.state().program.name.includes('basic')"
@@ -147,7 +151,8 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
 
 def test_everything_is_built_by_keys_alone(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
-    page.locator("#creator-switch").press("Enter")
+    page.locator("#tab-playground").press("Enter")
+    page.locator("[data-build]").press("Enter")
     page.locator("[data-tool=box]").press("Enter")
     assert page.evaluate("document.activeElement.id") == "view"
     for key in ("Shift+ArrowRight", "ArrowUp", ".", "Enter"):
@@ -339,10 +344,10 @@ def test_ten_thousand_moves_leave_one_animation_loop(suite, page):
 
 
 def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, page):
+    page.set_viewport_size({"width": 800, "height": 600})
     open_creator(page, suite)
     for language in ("de", "fr", "it", "en"):
-        page.select_option("select.language", language)
-        page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        choose_language(page, language)
         wait_for_frame(page)
         assert page.evaluate(OUT_OF_SIGHT, CONTROLS) == []
     if not AXE.exists():
@@ -359,7 +364,7 @@ def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, pa
 
 
 def test_items_are_placed_and_dragged_by_touch(suite, browser):
-    page = browser.new_page(viewport={"width": 800, "height": 600}, bypass_csp=True, has_touch=True)
+    page = browser.new_page(viewport={"width": 1024, "height": 768}, bypass_csp=True, has_touch=True)
     page.set_default_timeout(DEADLINE_MS)
     page.on("request", lambda request: None if request.url.startswith(LOCAL) else pytest.fail(request.url))
     open_creator(page, suite)
@@ -383,14 +388,13 @@ def test_items_are_placed_and_dragged_by_touch(suite, browser):
     page.close()
 
 
-def test_opening_editor_or_creator_closes_the_other(suite, page):
+def test_another_tab_shows_the_running_world_and_the_tab_of_playgrounds_continues(suite, page):
     open_creator(page, suite)
-    page.click("#editor-switch")
-    page.locator(".editor-slot").wait_for()
+    open_editor(page)
     assert built(page)["isOpen"] is False
-    page.click("#creator-switch")
+    open_tab(page, "playground")
     page.locator(".palette").wait_for()
-    playwright.expect(page.locator(".editor-slot")).to_be_hidden()
+    playwright.expect(page.locator(".editor")).to_be_hidden()
 
 
 def test_an_image_is_placed_on_the_ground(suite, page, tmp_path):
@@ -414,7 +418,7 @@ def test_the_unsaved_mark_belongs_to_the_creator_and_disappears_after_saving(sui
     page.locator("[data-field=title]").fill("Kept")
     page.locator("[data-field=title]").press("Enter")
     playwright.expect(mark).to_be_visible()
-    page.click("#editor-switch")
+    open_editor(page)
     page.focus(".cm-content")
     page.keyboard.insert_text("var a")
     star = page.locator(".editor .unsaved")
@@ -423,14 +427,14 @@ def test_the_unsaved_mark_belongs_to_the_creator_and_disappears_after_saving(sui
         "rgba(0, 0, 0, 0)",
         "●",
     ]
-    page.click("#creator-switch")
+    open_tab(page, "playground")
     playwright.expect(mark).to_be_visible()
     with page.expect_download():
         page.click("#creator-save")
     playwright.expect(mark).to_be_hidden()
     page.reload()
     page.wait_for_function("window.thymio && window.thymio.connected")
-    page.click("#creator-switch")
+    build_playground(page)
     page.wait_for_function("window.thymio.built()?.playground.title === 'Kept'")
     wait_for_frame(page)
     playwright.expect(mark).to_be_hidden()

@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_service
+from tests.web_ui.page_support import MARKS, open_page, open_tab, wait_for_service
 from tests.web_ui.test_creator import items, open_creator
 
 pytestmark = MARKS
@@ -28,6 +28,7 @@ def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_uncha
 def test_a_copy_of_a_shipped_playground_is_edited(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
+    open_tab(page, "playground")
     page.click("#gallery-open")
     page.locator("li:has([data-playground=gate]) .change").click()
     page.wait_for_function("window.thymio.built()?.playground.title === 'Gate'")
@@ -44,6 +45,7 @@ def test_a_running_aseba_playground_is_edited(suite, page, tmp_path):
     )
     open_page(page, suite("--playground", str(foreign), "--program", "none"))
     wait_for_service(page, "/simulator/get_playground")
+    open_tab(page, "playground")
     page.click("#playground-change")
     page.wait_for_function("window.thymio.built()?.playground.items.length >= 3")
     assert "box" in {item["kind"] for item in items(page).values()}

@@ -6,7 +6,16 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, drop_file, open_page, wait_for_service
+from tests.web_ui.page_support import (
+    MARKS,
+    choose_language,
+    choose_robot,
+    drop_file,
+    open_editor,
+    open_page,
+    open_tab,
+    wait_for_service,
+)
 
 pytestmark = MARKS
 
@@ -25,8 +34,7 @@ end
 def editor(suite, page):
     """The editor, open and empty, of a robot at rest."""
     open_page(page, suite("--playground", "base", "--program", "none"))
-    page.click("#editor-switch")
-    page.wait_for_selector(".cm-content")
+    open_editor(page)
     wait_for_service(page, "/aseba_runtime/check", "/aseba/set_variables", "/aseba/step_line")
     return page
 
@@ -162,7 +170,7 @@ def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the
     playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()
     editor.reload()
     editor.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
-    editor.click("#editor-switch")
+    open_editor(editor)
     editor.click("[data-draft=restore]")
     expect(editor, ".cm-content").to_have_text("var a = SIZE_")
     with editor.expect_download() as saved:
@@ -197,7 +205,7 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path)
     playground = tmp_path / "mine.json"
     playground.write_text('{"format": 1}')
     drop_file(editor, playground, ".cm-content")
-    expect(editor, ".card.playground .fault .headline").to_contain_text("mine.json")
+    expect(editor, ".current .fault .headline").to_contain_text("mine.json")
     program = tmp_path / "dropped.aesl"
     program.write_text('<network><node nodeId="1" name="thymio-II">var other = 1</node></network>')
     drop_file(editor, program, ".cm-content")
@@ -211,7 +219,7 @@ def test_an_overwritten_draft_is_added_to_the_recent_files(editor):
     write(editor, "var first = 1")
     editor.reload()
     editor.wait_for_function("window.thymio && window.thymio.connected")
-    editor.click("#editor-switch")
+    open_editor(editor)
     expect(editor, ".draft").to_contain_text("program.aesl")
     write(editor, "var second = 2")
     expect(editor, ".draft").to_be_hidden()
@@ -228,10 +236,10 @@ def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_change
     editor.keyboard.press("Control+b")
     expect(editor, ".breakpoints .breakpoint:visible").to_have_count(1)
     editor.keyboard.insert_text("0")
-    editor.click("#editor-switch")
-    expect(editor, ".cm-content").to_have_count(0)
-    editor.click("#editor-switch")
-    editor.select_option("header .language", "de")
+    open_tab(editor, "robot")
+    expect(editor, ".cm-content").to_be_hidden()
+    open_editor(editor)
+    choose_language(editor, "de")
     expect(editor, ".editor").to_have_attribute("aria-label", "Aseba-Editor")
     expect(editor, ".breakpoints .breakpoint:visible").to_have_count(1)
     expect(editor, ".cm-content").to_be_focused()
@@ -255,23 +263,23 @@ def test_common_names_come_first_in_completion_and_help(editor):
 
 def test_each_of_two_robots_has_its_program(suite, page):
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
-    page.click("#editor-switch")
+    open_editor(page)
     page.wait_for_function("Object.keys(window.thymio.state().robots).length === 2")
     wait_for_service(page, "/aseba_runtime/check")
     names = page.evaluate("Object.keys(window.thymio.state().robots)")
     for name, text in zip(names, ("var mine = 11\n", "var mine = 22\n"), strict=True):
-        page.click(f".editor-head [data-tab={name}]")
+        choose_robot(page, name)
         write(page, text)
         page.keyboard.press("Control+Enter")
     for name, value in zip(names, ("11", "22"), strict=True):
-        page.click(f".editor-head [data-tab={name}]")
+        choose_robot(page, name)
         expect(page, "[data-variable=mine]").to_have_text(value)
-    page.click(".editor-head [data-tab='*']")
+    choose_robot(page, "*")
     expect(page, ".cm-content").to_have_text("var mine = 22")  # that of the robot, which takes its time
     write(page, "var ours = 33\n")
     page.keyboard.press("Control+Enter")
     for name in names:
-        page.click(f".editor-head [data-tab={name}]")
+        choose_robot(page, name)
         expect(page, "[data-variable=ours]").to_have_text("33")
         expect(page, ".cm-content").to_have_text("var ours = 33")
 
@@ -319,7 +327,7 @@ def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the
     write(editor, "var a = 1.5\n")
     expect(editor, ".editor-hint .meant").to_contain_text("Aseba has whole numbers only")
     expect(editor, ".editor-hint .correct").to_be_hidden()
-    editor.select_option("header .language", "fr")
+    choose_language(editor, "fr")
     expect(editor, ".editor-hint .meant").to_contain_text("Aseba n'a que des nombres entiers")
 
 

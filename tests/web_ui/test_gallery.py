@@ -9,7 +9,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.conftest import DEADLINE_MS
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, choose_language, open_page, open_tab
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros import resources
 
@@ -26,6 +26,7 @@ COLORS = """(image) => {
 def open_gallery(page, suite, *arguments):
     open_page(page, suite("--playground", "base", "--program", "none", *arguments))
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
+    open_tab(page, "playground")
     page.click("#gallery-open")
 
 
@@ -51,7 +52,8 @@ def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(suite,
 def test_one_is_chosen_by_keys_in_another_language(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
-    page.select_option("select.language", "de")
+    open_tab(page, "playground")
+    choose_language(page, "de")
     page.locator("#gallery-open").press("Enter")
     playwright.expect(page.locator("[data-playground=maze]")).to_contain_text("Labyrinth")
     page.locator("[data-playground=maze]").press("Enter")
@@ -62,11 +64,12 @@ def test_one_is_chosen_by_keys_in_another_language(suite, page):
 def test_escape_closes_the_gallery_and_stops_no_robot(suite, page):
     open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
+    open_tab(page, "playground")
     page.wait_for_function("window.thymio.state().program?.state === 'running'")
     page.click("#gallery-open")
     page.keyboard.press("Escape")
     playwright.expect(page.locator("dialog.gallery")).to_be_hidden()
-    page.locator(".time button.primary").click()
+    page.locator("#pause").click()
     page.wait_for_function("window.thymio.state().simulator.paused")  # asked for after a stop would have been
     assert page.evaluate("window.thymio.state().program.state") == "running"
 

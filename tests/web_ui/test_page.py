@@ -12,11 +12,22 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.sim.images import BLACK, WHITE, png
-from tests.web_ui.page_support import MARKS, drop_file, open_page, wait_for_frame, wait_for_position, wait_for_program
+from tests.web_ui.page_support import (
+    MARKS,
+    build_playground,
+    drop_file,
+    open_editor,
+    open_hands,
+    open_page,
+    open_tab,
+    wait_for_frame,
+    wait_for_position,
+    wait_for_program,
+)
 
 pytestmark = MARKS
 
-MOST_BYTES = 800_000  # compressed, docs/performance.md, "The page"
+MOST_BYTES = 300_000  # compressed, docs/performance.md, "The page"
 
 PROGRAM = """\
 var lit = 0
@@ -141,14 +152,17 @@ def test_stimuli_reach_the_program(suite, page, tmp_path):
         if control == "tap":
             page.click("[data-operate=tap]")
         elif control == "remote":
+            open_hands(page)
             page.click("[data-key='87']")
         else:
+            open_hands(page)
             page.locator(f"[data-operate={control}]").fill("45")
         page.wait_for_function("(group) => Math.max(...window.thymio.state().robot.leds[group]) === 1", arg=group)
 
 
 def test_the_pen_leaves_a_trail(suite, page):
     open_page(page, suite())
+    open_hands(page)
     page.select_option("[data-operate=pen]", "down")
     page.wait_for_function("() => window.thymio.state().robot.trail > 0")
 
@@ -169,36 +183,34 @@ def test_an_error_is_shown_at_its_position_and_the_previous_program_keeps_runnin
     broken.write_text("var a\nonevent prox\n  motor.left.targt = 5\n")
     wait_for_program(page, "line_follower.aesl")
     page.set_input_files("#program-file", str(broken))
-    page.get_by_text("motor.left.target", exact=False).first.wait_for()
+    page.locator(".notice", has_text="motor.left.target").wait_for()
     playwright.expect(page.locator("body")).to_contain_text("line 3", ignore_case=True, use_inner_text=True)
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "line_follower.aesl"
 
 
-def test_a_rejection_is_shown_also_when_editor_or_creator_covers_its_card(suite, page, tmp_path):
+def test_a_rejection_is_shown_whatever_tab_is_open(suite, page, tmp_path):
     playground, program, unknown = tmp_path / "bad.json", tmp_path / "bad.aesl", tmp_path / "bad.dat"
     playground.write_text('{"format": 1}')
     program.write_text('<network>\n<node nodeId="1" name="thymio-II">var a = = 1</node></network>')
     unknown.write_text("")
     open_page(page, suite("--playground", "base", "--program", "none"))
     notices = page.locator(".notice:visible")
-    page.click("#editor-switch")
-    page.locator(".cm-content").wait_for()
+    open_editor(page)
     for file in (playground, unknown):
-        drop_file(page, file, "main")
+        drop_file(page, file, "#view")
         playwright.expect(notices.filter(has_text=file.name)).to_have_count(1)
         notices.get_by_role("button").click()
-    page.click("#creator-switch")
-    page.locator(".palette").wait_for()
-    drop_file(page, program, "main")
+    build_playground(page)
+    drop_file(page, program, "#view")
     playwright.expect(notices.filter(has_text="bad.aesl")).to_have_count(1)
-    page.click("#creator-switch")
-    page.click(".card.playground summary")
-    drop_file(page, playground, "main")
-    playwright.expect(page.locator(".card.playground .fault:visible")).to_contain_text("bad.json")
+    page.click(".creator .leave")
+    drop_file(page, playground, "#view")
+    playwright.expect(page.locator(".current .fault:visible")).to_contain_text("bad.json")
 
 
 def test_another_playground_can_be_chosen(suite, page):
     open_page(page, suite())
+    open_tab(page, "playground")
     page.select_option("#playground-choice", "obstacle")
     page.wait_for_function("window.thymio.state().simulator.playground === 'obstacle'")
 
@@ -213,6 +225,7 @@ def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejecte
     broken = tmp_path / "broken.playground"
     broken.write_text("<aseba-playground>\n<world w='wide'/></aseba-playground>")
     open_page(page, suite("--playground", "base"))
+    open_tab(page, "playground")
     page.set_input_files("#playground-file", str(archive))
     page.wait_for_function("window.thymio.state().simulator.playground === 'my maze.playground'")
     playwright.expect(page.locator("details.remarks")).to_contain_text("<feeder> skipped")

@@ -8,7 +8,14 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_service
+from tests.web_ui.page_support import (
+    MARKS,
+    build_playground,
+    choose_language,
+    open_editor,
+    open_page,
+    wait_for_service,
+)
 
 pytestmark = MARKS
 
@@ -43,12 +50,17 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     page.on("filechooser", lambda _chooser: None)  # from now on, so that no dialog of the system opens
     open_page(page, suite("--playground", "line", "--program", "none"))
 
+    go_to(page, "#tab-robot")
+    page.keyboard.press("ArrowUp")
+    expect(page, "#tab-playground").to_be_focused()
+    page.keyboard.press("Enter")
     expect(page, "#playground-choice option[value=base]").to_have_count(1)
     go_to(page, "#playground-choice")
     page.keyboard.type("Base")
     page.wait_for_function(f"({STATE})().simulator.playground === 'base'")
 
-    go_to(page, "#editor-switch", "Shift+Tab")
+    go_to(page, "#tab-playground", "Shift+Tab")
+    page.keyboard.press("ArrowLeft")
     page.keyboard.press("Enter")
     page.locator(".cm-content:focus").wait_for()  # the editor opens with the cursor in it
     page.keyboard.press("Escape")
@@ -109,11 +121,11 @@ def test_editor_and_program_panel_show_errors_in_the_language_of_the_page(
     broken = tmp_path / "broken.aesl"
     broken.write_text("onevent prox\nmotor.left.targt = 1\n")
     open_page(page, suite("--playground", "base", "--program", "none"))
-    page.select_option("select.language", language)
+    choose_language(page, language)
     page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
     page.set_input_files("#program-file", str(broken))
     expect(page, ".upload.refused").to_contain_text(error)
-    page.click("#editor-switch")
+    open_editor(page)
     page.set_input_files("#editor-file", str(broken))
     expect(page, ".verdict").to_contain_text(error)
     page.click("#tool-tab-reference")
@@ -125,14 +137,13 @@ def test_letter_keys_work_with_caps_lock(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.focus("#view")
     page.keyboard.press("T")  # without Shift, as with Caps Lock
-    playwright.expect(page.get_by_role("button", name="From above")).to_have_attribute("aria-pressed", "true")
-    page.click("#editor-switch")
+    playwright.expect(page.get_by_role("button", name="Above")).to_have_attribute("aria-pressed", "true")
+    open_editor(page)
     page.focus(".cm-content")
     with page.expect_download() as saved:
         page.keyboard.press("Control+S")
     assert saved.value.suggested_filename == "program.aesl"
-    page.click("#creator-switch")
-    page.locator(".palette").wait_for()
+    build_playground(page)
     page.focus("#view")
     for key, selected in (("N", "ground"), ("N", "thymio"), ("Shift+N", "ground")):
         page.keyboard.press(key)

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, choose_robot, open_page, open_tab
 
 pytestmark = MARKS
 
@@ -42,13 +42,14 @@ def test_all_of_many_robots_move_by_their_shared_transforms(robots_page):
     robots_page.wait_for_function(f"() => ({PLACED})() === 5")
     selected = robots_page.evaluate("() => window.thymio.state().selected")
     assert selected == NAMES[0]
-    robots_page.get_by_role("group", name="Robot", exact=True).get_by_role("button", name=NAMES[3]).click()
+    choose_robot(robots_page, NAMES[3])
     robots_page.wait_for_function(f"() => ({PLACED})() === 6")
     stamps = robots_page.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.stampNs)")
     later = (
         "(stamps) => Object.values(window.thymio.state().robots).every(({latest}, at) => latest.stampNs > stamps[at])"
     )
     robots_page.wait_for_function(later, arg=stamps)
+    open_tab(robots_page, "robot")
     robots_page.wait_for_function("() => window.thymio.state().robot.raw.motor !== undefined")
 
 

@@ -6,7 +6,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, open_tab
 from tests.web_ui.test_gallery import open_gallery
 
 pytestmark = MARKS
@@ -30,7 +30,7 @@ def test_a_message_is_above_the_open_gallery_and_can_be_closed_there(suite, page
     page.set_input_files("#gallery-file", str(unknown))
     notice.wait_for()
     page.keyboard.press("Escape")
-    page.wait_for_function("() => document.querySelector('main > .notices .notice') !== null")
+    page.wait_for_function("() => document.querySelector('#messages > .notices .notice') !== null")
     assert notice.evaluate(ON_TOP)
     page.click("#gallery-open")
     playwright.expect(notice).to_have_count(0)
@@ -48,7 +48,7 @@ def test_the_gallery_does_not_show_the_error_of_another_attempt(suite, page, tmp
     playwright.expect(page.locator(".notice")).to_contain_text("song.mp3")
     playwright.expect(fault).to_be_hidden()
     page.keyboard.press("Escape")
-    refusal = page.locator(".card.playground > .content > .fault")
+    refusal = page.locator(".current > .fault")
     refusal.get_by_role("button").click()
     playwright.expect(refusal).to_be_hidden()
 
@@ -61,11 +61,12 @@ def test_success_notices_disappear_and_errors_stay_until_closed(suite, page, tmp
     page.set_input_files("#playground-file", str(unknown))
     page.locator(".notice.error").wait_for()
     with page.expect_download():
-        page.locator("button.picture").click()
+        page.locator("[data-view=picture]").click()
     page.locator(".notice.info").wait_for()
     playwright.expect(page.locator(".notice.info")).to_have_count(0)
     page.locator(".notice.error button").click()
     playwright.expect(page.locator(".notice")).to_have_count(0)
+    open_tab(page, "program")
     page.set_input_files("#program-file", str(program))
     page.locator(".upload.accepted").wait_for()
     playwright.expect(page.locator(".upload")).to_be_hidden()

@@ -8,7 +8,16 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_position, wait_for_program, wait_for_service
+from tests.web_ui.page_support import (
+    MARKS,
+    open_editor,
+    open_hands,
+    open_page,
+    open_tab,
+    wait_for_position,
+    wait_for_program,
+    wait_for_service,
+)
 
 pytestmark = MARKS
 
@@ -46,10 +55,10 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
     assert other_page.evaluate(X) == before
 
     wait_for_service(page, "/simulator/pause", "/simulator/reset", "/aseba_runtime/check")
-    page.click(".time .primary")
+    page.click("#pause")
     page.wait_for_function("() => window.thymio.state().simulator.paused")
     assert not other_page.evaluate("window.thymio.state().simulator.paused")
-    page.click(".time .primary")
+    page.click("#pause")
     page.wait_for_function("() => !window.thymio.state().simulator.paused")
 
     broken = tmp_path / "broken.aesl"
@@ -57,12 +66,13 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
     page.set_input_files("#program-file", str(broken))
     playwright.expect(page.locator("body")).to_contain_text("line 3", ignore_case=True, use_inner_text=True)
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "switch.aesl"
+    open_tab(page, "playground")
     page.select_option("#playground-choice", "maze")
     page.wait_for_function("() => window.thymio.state().simulator.playground === 'maze'")
+    open_hands(page)
     page.select_option("[data-operate=pen]", "down")
 
-    page.click("#editor-switch")
-    page.wait_for_selector(".cm-content")
+    open_editor(page)
     page.focus(".cm-content")
     page.keyboard.press("Control+a")
     page.keyboard.insert_text("call leds.top(32, 0, 0)\n")

@@ -10,7 +10,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests import plugin_page
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, open_tab
 
 pytestmark = MARKS
 
@@ -22,6 +22,7 @@ def test_the_sensor_of_a_plug_in_is_shown_with_its_changing_value(suite, page, t
     plugin_page.lay_out(tmp_path, plugin_page.files())
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", ""))))
     open_page(page, suite("--playground", "slalom_field", "--program", "none"))
+    open_tab(page, "robot")
     row = page.get_by_role("row").filter(has=page.get_by_role("rowheader", name="heading", exact=True))
     values = row.get_by_role("cell")
     playwright.expect(page.get_by_role("rowheader", name="compass", exact=True)).to_be_visible()
@@ -35,13 +36,14 @@ def test_the_sensor_of_a_plug_in_is_shown_with_its_changing_value(suite, page, t
 
 def test_values_are_subscribed_to_while_the_panel_is_open(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
+    open_tab(page, "robot")
     page.wait_for_function(f"{MOTOR} !== undefined")
-    page.click(".card.sensors summary")
+    page.click("#values summary")
     page.wait_for_function("() => !window.thymio.state().sensorsShown")
     before = page.evaluate(TIME)
     page.wait_for_function(f"(before) => {TIME} > before + 1e9", arg=before)
     page.evaluate("() => { window.words = window.thymio.state().robot.raw.motor; }")
     page.wait_for_function(f"(before) => {TIME} > before + 2e9", arg=before)
     assert page.evaluate(f"{MOTOR} === window.words"), "no message has arrived"
-    page.click(".card.sensors summary")
+    page.click("#values summary")
     page.wait_for_function(f"{MOTOR} !== window.words")

@@ -9,7 +9,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, open_tab
 
 pytestmark = MARKS
 
@@ -47,7 +47,7 @@ def test_a_tone_is_played_after_the_first_user_action_and_until_it_is_muted(suit
     button = page.locator("button.sound")
     playwright.expect(button).to_have_attribute("data-phase", "waiting")
     assert page.evaluate("() => window.heard.length") == 0
-    page.locator(".chip[data-state]").click()
+    page.locator("#connection").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
     source = "window.heard[0].sounding[0]"
     assert (
@@ -71,7 +71,7 @@ def test_the_browser_plays_a_tone_of_that_pitch(suite, page, tmp_path):
     page.add_init_script(OFFLINE)
     open_page(page, suite("--program", str(program)))
     page.wait_for_function("() => window.thymio.state().robot.sound[0] === 440")
-    page.locator(".chip[data-state]").click()
+    page.locator("#connection").click()
     page.wait_for_function("() => window.heard")
     heard = page.evaluate(LISTEN_A_SECOND)
     assert abs(heard["rising"] - 440) <= 1
@@ -83,20 +83,21 @@ def test_a_pause_suspends_the_sound(suite, page, tmp_path):
     program.write_text(SINGING)
     page.add_init_script(LISTEN)
     open_page(page, suite("--program", str(program)))
-    page.locator(".chip[data-state]").click()
+    page.locator("#connection").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
-    page.locator(".time button.primary").click()
+    page.locator("#pause").click()
     page.wait_for_function("() => window.heard[0].state === 'suspended'")
-    page.locator(".time button.primary").click()
+    page.locator("#pause").click()
     page.wait_for_function("() => window.heard[0].state === 'running'")
 
 
 def test_a_built_in_behavior_is_chosen_and_shows_its_color(suite, page):
     open_page(page, suite("--playground", "base"))
+    open_tab(page, "program")
     page.select_option("#behavior-choice", "friendly")
     page.wait_for_function("() => window.thymio.state().program?.name.startsWith('friendly')")
     page.wait_for_function("() => document.querySelector('#behavior-choice').value === 'friendly'")
-    playwright.expect(page.locator(".swatch")).to_have_attribute("style", re.compile("#12c22f"))
+    playwright.expect(page.locator(".behavior .swatch")).to_have_attribute("style", re.compile("#12c22f"))
     # Green, as on the robot.
     page.wait_for_function(
         "() => { const [r, g, b] = window.thymio.state().robot.leds.top ?? []; return g > r && g > b; }"

@@ -34,6 +34,7 @@ def choose(page: Any, label: str, option: str) -> None:
 
 def choose_behavior(page: Any, option: str, about: str) -> None:
     """Choose a built-in behavior, and wait until the page describes it: then the robot runs it."""
+    page.get_by_role("tab", name="Program").click()
     choose(page, "Built-in behavior", option)
     playwright.expect(page.get_by_text(about, exact=True)).to_be_visible()
 
@@ -61,6 +62,7 @@ def test_the_basic_mode_drives_by_the_arrow_buttons(class_page):
 
 
 def test_the_explorer_avoids_obstacles(class_page):
+    class_page.get_by_role("tab", name="Playground").click()
     class_page.get_by_role("button", name="Gallery").click()
     class_page.get_by_role("dialog").get_by_role("button", name="Obstacle").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
@@ -71,6 +73,7 @@ def test_the_explorer_avoids_obstacles(class_page):
 
 
 def test_the_track_follower_follows_the_track(class_page):
+    class_page.get_by_role("tab", name="Playground").click()
     class_page.get_by_role("combobox", name="Choose a playground").select_option(label="Borderless")
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'borderless'")
     about = "Forward starts, backward stops. Follows the track."
@@ -79,7 +82,7 @@ def test_the_track_follower_follows_the_track(class_page):
 
 
 def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
-    class_page.get_by_role("button", name="Aseba editor").click()
+    class_page.get_by_role("tab", name="Program").click()
     text = class_page.get_by_role("textbox", name="Program")
     playwright.expect(text).to_contain_text("Follow a black line")  # that of the robot, which takes its time
     text.press("Control+a")
@@ -90,7 +93,6 @@ def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
     playwright.expect(class_page.get_by_text("No errors")).to_be_visible()
     class_page.get_by_role("region", name="Aseba editor").get_by_role("button", name="Run").click()
     playwright.expect(class_page.get_by_role("region", name="Aseba editor")).to_contain_text("is loaded")
-    class_page.get_by_role("button", name="Aseba editor").click()
     robot_button(class_page, "Center").click()
     class_page.wait_for_function("() => window.thymio.state().robot.leds.top?.[0] === 1")
     class_page.wait_for_function("() => window.thymio.state().robot.wheelSpeeds.left > 0.5")

@@ -6,7 +6,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, open_tab
 
 pytestmark = MARKS
 
@@ -20,16 +20,17 @@ def seconds(page) -> float:
 
 def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite, page):
     open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
-    state = page.locator(".card.program .state")
+    open_tab(page, "program")
+    state = page.locator("#program-state")
     playwright.expect(state).to_have_text("running")
-    page.locator(".time button.primary").click()
+    page.locator("#pause").click()
     playwright.expect(state).to_have_text("running, simulation paused")
-    step = page.locator(".steps button")
+    step = page.locator("#time [data-verb=step]")
     playwright.expect(step).to_be_enabled()
     page.wait_for_function("() => window.thymio.state().timeNs > 0")
     for ticks, far in ((None, 0.1), ("1", 0.01), ("100", 1.0)):
         if ticks is not None:
-            page.select_option(".steps select", ticks)
+            page.select_option("#step-length", ticks)
         page.wait_for_function(
             "() => { const {timeNs} = window.thymio.state(); const isStill = window.previous === timeNs;"
             " window.previous = timeNs; return isStill; }",
@@ -43,5 +44,5 @@ def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite,
             f"(then) => {{ const [m, s] = ({CLOCK})().split(':'); return Math.abs(60 * m + +s - then) < 0.002; }}",
             arg=start + far,
         )
-    page.locator(".time button.primary").click()
+    page.locator("#pause").click()
     playwright.expect(state).to_have_text("running")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.processes import wait_for_port
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, open_tab
 from thymio_sim_ros import resources
 from thymio_sim_ros.web import Content, PageThread, Settings
 
@@ -27,7 +27,7 @@ def test_the_token_in_the_address_gives_control_and_survives_a_reload(suite, pag
     page.wait_for_function("window.thymio?.connected")
     assert page.evaluate("location.href") == address
     open_page(page, address)
-    page.locator("button", has_text="Pause").click()
+    page.locator("#pause").click()
     page.wait_for_function("window.thymio.state().simulator.paused")
     assert page.evaluate("window.thymio.state().notices") == []
 
@@ -46,13 +46,17 @@ def test_without_a_valid_token_the_page_explains_what_to_do(suite, page, rest, s
 def test_with_the_read_only_token_the_page_only_watches(suite, page):
     address = suite(*TOKENS)
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
-    page.goto(f"{address}?tour=off#token=looktoken")
+    page.goto(f"{address}?tour=off&welcome=off#token=looktoken")
     page.wait_for_function("window.thymio?.state().readOnly && window.thymio.state().simulator !== null")
     page.locator("#read-only").wait_for()
-    controls = ".time button, .time select, .dpad button, .stop, .program button, .playground select, #creator-try"
-    page.wait_for_function(
-        "(controls) => [...document.querySelectorAll(controls)].every((control) => control.disabled)", arg=controls
-    )
+    for tab, controls in (
+        ("program", "#time button, #time select, .pad button, .stop, .program-card button, .program-card select"),
+        ("playground", "#playground-choice, #gallery-open, #playground-change"),
+    ):
+        open_tab(page, tab)
+        page.wait_for_function(
+            "(controls) => [...document.querySelectorAll(controls)].every((control) => control.disabled)", arg=controls
+        )
     assert page.locator(".stop").get_attribute("title") == page.locator("#read-only").get_attribute("title")
     before = page.evaluate("window.thymio.state().timeNs")
     page.keyboard.press("Escape")  # would stop everything
@@ -77,10 +81,11 @@ def test_nothing_violates_the_content_security_policy(browser, page_server, host
         "window.broken = []; addEventListener('securitypolicyviolation', (e) => broken.push(e.blockedURI))"
     )
     page.goto(f"http://{host}:{page_server.port}/")
-    page.locator(".chip[data-state=lost]").wait_for()  # the socket was tried; a predicate would need eval
-    page.locator("button", has_text="Aseba editor").click()
+    page.locator("#connection[data-state=lost]").wait_for()  # the socket was tried; a predicate would need eval
+    page.locator("#tab-program").click()
     page.locator(".cm-editor").wait_for()
-    page.locator("button", has_text="Build").click()
+    page.locator("#tab-playground").click()
+    page.locator("[data-build]").click()
     page.locator("#creator-try").wait_for()
     assert page.evaluate("broken") == []
     page.close()

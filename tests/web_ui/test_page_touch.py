@@ -9,7 +9,15 @@ from typing import Any
 import pytest
 
 from tests.web_ui.conftest import checked_page
-from tests.web_ui.page_support import MARKS, TouchPoints, open_page, wait_for_position
+from tests.web_ui.page_support import (
+    MARKS,
+    TouchPoints,
+    build_playground,
+    choose_language,
+    open_editor,
+    open_page,
+    wait_for_position,
+)
 
 pytestmark = MARKS
 
@@ -57,14 +65,14 @@ def test_one_finger_turns_the_view_and_two_zoom_it(suite, tablet):
     wait_for_position(tablet, "robot")
     touches = TouchPoints(tablet)
     before = corners(tablet)
-    touches.start(a=(60, 120))
-    touches.move(a=(180, 120))
+    touches.start(a=(60, 300))
+    touches.move(a=(180, 300))
     touches.end()
     tablet.wait_for_function(TURNED, arg=before[0])
     wait_for_position(tablet, "robot")
     turned = corners(tablet)
-    touches.start(a=(60, 120), b=(100, 160))
-    touches.move(a=(20, 80), b=(200, 260))
+    touches.start(a=(60, 300), b=(100, 340))
+    touches.move(a=(40, 280), b=(140, 380))
     touches.end()
     tablet.wait_for_function(ZOOMED, arg=1.2 * math.dist(*turned))
 
@@ -94,7 +102,7 @@ def test_a_robot_is_dragged_by_touch(suite, tablet):
     wait_for_position(tablet, "robot")
     tablet.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
     before = tablet.evaluate(POSE)
-    tablet.get_by_role("button", name="Move objects").tap()
+    tablet.get_by_role("button", name="Move it").tap()
     tablet.wait_for_function("() => window.thymio.dragged() !== null")  # a tap becomes a click only later
     touches = TouchPoints(tablet)
     x, y = place_of(tablet, "robot")
@@ -112,10 +120,9 @@ def test_a_robot_is_dragged_by_touch(suite, tablet):
 def test_on_a_phone_nothing_overflows_and_stop_is_visible(suite, tablet):
     tablet.set_viewport_size({"width": 412, "height": 860})
     open_page(tablet, suite(*RESTING))
-    for switch in ("", "#editor-switch", "#creator-switch"):
-        if switch:
-            tablet.locator(switch).tap()
-            tablet.locator({"#editor-switch": ".cm-content", "#creator-switch": ".palette"}[switch]).wait_for()
+    for go in (None, open_editor, build_playground):
+        if go is not None:
+            go(tablet)
         tablet.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
         tablet.wait_for_function(STOP_IN_SIGHT)
 
@@ -125,24 +132,25 @@ FREE = """() => {
         const {width, height} = document.querySelector(selector).getBoundingClientRect();
         return width * height;
     };
-    return (area(".stage") - area(".dpad") - area(".fold")) / (innerWidth * innerHeight);
+    return area(".scene") / (innerWidth * innerHeight);
 }"""
 
 
 @pytest.mark.parametrize("size", [(390, 844), (360, 640)])
 def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(suite, tablet, size):
     tablet.set_viewport_size({"width": size[0], "height": size[1]})
-    open_page(tablet, suite(*RESTING))
+    open_page(tablet, suite(*RESTING), unfold=False)
     for language in ("de", "fr", "it", "en"):
-        tablet.select_option("select.language", language)
-        tablet.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        choose_language(tablet, language)
         assert tablet.evaluate(FREE) > 0.5
     forward = tablet.locator("[data-button=forward]")
-    tablet.get_by_role("button", name="Hide the buttons").tap()
+    show = tablet.locator("#tray-unfold")
+    if show.is_visible():
+        show.tap()
+    tablet.locator("#tray-fold").tap()
     forward.wait_for(state="hidden")
     tablet.reload()
     tablet.wait_for_function("window.thymio && window.thymio.connected")
-    show = tablet.get_by_role("button", name="Show the buttons")
     show.wait_for()
     assert forward.is_hidden()
     show.tap()

@@ -7,7 +7,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
-from tests.web_ui.page_support import MARKS
+from tests.web_ui.page_support import MARKS, choose_language, open_menu
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from tests.web_ui.test_page_recovery import NO_STORAGE
 
@@ -37,29 +37,30 @@ def visit(page, address):
 def test_it_is_shown_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_button(first_visit):
     page, address = first_visit
     visit(page, address)
-    tour = page.get_by_role("dialog", name="Your robot's world")
+    tour = page.get_by_role("dialog", name="Your robot’s world")
     playwright.expect(tour).to_contain_text("1 of 5")
-    playwright.expect(page.locator(".tour .primary")).to_be_focused()
+    playwright.expect(page.locator(".tour .next")).to_be_focused()
     page.wait_for_function("() => window.thymio.state().program?.state === 'running'")
     for step in range(2, STEPS + 1):
         page.keyboard.press("Enter")
         playwright.expect(page.locator(".tour")).to_contain_text(f"{step} of 5")
         page.wait_for_function(IN_SIGHT)
-    playwright.expect(page.locator(".tour .primary")).to_have_text("Done")
+    playwright.expect(page.locator(".tour .next")).to_have_text("Done")
     page.locator(".tour").get_by_role("button", name="Back").press("Enter")
     playwright.expect(page.locator(".tour")).to_contain_text("4 of 5")
     page.keyboard.press("Escape")
     playwright.expect(page.locator(".tour")).to_have_count(0)
-    playwright.expect(page.locator("#tour-switch")).to_be_focused()
-    page.locator(".time button.primary").click()
+    playwright.expect(page.locator("#help-open")).to_be_focused()
+    page.locator("#pause").click()
     page.wait_for_function("window.thymio.state().simulator.paused")  # asked for after a stop would have been
     assert page.evaluate("window.thymio.state().program.state") == "running"
     visit(page, address)
     page.wait_for_function("() => window.thymio.frames() > 2")
     playwright.expect(page.locator(".tour")).to_have_count(0)
-    page.locator("#tour-switch").click()
+    open_menu(page, "#help-open")
+    page.click("[data-help=tour]")
     playwright.expect(page.locator(".tour")).to_contain_text("1 of 5")
-    page.select_option("select.language", "de")
+    choose_language(page, "de")
     playwright.expect(page.locator(".tour")).to_contain_text("Die Welt deines Roboters")
 
 
@@ -71,7 +72,7 @@ def test_it_does_not_block_the_page(first_visit):
     page.mouse.down()
     page.wait_for_function("() => window.thymio.state().robot.buttons.forward")
     page.mouse.up()
-    page.locator(".time button.primary").click()
+    page.locator("#pause").click()
     page.wait_for_function("window.thymio.state().simulator.paused")
 
 
@@ -105,13 +106,12 @@ def test_it_is_visible_and_accessible_on_every_screen_in_every_language(first_vi
     visit(page, address)
     page.locator(".tour").wait_for()
     for language in ("de", "fr", "it", "en"):
-        page.select_option("select.language", language)
-        page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        choose_language(page, language)
         page.wait_for_function(IN_SIGHT)
     if AXE.exists():
         page.add_script_tag(path=str(AXE))
         assert page.evaluate(FINDINGS) == []
     for _ in range(STEPS - 1):
-        page.locator(".tour .primary").click()
+        page.locator(".tour .next").click()
         page.wait_for_function(IN_SIGHT)
     assert page.evaluate("() => getComputedStyle(document.querySelector('.tour')).transitionDuration") == "0s"

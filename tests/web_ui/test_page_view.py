@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_position
+from tests.web_ui.page_support import MARKS, choose_robot, open_menu, open_page, wait_for_position
 
 pytestmark = MARKS
 
@@ -43,7 +43,7 @@ def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(suite, page
     page.wait_for_function("() => window.thymio.state().robot.buttons.center")
     page.mouse.up()
     with page.expect_download() as download:
-        page.locator("button.picture").click()
+        page.locator("[data-view=picture]").click()
     content = Path(download.value.path()).read_bytes()
     assert content.startswith(PNG)
     assert int.from_bytes(content[16:20]) >= 1920
@@ -58,8 +58,10 @@ def test_a_context_that_is_not_restored_switches_to_2d(suite, page):
 
 
 def test_the_view_is_saved_as_an_image_and_the_robot_view_works(suite, page):
+    page.set_viewport_size({"width": 888, "height": 700})  # the view is as wide as the window
     open_page(page, suite(*RESTING))
     wait_for_position(page, "robot")
+    open_menu(page, "[data-view=look]")
     page.select_option("#quality", "simple")
     page.wait_for_function(f"({CANVAS})() < 500")
     coarse = page.evaluate(CANVAS)
@@ -68,7 +70,7 @@ def test_the_view_is_saved_as_an_image_and_the_robot_view_works(suite, page):
         page.locator("#view").focus()
         page.keyboard.press(key)
         with page.expect_download() as download:
-            page.locator("button.picture").click()
+            page.locator("[data-view=picture]").click()
         content = Path(download.value.path()).read_bytes()
         assert content.startswith(PNG)
         assert download.value.suggested_filename.startswith("base-")
@@ -83,14 +85,16 @@ def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(sui
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     page.wait_for_function("() => document.querySelectorAll('.robot-label').length === 2")
-    names, tabs = page.evaluate(
+    open_menu(page, "#robot-chooser")
+    names, choices = page.evaluate(
         "() => [[...document.querySelectorAll('.robot-label')]"
         ".map((one) => getComputedStyle(one, '::before').backgroundColor),"
-        " [...document.querySelectorAll('.robots button')].map((one) => getComputedStyle(one).borderInlineStartColor)]"
+        " [...document.querySelectorAll('#robot-menu .swatch')].map((one) => getComputedStyle(one).backgroundColor)]"
     )
     assert len(set(names)) == 2
-    assert set(names) == set(tabs)
+    assert set(names) == set(choices)
+    open_menu(page, "[data-view=look]")
     page.locator("#numbers").check()
     page.wait_for_function("() => document.querySelectorAll('.ray-number:not([hidden])').length === 9")
-    page.locator("[data-robot=red]").click()
+    choose_robot(page, "red")
     page.wait_for_function("() => window.thymio.state().selected === 'red'")

@@ -1,26 +1,26 @@
 // The bar below the view: undo and redo, camera, grid, and the latest status message.
 
-import { h, icon, setAttribute, setText } from "../panels/dom.js";
-import { CREATOR_ICONS } from "./icons.js";
+import { h, setAttribute, setText } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 import { GRID_SIZES } from "./snap.js";
 
 /** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
 export function bar(t, model) {
-  /** @param {string} name @param {() => void} act */
+  /** @param {"undo" | "redo" | "camera"} name @param {() => void} act */
   const button = (name, act) =>
     h(
       "button",
-      { type: "button", "data-verb": name, title: t(`bar.${name}`), "aria-label": t(`bar.${name}`), onclick: act },
-      icon(CREATOR_ICONS[name]),
+      { type: "button", class: "btn line slim", "data-verb": name, title: t(`bar.${name}`), "aria-label": t(`bar.${name}`), onclick: act },
+      icon(name),
     );
   const undo = button("undo", () => model.undo());
   const redo = button("redo", () => model.redo());
   const camera = button("camera", () => model.toggleCamera());
-  camera.append(t("bar.cameraLabel"));
-  const size = h("select", { "aria-label": t("bar.grid"), "data-verb": "grid" });
+  camera.append(h("span", { class: "word" }, t("bar.cameraLabel")));
+  const size = h("select", { class: "select quiet", "aria-label": t("bar.grid"), "data-verb": "grid" });
   size.append(...GRID_SIZES.map((meters) => h("option", { value: meters }, `${meters * 100} cm`)));
   size.addEventListener("change", () => model.setGrid({ size: Number(size.value) }));
-  const on = h("select", { "aria-label": t("bar.snap"), "data-verb": "snap" });
+  const on = h("select", { class: "select quiet", "aria-label": t("bar.snap"), "data-verb": "snap" });
   on.append(...["lines", "centers"].map((choice) => h("option", { value: choice }, t(`bar.${choice}`))));
   on.addEventListener("change", () => model.setGrid({ on: /** @type {"lines" | "centers"} */ (on.value) }));
   const output = h("output", { class: "status" });

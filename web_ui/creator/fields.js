@@ -1,6 +1,6 @@
 // Form controls, one per kind of field. Each has an element and updates it when values change elsewhere.
 
-import { h, renew, setText } from "../panels/dom.js";
+import { h, renew, setText } from "../ui/dom.js";
 import { toDisplay, toFile, unitOf } from "./units.js";
 
 /** @typedef {import("../playground/declarations.js").DeclaredField} Field */

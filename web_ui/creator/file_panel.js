@@ -3,12 +3,12 @@
 
 import { textOf } from "../browser/text_file.js";
 import { download } from "../editor/download.js";
-import { fileButton, h, icon, lock, setText } from "../panels/dom.js";
-import { faultView, foreignView } from "../panels/fault.js";
+import { fileButton, h, lock, setText } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
+import { faultView, foreignView } from "../playground_tab/refusal.js";
 import { parse } from "../playground/document.js";
 import { Fault } from "../playground/rules.js";
 import { newPlayground } from "./commands.js";
-import { CREATOR_ICONS } from "./icons.js";
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 
@@ -19,24 +19,26 @@ const OF_ANOTHER_KIND = ["fault.json", "fault.object", "fault.format"];
  * @param {object} options
  * @param {import("./creator_session.js").CreatorSession} options.session
  * @param {import("./labels.js").Labels} options.labels
- * @param {Translate} options.pageText
+ * @param {(file: import("../i18n/page_texts.js").TextFile) => Translate} options.text   the texts of the page
  * @param {import("../scene/index.js").SceneView} options.scene
  * @param {(phrase: import("../playground/rules.js").Phrase) => void} options.report
  * @param {(text: string) => void} options.announce
  * @param {() => void} options.tryIt
  * @param {() => void} options.close
  */
-export function filePanel({ session, labels, pageText, scene, report, announce, tryIt, close }) {
+export function filePanel({ session, labels, text: textOfPage, scene, report, announce, tryIt, close }) {
   const { t } = labels;
+  const pageText = textOfPage("page");
+  const playgroundText = textOfPage("playground");
   const { model } = session;
   const name = h("strong", { class: "name" });
   const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
-  const leave = h("button", { type: "button", class: "leave", onclick: close }, t("file.close"));
+  const leave = h("button", { type: "button", class: "btn line leave", onclick: close }, t("file.close"));
   const head = h("div", { class: "creator-head" }, name, unsaved, leave);
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const attempt = h(
     "button",
-    { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
+    { type: "button", class: "btn you", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
     t("file.try"),
   );
   const row = h(
@@ -45,8 +47,8 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
     attempt,
     h(
       "button",
-      { type: "button", id: "creator-save", title: t("file.saveHelp"), onclick: save },
-      icon(CREATOR_ICONS.save),
+      { type: "button", class: "btn line", id: "creator-save", title: t("file.saveHelp"), onclick: save },
+      icon("save"),
       t("file.save"),
     ),
     fileButton({
@@ -58,8 +60,8 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
     }),
     h(
       "button",
-      { type: "button", id: "creator-new", title: t("file.newHelp"), onclick: create },
-      icon(CREATOR_ICONS.fresh),
+      { type: "button", class: "btn line", id: "creator-new", title: t("file.newHelp"), onclick: create },
+      icon("file"),
       t("file.new"),
     ),
   );
@@ -87,7 +89,7 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
   async function open(file) {
     refuse(null);
     const content = await textOf(file);
-    if (content === null) return refuse(faultView(pageText, pageText("file.notText", { name: file.name }), null));
+    if (content === null) return refuse(faultView(playgroundText, pageText("file.notText", { name: file.name }), null));
     try {
       replace(parse(content), { word: "change.opened", values: { name: file.name } });
     } catch (error) {
@@ -95,8 +97,8 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
       const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${labels.text(error.expected)}`;
       const headline = t("file.refused", { name: file.name });
       const isWhole = error.key === "" || error.key === "format";
-      if (isWhole && OF_ANOTHER_KIND.includes(error.expected.word)) refuse(foreignView(pageText, headline, text));
-      else refuse(faultView(pageText, headline, { text, line: null, column: null }));
+      if (isWhole && OF_ANOTHER_KIND.includes(error.expected.word)) refuse(foreignView(playgroundText, headline, text));
+      else refuse(faultView(playgroundText, headline, { text, line: null, column: null }));
     }
   }
 
@@ -111,7 +113,8 @@ export function filePanel({ session, labels, pageText, scene, report, announce, 
   }
 
   return {
-    elements: [head, row, fault],
+    head,
+    elements: [row, fault],
     refuse,
     /** @param {File} file */
     open: (file) => void open(file),

@@ -1,11 +1,11 @@
 // The form with all values of the item being placed or selected.
 
-import { h, icon, renew, setText } from "../panels/dom.js";
+import { h, renew, setText } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 import { kindNamed, ROBOT } from "../playground/kinds/index.js";
 import { valuesOf } from "../playground/parts.js";
 import { canTurn } from "./place.js";
 import { control, LOAD_KEYS, loadControl } from "./fields.js";
-import { CREATOR_ICONS } from "./icons.js";
 
 /** @typedef {import("./fields.js").Setting} Setting */
 /** @typedef {import("./fields.js").Control} Control */
@@ -19,26 +19,26 @@ export function itemForm(setting, model) {
   const { t } = labels;
   const title = h("h3");
   const fields = h("div", { class: "fields" });
-  const verbs = [
-    { icon: "turnLeft", word: "action.turnLeft", act: () => model.turn(1) },
-    { icon: "turnRight", word: "action.turnRight", act: () => model.turn(-1) },
-    { icon: "copy", word: "action.copy", act: () => model.selecting.duplicate() },
-    { icon: "over", word: "action.over", act: () => model.selecting.raise(1) },
-    { icon: "under", word: "action.under", act: () => model.selecting.raise(-1) },
-    { icon: "remove", word: "action.remove", act: () => model.selecting.remove() },
-  ].map((verb) => ({
+  const verbs = /** @type {const} */ ([
+    { icon: "turnLeft", drawing: "turn", word: "action.turnLeft", act: () => model.turn(1) },
+    { icon: "turnRight", drawing: "turn", word: "action.turnRight", act: () => model.turn(-1) },
+    { icon: "copy", drawing: "copy", word: "action.copy", act: () => model.selecting.duplicate() },
+    { icon: "over", drawing: "caretUp", word: "action.over", act: () => model.selecting.raise(1) },
+    { icon: "under", drawing: "caretDown", word: "action.under", act: () => model.selecting.raise(-1) },
+    { icon: "remove", drawing: "remove", word: "action.remove", act: () => model.selecting.remove() },
+  ]).map((verb) => ({
     ...verb,
     button: h(
       "button",
       {
         type: "button",
-        class: "square",
+        class: "btn icon square",
         title: t(verb.word),
         "aria-label": t(verb.word),
         onclick: verb.act,
         "data-verb": verb.icon,
       },
-      icon(CREATOR_ICONS[verb.icon]),
+      icon(verb.drawing),
     ),
   }));
   const element = h(

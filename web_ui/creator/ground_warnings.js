@@ -1,6 +1,6 @@
 // Warnings about a playground that is accepted but probably not meant: items outside the ground, or no ground at all.
 
-import { h, setText } from "../panels/dom.js";
+import { h, setText } from "../ui/dom.js";
 import { itemsOffGround, lacksGround } from "../playground/validation.js";
 import { withGround } from "./commands.js";
 

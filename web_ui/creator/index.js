@@ -1,11 +1,11 @@
-// The creator of playgrounds on the page: tools over the view, the form beside it, the bar below it. Each part has its own
+// The creator of playgrounds on the page: hints over the view, tools and form beside it, the bar below it. Each part has its own
 // module and acts on the session.
 
 import "./creator.css";
 
 import WORDS from "../i18n/creator.texts.js";
 import { translator } from "../i18n/index.js";
-import { h } from "../panels/dom.js";
+import { h } from "../ui/dom.js";
 import { bar } from "./bar.js";
 import { CreatorSession } from "./creator_session.js";
 import { filePanel } from "./file_panel.js";
@@ -29,13 +29,13 @@ export class Creator {
    * @param {object} options
    * @param {CreatorSession} options.session
    * @param {string} options.language
-   * @param {import("../i18n/index.js").Translate} options.pageText
+   * @param {(file: import("../i18n/page_texts.js").TextFile) => import("../i18n/index.js").Translate} options.text   of the page
    * @param {import("../scene/index.js").SceneView} options.scene
    * @param {(text: string) => void} options.announce
    * @param {() => void} options.tryIt
    * @param {() => void} options.close
    */
-  constructor({ session, language, pageText, scene, announce, tryIt, close }) {
+  constructor({ session, language, text, scene, announce, tryIt, close }) {
     const { model } = session;
     const { canvas } = scene;
     const stage = /** @type {HTMLElement} */ (canvas.parentElement);
@@ -51,7 +51,7 @@ export class Creator {
       readPicture,
     };
     const report = this.report.bind(this);
-    this.files = filePanel({ session, labels, pageText, scene, report, announce, tryIt, close });
+    this.files = filePanel({ session, labels, text, scene, report, announce, tryIt, close });
     this.bar = bar(t, model);
     const form = itemForm(setting, model);
     const sheet = sheetForm(setting, model);
@@ -61,10 +61,12 @@ export class Creator {
     const hints = placingHint({ labels, model, canvas });
     this.parts = [tools, hints, this.bar, warnings, form, sheet, list];
     this.elements = {
-      stage: h("div", { class: "creator-stage" }, tools.element, hints.element),
+      stage: h("div", { class: "creator-stage" }, hints.element),
       side: h(
         "div",
         { class: "creator", role: "region", "aria-label": t("creator") },
+        this.files.head,
+        tools.element,
         ...this.files.elements,
         ...warnings.elements,
         form.element,
@@ -78,7 +80,7 @@ export class Creator {
     this.removeKeys = watchCreatorKeys({
       stage,
       canvas,
-      around: [this.elements.side, tools.element, this.bar.element],
+      around: [this.elements.side, this.bar.element],
       model,
       editFields: () => {
         form.render();

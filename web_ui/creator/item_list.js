@@ -1,6 +1,6 @@
 // The list of all items of the playground; a click selects one.
 
-import { h, setAttribute, setText } from "../panels/dom.js";
+import { h, setAttribute, setText } from "../ui/dom.js";
 
 /** @param {import("./labels.js").Labels} labels @param {import("./creator_model.js").CreatorModel} model */
 export function itemList(labels, model) {

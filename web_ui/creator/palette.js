@@ -1,9 +1,25 @@
 // The tool palette: select, or place an item.
 
-import { h, icon, setAttribute } from "../panels/dom.js";
-import { CREATOR_ICONS } from "./icons.js";
+import { h, setAttribute } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 import { kindNamed, shapeKinds } from "../playground/kinds/index.js";
 import { readPicture } from "./read_picture.js";
+
+/** @type {Readonly<Record<string, import("../ui/icons.js").IconName>>} */
+const ICONS = {
+  select: "select",
+  rectangle: "rectangle",
+  octagon: "octagon",
+  picture: "image",
+  track: "track",
+  box: "box",
+  cylinder: "post",
+  wall: "wall",
+  u_figure: "uShape",
+  door: "door",
+  activation: "plate",
+  robot: "robot",
+};
 
 /** In display order; those of plug-ins come before the robot. */
 const TOOLS = [
@@ -53,12 +69,13 @@ export function palette({ labels, model, canvas }) {
       "button",
       {
         type: "button",
+        class: "btn icon",
         title: labels.tool(tool),
         "aria-label": labels.tool(tool),
         "data-tool": tool,
         onclick: () => choose(tool),
       },
-      icon(CREATOR_ICONS[tool] ?? CREATOR_ICONS.plugin),
+      icon(ICONS[tool] ?? "plugin"),
     ),
   }));
   /** @param {string} tool */
@@ -74,7 +91,7 @@ export function palette({ labels, model, canvas }) {
   }
   const element = h(
     "div",
-    { class: "palette", role: "toolbar", "aria-label": t("palette"), "aria-orientation": "vertical" },
+    { class: "palette", role: "toolbar", "aria-label": t("palette") },
     ...buttons.map(({ button }) => button),
     file,
   );

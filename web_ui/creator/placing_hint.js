@@ -1,8 +1,8 @@
 // The hint over the view while an item is placed or dragged: what to do next, or why the position is taken; with buttons
 // for those without a keyboard.
 
-import { h, icon, setText } from "../panels/dom.js";
-import { CREATOR_ICONS } from "./icons.js";
+import { h, setText } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 
 /** @typedef {import("./placing.js").Placing} Placing */
 
@@ -19,16 +19,16 @@ export function placingHint({ labels, model, canvas }) {
     act();
     canvas.focus();
   };
-  const hint = h("p", { class: "hint placing-hint" });
+  const hint = h("p", { class: "note-box placing-hint" });
   const finish = h(
     "button",
-    { type: "button", class: "finish", onclick: thenFocusView(() => model.placing?.finish()) },
-    icon(CREATOR_ICONS.done),
+    { type: "button", class: "btn line finish", onclick: thenFocusView(() => model.placing?.finish()) },
+    icon("check"),
     t("hint.finish"),
   );
   const cancel = h(
     "button",
-    { type: "button", class: "cancel", onclick: thenFocusView(() => model.cancel()) },
+    { type: "button", class: "btn line cancel", onclick: thenFocusView(() => model.cancel()) },
     t("hint.cancel"),
   );
   const element = h("div", { class: "placing-hints" }, hint, finish, cancel);

@@ -1,6 +1,6 @@
 // The form of the playground as a whole: title, description, main ground.
 
-import { h } from "../panels/dom.js";
+import { h } from "../ui/dom.js";
 import { grounded, groundOf, titled } from "./commands.js";
 import { control } from "./fields.js";
 import { BUILT_IN } from "../playground/declarations.js";

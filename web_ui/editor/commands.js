@@ -11,7 +11,7 @@ import { download } from "./download.js";
 
 const THYMIO = "thymio-II";
 
-/** @typedef {import("./runtime_client.js").Verb} Verb */
+/** @typedef {import("../input/runtime_client.js").Verb} Verb */
 
 export class EditorCommands {
   /**
@@ -20,20 +20,21 @@ export class EditorCommands {
    * @param {import("../i18n/index.js").Translate} options.pageText
    * @param {string} options.language
    * @param {import("./editor_session.js").EditorSession} options.session
-   * @param {import("./runtime_client.js").RuntimeClient} options.runtime
+   * @param {import("../input/actions.js").Actions} options.actions
    * @param {import("./robot_selection.js").RobotSelection} options.selection
    * @param {import("@codemirror/view").EditorView} options.view
    * @param {import("./debug_markers.js").DebugMarkers} options.markers
    * @param {(text: string, kind: "good" | "warning" | "error") => void} options.report
    * @param {() => void} options.redraw
    */
-  constructor({ t, pageText, language, session, runtime, selection, view, markers, report, redraw }) {
+  constructor({ t, pageText, language, session, actions, selection, view, markers, report, redraw }) {
     this.t = t;
     this.pageText = pageText;
     this.language = language;
     this.session = session;
     this.workspace = session.workspace;
-    this.runtime = runtime;
+    this.actions = actions;
+    this.runtime = actions.runtime;
     this.selection = selection;
     this.view = view;
     this.markers = markers;
@@ -69,8 +70,7 @@ export class EditorCommands {
       return this.view.focus();
     }
     this.workspace.follow();
-    const { owner, robots } = this.selection;
-    const { ok, message } = await this.runtime.loadBuiltIn(owner, choice.sample, robots);
+    const { ok, message } = await this.actions.loadExample(choice.sample);
     if (!ok) this.report(message, "error");
   }
 
@@ -85,8 +85,7 @@ export class EditorCommands {
   async load() {
     const { tab } = this.workspace;
     const { name, text: source } = this.workspace.current;
-    const { owner, robots } = this.selection;
-    const { ok, message } = await this.runtime.load(owner, name, source, robots);
+    const { ok, message } = await this.actions.load(name, source);
     if (!ok) return this.#reportRejection(name, source, message);
     this.workspace.loaded(tab, source);
     this.report(this.t("editor.loaded", { name }), "good");

@@ -11,7 +11,7 @@ export class DebugMarkers {
   /**
    * @param {object} options
    * @param {import("../i18n/index.js").Translate} options.t
-   * @param {import("./runtime_client.js").RuntimeClient} options.runtime
+   * @param {import("../input/runtime_client.js").RuntimeClient} options.runtime
    * @param {import("./workspace.js").Workspace} options.workspace
    * @param {import("./robot_selection.js").RobotSelection} options.selection
    * @param {import("@codemirror/view").EditorView} options.view

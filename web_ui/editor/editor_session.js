@@ -5,7 +5,7 @@ import { trySetItem } from "../browser/local_storage.js";
 import { History } from "./history.js";
 import { INITIAL, reduce } from "./state.js";
 import { FileStore } from "./file_store.js";
-import { ALL, Workspace } from "./workspace.js";
+import { Workspace } from "./workspace.js";
 
 const WATCHED_KEY = "editor.watched";
 const SIZE_KEY = "editor.fontSize";
@@ -62,11 +62,6 @@ export class EditorSession {
     const index = SIZES.findIndex((size) => size >= this.fontSize);
     this.fontSize = SIZES[Math.min(Math.max(index + step, 0), SIZES.length - 1)];
     trySetItem(this.storage, SIZE_KEY, String(this.fontSize));
-  }
-
-  /** The tabs for these robots. @param {readonly string[]} robots */
-  tabs(robots) {
-    return robots.length < 2 ? [ALL] : [ALL, ...robots];
   }
 }
 

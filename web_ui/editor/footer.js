@@ -1,6 +1,6 @@
 // The footer: compiler message, state of the robot, memory usage.
 
-import { h, setAttribute, setText } from "../panels/dom.js";
+import { h, setAttribute, setText } from "../ui/dom.js";
 
 /** @typedef {[used: number, size: number] | null} Share */
 

@@ -1,26 +1,23 @@
-// The header: robot tabs, node, file name, saved and loaded state, and a draft to restore.
+// The header: node, file name, saved and loaded state, and a draft to restore.
 
-import { h, icon, ICONS, setAttribute } from "../panels/dom.js";
+import { h } from "../ui/dom.js";
 import { isInRobot, isUnsaved } from "./documents.js";
-import { ALL } from "./workspace.js";
 
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
  * @param {(kept: import("./file_store.js").StoredFile) => string} options.draftLabel   text about an unsaved draft
  * @param {import("./editor_session.js").EditorSession} options.session
- * @param {(robot: string) => void} options.select   called when the tab of a robot is chosen
  * @param {() => void} options.redraw
- * @param {() => void} options.close
  */
-export function header({ t, draftLabel, session, select, redraw, close }) {
+export function header({ t, draftLabel, session, redraw }) {
   const { workspace } = session;
-  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": t("editor.robots") });
   const nodes = h("select", {
+    class: "select",
     "aria-label": t("editor.nodes"),
     onchange: () => workspace.chooseNode(Number(nodes.value)),
   });
-  const name = h("input", { class: "file-name", "aria-label": t("editor.file"), spellcheck: "false" });
+  const name = h("input", { class: "file-name input", "aria-label": t("editor.file"), spellcheck: "false" });
   name.addEventListener("change", () => {
     workspace.rename(name.value);
     redraw();
@@ -32,55 +29,7 @@ export function header({ t, draftLabel, session, select, redraw, close }) {
   );
   const notLoaded = h("small", {}, t("editor.notLoaded"));
   const draft = h("div", { class: "draft", hidden: true });
-  const element = h(
-    "div",
-    { class: "editor-head" },
-    tabs,
-    nodes,
-    name,
-    unsaved,
-    notLoaded,
-    h(
-      "button",
-      {
-        type: "button",
-        class: "plain close",
-        "aria-label": t("editor.close"),
-        title: t("editor.close"),
-        onclick: close,
-      },
-      icon(ICONS.close),
-    ),
-  );
-
-  let tabsShown = "";
-  /** @param {string[]} wanted */
-  const drawTabs = (wanted) => {
-    if (wanted.join() !== tabsShown) {
-      tabsShown = wanted.join();
-      tabs.hidden = wanted.length < 2;
-      tabs.replaceChildren(
-        ...wanted.map((tab) =>
-          h(
-            "button",
-            {
-              type: "button",
-              role: "tab",
-              "data-tab": tab,
-              onclick() {
-                workspace.choose(tab);
-                if (tab !== ALL) select(tab);
-                redraw();
-              },
-            },
-            tab === ALL ? t("editor.all") : tab,
-          ),
-        ),
-      );
-    }
-    for (const tab of tabs.children)
-      setAttribute(tab, "aria-selected", String(tab.getAttribute("data-tab") === workspace.tab));
-  };
+  const element = h("div", { class: "editor-head" }, nodes, name, unsaved, notLoaded);
 
   let nodesShown = "";
   /** @param {import("./aesl.js").Aesl} file */
@@ -107,7 +56,7 @@ export function header({ t, draftLabel, session, select, redraw, close }) {
     if (kept === null) return;
     /** @param {string} key @param {() => void} act */
     const button = (key, act) =>
-      h("button", { type: "button", "data-draft": key, onclick: () => (act(), redraw()) }, t(`editor.${key}`));
+      h("button", { type: "button", class: "btn line", "data-draft": key, onclick: () => (act(), redraw()) }, t(`editor.${key}`));
     draft.replaceChildren(
       h("span", {}, draftLabel(kept)),
       button("restore", () => workspace.restoreDraft()),
@@ -118,9 +67,8 @@ export function header({ t, draftLabel, session, select, redraw, close }) {
   return {
     element,
     draft,
-    /** @param {string[]} wanted  the tabs to show @param {import("./aesl.js").Aesl} file */
-    render(wanted, file) {
-      drawTabs(wanted);
+    /** @param {import("./aesl.js").Aesl} file */
+    render(file) {
       drawFile(file);
       drawDraft();
     },

@@ -1,7 +1,7 @@
 // Help texts in the page's language: requested once, and merged into the target descriptions of robots.
 
 /** @typedef {import("./state.js").Target} Target */
-/** @typedef {import("./runtime_client.js").RuntimeClient} RuntimeClient */
+/** @typedef {import("../input/runtime_client.js").RuntimeClient} RuntimeClient */
 
 const KINDS = /** @type {const} */ (["variables", "events", "natives"]);
 

@@ -1,6 +1,6 @@
 // The hint bar: what was probably meant where the compiler reports an error, with a button that corrects it.
 
-import { h, setText } from "../panels/dom.js";
+import { h, setText } from "../ui/dom.js";
 
 /** @typedef {import("./checking.js").Repair} Repair */
 

@@ -1,6 +1,6 @@
 // The editor: creates the objects of one session and language, and draws them once per frame when something changed.
 //
-//   RobotSelection   which robots the open tab is for
+//   RobotSelection   which robots the text is for
 //   ProgramChecker   the compiler's verdict on the text, and its repair
 //   DebugMarkers     breakpoints and the line at which the program is stopped
 //   RobotStatus      state and memory of the robot's program in the footer
@@ -9,8 +9,8 @@
 import PHRASES from "../i18n/codemirror.texts.js";
 import WORDS from "../i18n/editor.texts.js";
 import { translator } from "../i18n/index.js";
-import { h } from "../panels/dom.js";
 import { disabledReason } from "../state/disabled_reason.js";
+import { h } from "../ui/dom.js";
 import { allEvents } from "./aesl.js";
 import { CHECK_SERVICE } from "./checking.js";
 import { EditorCommands } from "./commands.js";
@@ -19,7 +19,6 @@ import { footer } from "./footer.js";
 import { header } from "./header.js";
 import { hintBar, repairLabel } from "./hint.js";
 import { HelpTexts } from "./help_texts.js";
-import { RuntimeClient } from "./runtime_client.js";
 import { ProgramChecker } from "./program_checker.js";
 import { RobotSelection } from "./robot_selection.js";
 import { RobotStatus } from "./robot_status.js";
@@ -36,25 +35,22 @@ export { splitEditorTopic } from "./state.js";
 /**
  * @typedef {object} EditorOptions
  * @property {import("./editor_session.js").EditorSession} session
- * @property {import("../protocol/client.js").Client} client
- * @property {import("../state/store.js").Store} store
- * @property {string} language
- * @property {import("../i18n/index.js").Translate} pageText
- * @property {(text: string) => void} announce
- * @property {() => void} close
+ * @property {import("../shell/context.js").Context} context
  */
 
 export class Editor {
   #isScheduled = false;
 
   /** @param {EditorOptions} options */
-  constructor({ session, client, store, language, pageText, announce, close }) {
+  constructor({ session, context }) {
+    const { store, language, announce, actions } = context;
+    const pageText = context.text("page");
     this.session = session;
     this.store = store;
     this.pageText = pageText;
     const t = translator(language, WORDS);
     const { workspace } = session;
-    this.runtime = new RuntimeClient(client);
+    this.runtime = actions.runtime;
     this.helpTexts = new HelpTexts(language);
     this.selection = new RobotSelection({ store, session, helpTexts: this.helpTexts });
 
@@ -87,17 +83,15 @@ export class Editor {
     const hints = hintBar(t, () => this.checker.correct());
     this.checker = new ProgramChecker({ t, language, runtime, workspace, text, hints, foot, announce, redraw });
     this.markers = new DebugMarkers({ t, runtime, workspace, selection, view, report, announce, redraw });
-    this.status = new RobotStatus({ language, pageText, foot, announce });
+    this.status = new RobotStatus({ language, programText: context.text("program"), foot, announce });
     const { markers } = this;
     this.commands = new EditorCommands({
-      t, pageText, language, session, runtime, selection, view, markers, report, redraw,
+      t, pageText, language, session, actions, selection, view, markers, report, redraw,
     }); // prettier-ignore
 
     /** @param {import("./file_store.js").StoredFile} kept */
     const draftLabel = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
-    /** @param {string} robot */
-    const select = (robot) => store.dispatch({ type: "select", robot });
-    this.head = header({ t, draftLabel, session, redraw, close, select });
+    this.head = header({ t, draftLabel, session, redraw });
     this.bar = toolbar(t, this.commands, draftLabel);
     this.tools = toolbox({
       t,
@@ -134,6 +128,23 @@ export class Editor {
     this.#showText();
     this.#render();
     this.text.view.focus();
+  }
+
+  /** Call when the tab is shown again: sizes were not known while it was hidden. */
+  show() {
+    this.text.view.requestMeasure();
+    this.redraw();
+    this.text.view.focus();
+  }
+
+  /** @param {string} name @param {string} content */
+  openText(name, content) {
+    this.commands.openText(name, content);
+  }
+
+  /** @param {File} file */
+  openFile(file) {
+    void this.commands.open(file);
   }
 
   /** Draw with the next frame. */
@@ -188,8 +199,7 @@ export class Editor {
     const { session, selection, store } = this;
     const { workspace } = session;
     const { services, simulator } = store.state;
-    const tabs = session.tabs(selection.robots);
-    if (!tabs.includes(workspace.tab)) workspace.choose(ALL);
+    workspace.choose(selection.wanted);
     if (services.includes(CHECK_SERVICE)) void this.helpTexts.load(this.runtime, () => this.redraw());
     this.checker.retry(services);
     workspace.setRobotProgram(ALL, session.state.targets[store.state.selected]?.program);
@@ -198,10 +208,10 @@ export class Editor {
     const { file } = workspace;
     const reason = disabledReason(store.state, this.pageText);
     this.element.style.setProperty("--code-size", `${session.fontSize}px`);
-    this.head.render(tabs, file);
+    this.head.render(file);
     this.markers.render();
     this.status.render(selection.status?.values ?? {}, simulator?.paused ?? false, this.checker.verdict?.use);
-    this.bar.render(workspace.fileStore.recent(), session.state.behaviors, reason);
+    this.bar.render(workspace.fileStore.recent(), store.state.behaviors, reason);
     this.tools.render({
       robot: selection.robot,
       target: selection.target,

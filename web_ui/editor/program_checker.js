@@ -23,7 +23,7 @@ export class ProgramChecker {
    * @param {object} options
    * @param {import("../i18n/index.js").Translate} options.t
    * @param {string} options.language
-   * @param {import("./runtime_client.js").RuntimeClient} options.runtime
+   * @param {import("../input/runtime_client.js").RuntimeClient} options.runtime
    * @param {import("./workspace.js").Workspace} options.workspace
    * @param {import("./text.js").TextField} options.text
    * @param {ReturnType<typeof import("./hint.js").hintBar>} options.hints

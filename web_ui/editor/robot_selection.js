@@ -1,4 +1,4 @@
-// Which robots the open tab is for, and what is known about them.
+// Which robots the text is for, by the choice of the robot in the header, and what is known about them.
 
 import { ALL } from "./workspace.js";
 
@@ -18,6 +18,12 @@ export class RobotSelection {
   /** Names of all robots. */
   get robots() {
     return Object.keys(this.store.state.robots);
+  }
+
+  /** The tab of the workspace for the chosen robot: that of all robots if there is only one, or if all are addressed. */
+  get wanted() {
+    const { selected, toAll } = this.store.state;
+    return toAll || this.robots.length < 2 ? ALL : selected;
   }
 
   /** The robot whose values are shown. */

@@ -8,13 +8,13 @@ export class RobotStatus {
   /**
    * @param {object} options
    * @param {string} options.language
-   * @param {import("../i18n/index.js").Translate} options.pageText
+   * @param {import("../i18n/index.js").Translate} options.programText
    * @param {ReturnType<typeof import("./footer.js").footer>} options.foot
    * @param {(text: string) => void} options.announce
    */
-  constructor({ language, pageText, foot, announce }) {
+  constructor({ language, programText, foot, announce }) {
     this.language = language;
-    this.pageText = pageText;
+    this.programText = programText;
     this.foot = foot;
     this.announce = announce;
   }
@@ -26,7 +26,7 @@ export class RobotStatus {
    */
   render(values, timePaused, use) {
     const { state = "" } = values;
-    const words = state ? stateLabel(state, this.pageText, timePaused) + lineLabel(values, this.pageText) : "";
+    const words = state ? stateLabel(state, this.programText, timePaused) + lineLabel(values, this.programText) : "";
     const fault = faultMessage(values, this.language);
     const sentence = words + (fault ? `: ${fault}` : "");
     this.foot.robot(timePaused && state === "running" ? "paused" : state, sentence);

@@ -1,29 +1,29 @@
-// Integrates the playground creator into the page: loads it on demand and runs its playground in the simulator.
+// Integrates the playground creator into the page, as a mode of the tab "Playground": loads it on demand and runs its
+// playground in the simulator. Another tab shows the running world again; the session stays, and the tab continues it.
 
 import { localStore } from "../browser/local_storage.js";
 import { translator } from "../i18n/index.js";
-import { faultView } from "../panels/fault.js";
 import { parse } from "../playground/document.js";
+import { faultView } from "../playground_tab/refusal.js";
 import { CONNECTION } from "../state/index.js";
 import { disabledReason } from "../state/disabled_reason.js";
 
 /** @typedef {import("../creator/index.js").Creator} Creator */
 /** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
-/** @typedef {import("../panels/index.js").Context} Context */
-
-/** Width of the tool palette at the left of the view. */
-const PALETTE_PX = 66;
+/** @typedef {import("../shell/context.js").Context} Context */
 
 export class CreatorHost {
   /**
    * @param {object} options
-   * @param {(slot: "stage" | "creator" | "footer") => HTMLElement} options.slot
+   * @param {(selector: string) => HTMLElement} options.element  finds an element of index.html
    * @param {() => import("../scene/index.js").SceneView} options.scene
    */
-  constructor({ slot, scene }) {
-    this.slot = slot;
+  constructor({ element, scene }) {
+    this.element = element;
     this.scene = scene;
     this.isOpen = false;
+    /** Whether the tab continues the session when it is shown again. */
+    this.isSuspended = false;
     /** @type {typeof import("../creator/index.js") | null} */ this.module = null;
     /** @type {CreatorSession | null} */ this.session = null;
     /** @type {Creator | null} */ this.creator = null;
@@ -43,8 +43,8 @@ export class CreatorHost {
   /** Call once per frame, before drawing. */
   render() {
     if (!this.isOpen || this.context === null) return;
-    const { store, t } = this.context;
-    this.creator?.render(disabledReason(store.state, t));
+    const { store, text } = this.context;
+    this.creator?.render(disabledReason(store.state, text("page")));
   }
 
   /** Set the context: on start, and after a change of language. @param {Context} context */
@@ -63,7 +63,7 @@ export class CreatorHost {
     if (context === null) return;
     this.module ??= await import("../creator/index.js").catch(() => null);
     if (this.module === null) {
-      context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded"), cause: CONNECTION });
+      context.store.dispatch({ type: "notice", level: "error", text: context.text("page")("app.notLoaded"), cause: CONNECTION });
       return;
     }
     const title = translator(context.language, this.module.WORDS)("new.title");
@@ -77,14 +77,13 @@ export class CreatorHost {
       this.session.replacePlayground(playground, { word: "change.opened", values: { name: playground.title } });
       this.scene().reframe();
     }
+    this.isSuspended = false;
+    context.workspace.select("playground");
     if (!this.isOpen) {
       this.isOpen = true;
       window.addEventListener("pagehide", this.#keep);
       document.body.classList.add("creator-open");
-      this.slot("creator").hidden = false;
       context.dragController.setMode(false);
-      context.editor.close(); // there is no room for both
-      this.scene().camera.setInset(PALETTE_PX);
       this.#build();
     }
     this.scene().setView("home");
@@ -100,6 +99,14 @@ export class CreatorHost {
     this.creator?.open(file);
   }
 
+  /** Call when a tab is opened. @param {boolean} visible  whether it is the tab of playgrounds */
+  setVisible(visible) {
+    if (!visible && this.isOpen) {
+      this.close();
+      this.isSuspended = true;
+    } else if (visible && this.isSuspended) void this.open();
+  }
+
   close() {
     if (!this.isOpen) return;
     this.session?.keep();
@@ -108,8 +115,7 @@ export class CreatorHost {
     this.creator?.destroy();
     this.creator = null;
     document.body.classList.remove("creator-open");
-    this.slot("creator").hidden = true;
-    this.scene().camera.setInset(0);
+    this.#showBar(false);
     this.scene().setView("home");
   }
 
@@ -129,18 +135,28 @@ export class CreatorHost {
     };
   }
 
+  /** Show the bar of the creator instead of tray and time. @param {boolean} shown */
+  #showBar(shown) {
+    this.element("#creator-bar").hidden = !shown;
+    for (const other of ["#tray", "#time"]) this.element(other).hidden = shown;
+  }
+
   #keep = () => this.session?.keep();
 
   /** Load the playground into the simulator; if it is rejected, the creator stays open and shows the reason. */
   async #tryIt() {
     const { context, session, creator } = this;
     if (context === null || session === null || creator === null) return;
-    const { actions, store, t } = context;
+    const { actions, store, text } = context;
+    const playgroundText = text("playground");
     creator.refuse(null);
     await actions.loadPlayground(session.fileName, new TextEncoder().encode(session.text));
     const upload = store.state.uploads.playground;
     if (upload?.phase === "accepted") this.close();
-    else creator.refuse(faultView(t, t("playground.refused", { name: session.fileName }), upload?.fault ?? null));
+    else {
+      const headline = playgroundText("playground.refused", { name: session.fileName });
+      creator.refuse(faultView(playgroundText, headline, upload?.fault ?? null));
+    }
   }
 
   #build() {
@@ -150,16 +166,17 @@ export class CreatorHost {
     this.creator = new module.Creator({
       session,
       language: context.language,
-      pageText: context.t,
+      text: context.text,
       scene: this.scene(),
       announce: context.announce,
       tryIt: () => void this.#tryIt(),
       close: () => this.close(),
     });
     const { stage, side, footer } = this.creator.elements;
-    this.slot("stage").append(stage);
-    this.slot("creator").append(side);
-    this.slot("footer").append(footer);
+    this.element("#scene").append(stage);
+    this.element("#panel-playground").append(side);
+    this.element("#creator-bar").append(footer);
+    this.#showBar(true);
     this.scene().invalidate();
   }
 }

@@ -1,10 +1,11 @@
 // Integrates the tour into the page: shown at the first visit, never again after it was closed, and on request.
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
+import { visitOptions } from "../browser/visit_options.js";
 import { CONNECTION } from "../state/index.js";
 
 /** @typedef {import("../tour/index.js").Tour} Tour */
-/** @typedef {import("../panels/index.js").Context} Context */
+/** @typedef {import("../shell/context.js").Context} Context */
 
 const KEY = "tour";
 const CLOSED = "closed";
@@ -19,8 +20,8 @@ const CLOSED = "closed";
  * @param {unknown} visit.entry             history state of this visit; available even without storage
  */
 export function shouldStart({ search, storage, entry }) {
-  const parameter = new URLSearchParams(search).get("tour");
-  if (parameter === "on" || parameter === "off") return parameter === "on";
+  const { tour } = visitOptions(search);
+  if (tour !== null) return tour;
   return storage.getItem(KEY) !== CLOSED && /** @type {any} */ (entry)?.[KEY] !== CLOSED;
 }
 
@@ -53,8 +54,8 @@ export class TourHost {
     const { activeElement } = document;
     this.module ??= await import("../tour/index.js").catch(() => null);
     if (this.module === null) {
-      const { store, t } = /** @type {Context} */ (this.context);
-      store.dispatch({ type: "notice", level: "error", text: t("app.notLoaded"), cause: CONNECTION });
+      const { store, text } = /** @type {Context} */ (this.context);
+      store.dispatch({ type: "notice", level: "error", text: text("page")("app.notLoaded"), cause: CONNECTION });
       return;
     }
     this.previousFocus = activeElement;
@@ -69,7 +70,7 @@ export class TourHost {
     trySetItem(localStore, KEY, CLOSED);
     history.replaceState({ ...history.state, [KEY]: CLOSED }, "");
     const place = this.previousFocus instanceof HTMLElement && this.previousFocus !== document.body ? this.previousFocus : null;
-    (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#tour-switch")))?.focus();
+    (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#help-open")))?.focus();
   }
 
   /** Call once per frame: the described element may have moved. */

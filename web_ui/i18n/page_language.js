@@ -2,6 +2,10 @@
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { chooseLanguage, translator } from "./index.js";
+import { TEXTS } from "./page_texts.js";
+
+/** @typedef {import("./page_texts.js").TextFile} TextFile */
+/** @typedef {import("./index.js").Translate} Translate */
 
 const KEY = "language";
 
@@ -9,16 +13,20 @@ export class PageLanguage {
   /** @param {readonly string[]} preferred  languages of the browser */
   constructor(preferred) {
     this.language = chooseLanguage([localStore.getItem(KEY) ?? "", ...preferred]);
-    this.translate = translator(this.language);
+    /** @type {Map<TextFile, Translate>} */ this.translators = new Map();
   }
 
-  /** A text in the current language. @type {import("./index.js").Translate} */
-  t = (key, values) => this.translate(key, values);
+  /** The texts of one file in the current language. @type {(file: TextFile) => Translate} */
+  text = (file) => {
+    const known = this.translators.get(file) ?? translator(this.language, TEXTS[file]);
+    this.translators.set(file, known);
+    return known;
+  };
 
   /** @param {string} language */
   choose(language) {
     this.language = language;
-    this.translate = translator(language);
+    this.translators.clear();
     trySetItem(localStore, KEY, language);
   }
 }

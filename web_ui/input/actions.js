@@ -1,10 +1,10 @@
 // User actions, as messages, service calls and parameters. No DOM and no 3D scene.
 
-import { CHECK_SERVICE, checkRequest, firstFault } from "../editor/checking.js";
 import { startOf } from "../move/start.js";
-import { FILE } from "../state/index.js";
+import { FILE, targets } from "../state/index.js";
 import { PARAMETERS, robotTopic } from "../state/names.js";
 import { textOf } from "../browser/text_file.js";
+import { RuntimeClient } from "./runtime_client.js";
 
 /** @typedef {import("../protocol/client.js").Client} Client */
 /** @typedef {import("../state/store.js").Store} Store */
@@ -44,14 +44,21 @@ export class Actions {
    */
   constructor({ client, store, t, language, now = () => performance.now(), later = setTimeout.bind(globalThis) }) {
     this.client = client;
-    /** The last loaded program or behavior: kind and content. */
-    this.loaded = "";
+    /** Requests to the Aseba runtime: the one way to load programs. */
+    this.runtime = new RuntimeClient(client);
     this.store = store;
     this.t = t;
     this.language = language;
     this.now = now;
     this.later = later;
     /** @type {Map<string, number>} time of the press, by topic of the button */ this.pressTimes = new Map();
+    /** @type {Map<string, readonly string[]>} robots on which the pad holds a button, by button */ this.held = new Map();
+  }
+
+  /** The robot that programs are loaded into; null: all robots. @returns {string | null} */
+  get owner() {
+    const { robots, selected, toAll } = this.store.state;
+    return toAll || Object.keys(robots).length < 2 ? null : selected;
   }
 
   /**
@@ -78,36 +85,55 @@ export class Actions {
   }
 
   /**
-   * Apply a stimulus to the selected robot.
+   * Press or release a button of the addressed robots; it is released on those on which it was pressed.
+   *
+   * @param {string} button
+   * @param {boolean} pressed
+   */
+  pressPad(button, pressed) {
+    const robots = (pressed ? null : this.held.get(button)) ?? targets(this.store.state);
+    if (pressed) this.held.set(button, robots);
+    else this.held.delete(button);
+    for (const robot of robots) this.press(robot, button, pressed);
+  }
+
+  /**
+   * Apply a stimulus to the addressed robots.
    *
    * @param {string} name    topic relative to the robot
    * @param {string} type
    * @param {Record<string, any>} value
    */
   operate(name, type, value) {
-    this.client.publish(robotTopic(this.store.state.selected, name), type, value);
+    for (const robot of targets(this.store.state)) this.client.publish(robotTopic(robot, name), type, value);
   }
 
-  /** Stop everything: all programs, and all wheels. */
+  /** Stop the addressed robots: their programs, and their wheels. */
   async stop() {
     const { services, robots } = this.store.state;
-    const stops = services.filter((name) => name.endsWith("/aseba/stop"));
+    const stops =
+      this.owner === null ? services.filter((name) => name.endsWith("/aseba/stop")) : [this.programService("stop")];
     await Promise.all(stops.map((name) => this.call(name)));
-    for (const robot of Object.keys(robots)) {
+    for (const robot of this.owner === null ? Object.keys(robots) : [this.owner]) {
       this.client.publish(robotTopic(robot, "cmd_vel"), "geometry_msgs/msg/Twist", {});
     }
   }
 
-  /** Run, stop or reset the program of the selected robot. @param {"run" | "stop" | "reset"} verb */
-  program(verb) {
-    return this.call(this.programService(verb));
+  /** Run, stop or reset the programs of the addressed robots. @param {"run" | "stop" | "reset"} verb */
+  async program(verb) {
+    const services = new Set(targets(this.store.state).map((robot) => this.programService(verb, robot)));
+    await Promise.all([...services].map((service) => this.call(service)));
   }
 
-  /** The name of that service for the selected robot. @param {"run" | "stop" | "reset"} verb */
-  programService(verb) {
-    const { services, selected } = this.store.state;
-    const own = robotTopic(selected, `aseba/${verb}`);
-    return services.includes(own) ? own : `/aseba/${verb}`;
+  /**
+   * The name of that service.
+   *
+   * @param {"run" | "stop" | "reset"} verb
+   * @param {string} [robot]  without it, the selected one
+   */
+  programService(verb, robot = this.store.state.selected) {
+    const own = robotTopic(robot, `aseba/${verb}`);
+    return this.store.state.services.includes(own) ? own : `/aseba/${verb}`;
   }
 
   /** @param {boolean} paused */
@@ -156,24 +182,6 @@ export class Actions {
     return result.successful;
   }
 
-  /**
-   * Restart programs that are loaded again: setting a parameter to its current value has no effect.
-   *
-   * @param {string} loaded
-   */
-  async #restartPrograms(loaded) {
-    const isSame = this.loaded === loaded;
-    this.loaded = loaded;
-    if (!isSame) return;
-    const robots = Object.keys(this.store.state.robots);
-    if (loaded.startsWith("program")) {
-      await this.client.setParameters([{ name: PARAMETERS.behavior, value: "" }]);
-    }
-    for (const verb of ["reset", "run"]) {
-      await Promise.all(robots.map((robot) => this.call(robotTopic(robot, `aseba/${verb}`))));
-    }
-  }
-
   /** Return a fallen robot to its start pose, or next to it if that is occupied. @param {string} robot  in topics */
   async putBack(robot) {
     const text = await this.playgroundText();
@@ -182,30 +190,30 @@ export class Actions {
     await this.place(name, startOf(this.store.state, text, name));
   }
 
-  /** Start a built-in behavior on the robots. @param {string} name */
-  async setBehavior(name) {
-    const answer = await this.client.setParameters([{ name: PARAMETERS.behavior, value: name }]);
-    if (answer.ok) await this.#restartPrograms(`behavior ${name}`);
+  /** Start a built-in behavior on the addressed robots. @param {string} name */
+  async loadExample(name) {
+    const answer = await this.runtime.loadBuiltIn(this.owner, name, this.#robots);
     this.#report(PARAMETERS.behavior, answer);
+    return answer;
   }
 
-  /** @param {string} name @param {string} text */
+  /**
+   * Load a program into the addressed robots; it starts at once.
+   *
+   * @param {string} name
+   * @param {string} text
+   * @returns {Promise<import("./runtime_client.js").Answer>}
+   */
+  load(name, text) {
+    return this.runtime.load(this.owner, name, text, this.#robots);
+  }
+
+  /** Load a program file, and note in the state what became of it. @param {string} name @param {string} text */
   async loadProgram(name, text) {
     this.store.dispatch({ type: "upload", what: "program", name, text });
-    const answer = await this.client.setParameters([
-      { name: PARAMETERS.programName, value: name },
-      { name: PARAMETERS.source, value: text },
-    ]);
-    if (answer.ok) await this.#restartPrograms(`program ${text}`);
-    const fault = answer.ok ? null : await this.#faultOf(text);
-    this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message, fault });
-  }
-
-  /** The compiler's error message in the language of the page; null if there is none. @param {string} source */
-  async #faultOf(source) {
-    const question = checkRequest({ source, language: this.language(), events: [], constants: [] });
-    const { ok, value } = await this.client.call(CHECK_SERVICE, question);
-    return ok && value !== undefined ? firstFault(value) : null;
+    const { ok, message } = await this.load(name, text);
+    const fault = ok ? null : await this.runtime.fault(text, this.language());
+    this.store.dispatch({ type: "uploaded", what: "program", message: ok ? null : message, fault });
   }
 
   /** @param {string} name @param {Uint8Array} [content]  content of a file; without it, `name` is a shipped playground */
@@ -239,6 +247,10 @@ export class Actions {
       if (file.size > LARGEST_PLAYGROUND) return this.refuse("file.tooLarge", file);
       await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));
     } else this.refuse("file.unknown", file);
+  }
+
+  get #robots() {
+    return Object.keys(this.store.state.robots);
   }
 
   /** @param {string} key @param {File} file */

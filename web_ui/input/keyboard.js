@@ -44,7 +44,7 @@ export function plainKey({ key }) {
  * @param {HTMLElement} element  element that must have the focus
  * @param {SceneView} scene
  * @param {import("../move/drag_controller.js").DragController} dragController
- * @param {(button: string, pressed: boolean) => void} press
+ * @param {(button: string, pressed: boolean) => void} press   presses a button of the addressed robots
  */
 export function watchKeyboard(element, scene, dragController, press) {
   /** @type {Set<string>} */ const pressedKeys = new Set();

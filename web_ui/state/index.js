@@ -66,7 +66,8 @@ import { applyTransforms } from "./transforms.js";
  * @property {ReadonlyMap<string, Marker>} objects  movable objects and doors
  * @property {Readonly<Record<string, Robot>>} robots
  * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime
- * @property {string} selected     name of the robot in the panels
+ * @property {string} selected     name of the robot whose values are shown
+ * @property {boolean} toAll       whether actions go to all robots; only with several
  * @property {number} timeNs       simulated time
  * @property {Readonly<{ program: Upload | null, playground: Upload | null }>} uploads
  * @property {Notice[]} notices
@@ -86,6 +87,7 @@ import { applyTransforms } from "./transforms.js";
  *   | { type: "removeStatus", ids: string[] }
  *   | { type: "fault", what: string }
  *   | { type: "select", robot: string }
+ *   | { type: "address", all: boolean }
  *   | { type: "showSensors", shown: boolean }
  *   | { type: "upload", what: UploadKind, name: string, text: string }
  *   | { type: "uploaded", what: UploadKind, message: string | null, fault?: Fault | null }
@@ -122,6 +124,7 @@ export const INITIAL = {
   robots: {},
   programs: {},
   selected: "",
+  toAll: false,
   timeNs: 0,
   uploads: { program: null, playground: null },
   notices: [],
@@ -179,7 +182,8 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   },
   removeStatus: (state, { ids }) => withoutNotices(state, ids.map(statusCause)),
   fault: (state, { what }) => withNotice(state, "error", what),
-  select: (state, { robot }) => withoutStaleReadings({ ...state, selected: robot }, state.selected),
+  select: (state, { robot }) => withoutStaleReadings({ ...state, selected: robot, toAll: false }, state.selected),
+  address: (state, { all }) => ({ ...state, toAll: all && Object.keys(state.robots).length > 1 }),
   showSensors: (state, { shown }) => ({ ...state, sensorsShown: shown }),
   upload: (state, { what, name, text }) =>
     withoutNotices(withUpload(state, what, { name, text, phase: "sending", fault: null }), [uploadCause(what), FILE]),
@@ -217,7 +221,8 @@ function withChannels(state, { topics }) {
   }
   const there = [...names].filter((name) => isKnownRobot(state, name)).sort(byName);
   const robots = Object.fromEntries(there.map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
-  return { ...state, topics, robots, selected: selection(state.selected, robots) };
+  const toAll = state.toAll && there.length > 1;
+  return { ...state, topics, robots, toAll, selected: selection(state.selected, robots) };
 }
 
 /** Numeric order: thymio_2 before thymio_10. @param {string} one @param {string} other */
@@ -337,6 +342,11 @@ export function locate(message, name = "") {
   const match = /line (\d+), column (\d+):?\s*/.exec(text);
   if (match === null) return { text, line: null, column: null };
   return { text: text.replace(match[0], ""), line: Number(match[1]), column: Number(match[2]) };
+}
+
+/** Names of the robots that actions go to. @param {State} state @returns {readonly string[]} */
+export function targets({ robots, selected, toAll }) {
+  return toAll ? Object.keys(robots) : [selected];
 }
 
 /** The program state of the selected robot, else of the shared runtime. @param {State} state */

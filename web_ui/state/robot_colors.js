@@ -1,6 +1,6 @@
-// A color for each robot, the same in its tab, at its name and in the 2D view. It is never the only indication.
+// A color for each robot, the same in the choice of the robot, at its name and in the 2D view. It is never the only indication.
 
-const COLORS = ["#1259b8", "#b3201a", "#14703c", "#8a4b00", "#7a2fa8", "#0b6f7c", "#a3246b", "#4d5d70"];
+const COLORS = ["#2f6fd0", "#c23b2e", "#1a7d43", "#a05a00", "#7a3fb5", "#0f7c86", "#b52a7a", "#54606b"];
 
 /** @param {readonly string[]} names  names of all robots @param {string} name */
 export function robotColor(names, name) {

@@ -1,6 +1,7 @@
 // The tour of the page: a card that does not block the page.
 
-import { h, icon, ICONS, setAttribute, setText } from "../panels/dom.js";
+import { h, setAttribute, setText } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 import { translator } from "../i18n/index.js";
 import tourTexts from "../i18n/tour.texts.js";
 import { placed } from "./place.js";
@@ -25,8 +26,8 @@ export function createTour({ language, step: first, stepped, close }) {
   const text = h("p", { id: "tour-text" });
   const again = h("small", {}, t("again"));
   const count = h("span", { class: "tour-count" });
-  const back = h("button", { type: "button", onclick: () => go(-1) }, t("back"));
-  const next = h("button", { type: "button", class: "primary", onclick: () => go(1) });
+  const back = h("button", { type: "button", class: "btn", onclick: () => go(-1) }, t("back"));
+  const next = h("button", { type: "button", class: "btn you next", onclick: () => go(1) });
   const card = h(
     "dialog",
     { class: "tour", "aria-labelledby": "tour-title", "aria-describedby": "tour-text" },
@@ -36,8 +37,8 @@ export function createTour({ language, step: first, stepped, close }) {
       title,
       h(
         "button",
-        { type: "button", class: "plain tour-close", "aria-label": t("close"), title: t("close"), onclick: close },
-        icon(ICONS.close),
+        { type: "button", class: "btn icon tour-close", "aria-label": t("close"), title: t("close"), onclick: close },
+        icon("close"),
       ),
     ),
     h("div", { "aria-live": "polite" }, text, again),

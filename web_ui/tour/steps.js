@@ -3,9 +3,9 @@
 /** @typedef {{ name: string, targets: readonly string[] }} Step */
 
 export const STEPS = /** @type {readonly Step[]} */ ([
-  { name: "scene", targets: ["#view", ".editor-slot"] },
-  { name: "buttons", targets: [".dpad", ".fold"] },
+  { name: "scene", targets: ["#view", "#work"] },
+  { name: "buttons", targets: ["#pad", "#tray-unfold"] },
   { name: "move", targets: ['[data-view="move"]'] },
-  { name: "program", targets: ["#editor-switch"] },
-  { name: "playgrounds", targets: ["#gallery-open", "#creator-switch"] },
+  { name: "program", targets: ["#tab-program", "#bar-program"] },
+  { name: "playgrounds", targets: ["#gallery-open", "#tab-playground", "#bar-playground"] },
 ]);

@@ -183,6 +183,17 @@ def test_another_program_ends_a_behaviour_and_the_behaviour_can_come_back(ros, r
     ros.until(lambda: get_variables(ros, "me") == [[2]])
 
 
+def test_a_program_of_one_robot_does_not_end_the_behaviour_of_another(ros, runtime):
+    runtime("var me = 1", **TWO)
+    anna, bert = Status(ros, "/anna"), Status(ros, "/bert")
+    assert set_parameters(ros, {"behaviour": "explorer"}).successful
+    ros.until(lambda: anna["program"].startswith("explorer") and bert["program"].startswith("explorer"))
+    assert set_parameters(ros, {"robots.anna.script.path": "friendly"}).successful
+    ros.until(lambda: anna["program"].startswith("friendly"))
+    assert set_parameters(ros, {"robots.anna.script.name": "waits"}).successful  # bert is asked after that
+    assert bert["program"].startswith("explorer")
+
+
 def test_a_changed_file_is_read_again(ros, runtime, tmp_path):
     path = tmp_path / "counts.aesl"
     path.write_text("var me = 1\nonevent button.left\nme = 7")

@@ -111,9 +111,10 @@ class RobotSet(Sequence[DeviceEndpoints]):
         before = self._behaviour
         if "behaviour" in change.changes:
             self._behaviour = self._values.params.behaviour
+        is_switched = self._behaviour != before  # not by a robot that gets a program of its own
         for endpoints in self._robots:
             endpoints.set_debug_options(self._values.debug_options(endpoints.names.name))
-            self._apply_program(endpoints, old, change, is_switched=self._behaviour != before)
+            self._apply_program(endpoints, old, change, is_switched=is_switched)
 
     def restart(self) -> None:
         """Restart all robots, after a jump back in time."""

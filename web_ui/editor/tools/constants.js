@@ -1,6 +1,6 @@
 // The constants of the program: edited in place, stored in the file.
 
-import { h, renew, setText } from "../../panels/dom.js";
+import { h, renew, setText } from "../../ui/dom.js";
 import { GREATEST, LEAST } from "../aesl.js";
 import { parseNumbers } from "../numbers.js";
 import { entryForm } from "./entry_form.js";

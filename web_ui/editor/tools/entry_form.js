@@ -1,6 +1,6 @@
 // A form row to add an event or constant: name, number, button; errors are shown in place.
 
-import { h, setText } from "../../panels/dom.js";
+import { h, setText } from "../../ui/dom.js";
 import { WORD } from "../help.js";
 import { parseNumbers } from "../numbers.js";
 

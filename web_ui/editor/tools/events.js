@@ -1,6 +1,6 @@
 // The program's events: send, add, remove, plot; and the log of received events.
 
-import { h, lock, renew, setAttribute, setText } from "../../panels/dom.js";
+import { h, lock, renew, setAttribute, setText } from "../../ui/dom.js";
 import { LARGEST_EVENT } from "../aesl.js";
 import { eventKey } from "../editor_session.js";
 import { download } from "../download.js";

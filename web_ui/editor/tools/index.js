@@ -1,6 +1,6 @@
 // The tools beside the text, one tab each. To add one: a file, and a line here.
 
-import { h, setAttribute } from "../../panels/dom.js";
+import { h, setAttribute } from "../../ui/dom.js";
 import { constantsTool } from "./constants.js";
 import { eventsTool } from "./events.js";
 import { plotTool } from "./plot.js";
@@ -57,7 +57,7 @@ export function toolbox(context) {
     session.tool = name;
     context.redraw();
   };
-  const list = h("div", { role: "tablist", class: "tabs", "aria-label": t("tools") }, ...tabs);
+  const list = h("div", { role: "tablist", class: "tool-tabs", "aria-label": t("tools") }, ...tabs);
   list.addEventListener("keydown", ({ key }) => {
     const step = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0;
     if (step === 0) return;

@@ -1,6 +1,6 @@
 // The plot of watched values: a canvas with one line per value, and CSV export.
 
-import { h, setText } from "../../panels/dom.js";
+import { h, setText } from "../../ui/dom.js";
 import { download } from "../download.js";
 import { csv } from "../numbers.js";
 import { drawPlot, STYLES } from "../plot.js";

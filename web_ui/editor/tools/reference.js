@@ -1,6 +1,6 @@
 // The reference of native functions, local events and variables; a click inserts the name.
 
-import { h, setText } from "../../panels/dom.js";
+import { h, setText } from "../../ui/dom.js";
 import { signature } from "../help.js";
 
 /** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */

@@ -1,6 +1,6 @@
 // All variables with live values; a click edits one, a star watches and plots it.
 
-import { h, setAttribute, setText } from "../../panels/dom.js";
+import { h, setAttribute, setText } from "../../ui/dom.js";
 import { download } from "../download.js";
 import { csv, parseNumbers } from "../numbers.js";
 

@@ -1,0 +1,108 @@
+"""The frame of the page: tabs, widths, themes, menus, and the choice of the robot or of all robots."""
+
+from __future__ import annotations
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, build_playground, choose_robot, open_menu, open_page, open_tab
+from tests.web_ui.test_page_touch import STOP_IN_SIGHT
+
+pytestmark = MARKS
+
+WIDTH = "() => Math.round(document.querySelector('#work').getBoundingClientRect().width)"
+RUNNING = "() => window.thymio.state().program?.state === 'running'"
+
+
+def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(suite, page):
+    page.set_viewport_size({"width": 1280, "height": 800})
+    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+    assert page.evaluate(WIDTH) == 88
+    open_tab(page, "program")
+    assert page.evaluate(WIDTH) == 752
+    open_tab(page, "robot")
+    assert page.evaluate(WIDTH) == 480
+    page.focus("#grip")
+    page.keyboard.press("ArrowLeft")
+    assert page.evaluate(WIDTH) == 496
+    page.reload()
+    page.wait_for_function("window.thymio && window.thymio.connected")
+    playwright.expect(page.locator("#tab-robot")).to_have_attribute("aria-selected", "true")
+    assert page.evaluate(WIDTH) == 496
+    page.dblclick("#grip")
+    assert page.evaluate(WIDTH) == 480
+    for width, height in ((1024, 768), (800, 600), (640, 400), (390, 844), (360, 640)):
+        page.set_viewport_size({"width": width, "height": height})
+        for tab in ("robot", "program", "playground"):
+            open_tab(page, tab)
+            page.wait_for_function(STOP_IN_SIGHT)
+            page.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.click("#work-fold")
+    playwright.expect(page.locator("#tab-playground")).to_be_focused()
+    assert page.evaluate(WIDTH) == 88
+
+
+def test_escape_closes_a_menu_first_and_the_theme_is_kept(suite, page):
+    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+    page.wait_for_function(RUNNING)
+    open_menu(page, "#theme")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Escape")
+    playwright.expect(page.locator("#theme")).to_be_focused()
+    open_menu(page, "[data-view=look]")
+    page.keyboard.press("Escape")
+    playwright.expect(page.locator("#look-sheet")).to_be_hidden()
+    open_menu(page, "#theme")
+    page.click("[data-theme-choice=dark]")
+    playwright.expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+    page.reload()
+    page.wait_for_function("window.thymio && window.thymio.connected")
+    playwright.expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+    page.wait_for_function(RUNNING)
+    page.locator("#view").focus()
+    page.keyboard.press("Escape")
+    page.wait_for_function("() => window.thymio.state().program?.state === 'stopped'")
+
+
+def test_actions_go_to_the_chosen_robot_or_to_all(suite, page):
+    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+    page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
+    names = page.evaluate("() => Object.keys(window.thymio.state().robots)")
+    pressed = "(names) => names.every((name) => window.thymio.state().robots[name].buttons.left)"
+    released = "(names) => names.every((name) => !window.thymio.state().robots[name].buttons.left)"
+    choose_robot(page, "*")
+    playwright.expect(page.locator("#stop")).to_have_text("Stop all 2")
+    page.locator("[data-button=left]").hover()
+    page.mouse.down()
+    page.wait_for_function(pressed, arg=names)
+    page.mouse.up()
+    page.wait_for_function(released, arg=names)
+    open_tab(page, "program")
+    page.wait_for_function("() => window.thymio.state().behaviors.length > 3")
+    runs = "([name, behavior]) => window.thymio.state().programs[name]?.name.startsWith(behavior)"
+    page.select_option("#behavior-choice", "explorer")
+    for name in names:
+        page.wait_for_function(runs, arg=[name, "explorer"])
+    choose_robot(page, names[1])
+    playwright.expect(page.locator("#stop")).to_have_text("Stop robot")
+    page.select_option("#behavior-choice", "friendly")
+    page.wait_for_function(runs, arg=[names[1], "friendly"])
+    page.click("#stop")
+    page.wait_for_function("(name) => window.thymio.state().programs[name].state === 'stopped'", arg=names[1])
+    assert page.evaluate("(name) => window.thymio.state().programs[name].state", names[0]) == "running"
+    assert page.evaluate(runs, [names[0], "explorer"])
+
+
+def test_the_creator_continues_when_its_tab_is_opened_again(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    build_playground(page)
+    playwright.expect(page.locator("#time")).to_be_hidden()
+    open_tab(page, "robot")
+    playwright.expect(page.locator("#time")).to_be_visible()
+    assert page.evaluate("() => window.thymio.built().isOpen") is False
+    open_tab(page, "playground")
+    page.locator(".palette").wait_for()
+    page.click(".creator .leave")
+    playwright.expect(page.locator("#playground-choice")).to_be_visible()

@@ -1,0 +1,10 @@
+// The panels of the header, in the order of the focus. To add one: a file, and a line here.
+
+import { connectionPanel } from "./connection.js";
+import { helpMenuPanel } from "./help_menu.js";
+import { robotChooserPanel } from "./robot_chooser.js";
+import { settingsPanel } from "./settings.js";
+import { stopPanel } from "./stop.js";
+
+/** @type {import("../shell/context.js").CreatePanel[]} */
+export const HEADER = [robotChooserPanel, connectionPanel, settingsPanel, helpMenuPanel, stopPanel];

@@ -1,0 +1,35 @@
+// A message over the view for each fallen robot, with a button that returns it to its start.
+
+import { h } from "../ui/dom.js";
+
+/** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
+export function fallenPanel({ text, actions }) {
+  const t = text("stage");
+  const pageText = text("page");
+  const element = h("div", { class: "fallen", role: "status" });
+  let shown = "";
+  return {
+    slot: "messages",
+    element,
+    render({ connection, robots, simulator }) {
+      const fallen = connection === "connected" ? (simulator?.fallen ?? []) : [];
+      if (fallen.join() === shown && element.childElementCount === fallen.length) return;
+      shown = fallen.join();
+      const several = Object.keys(robots).length > 1;
+      element.replaceChildren(
+        ...fallen.map((name) =>
+          h(
+            "p",
+            { class: "message" },
+            h("span", { class: "grow" }, several ? t("fallen.named", { name: name || pageText("app.robot") }) : t("fallen")),
+            h(
+              "button",
+              { type: "button", class: "btn soft", "data-fallen": name, onclick: () => void actions.putBack(name) },
+              t("fallen.back"),
+            ),
+          ),
+        ),
+      );
+    },
+  };
+}

@@ -1,0 +1,12 @@
+// The panels of the stage, in the order of the focus. To add one: a file, and a line here.
+
+import { bannerPanel } from "./banner.js";
+import { fallenPanel } from "./fallen.js";
+import { moveHintPanel } from "./move_hint.js";
+import { noticesPanel } from "./notices.js";
+import { timePanel } from "./time_bar.js";
+import { trayPanel } from "./tray.js";
+import { viewsPanel } from "./views.js";
+
+/** @type {import("../shell/context.js").CreatePanel[]} */
+export const STAGE = [viewsPanel, bannerPanel, fallenPanel, moveHintPanel, noticesPanel, trayPanel, timePanel];
