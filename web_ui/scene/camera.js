@@ -6,6 +6,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { fit } from "./fit.js";
 
 /** @typedef {"home" | "top" | "follow" | "eye"} ViewName */
+/** @typedef {{ top?: number, right?: number, bottom?: number, left?: number }} Insets  CSS pixels */
 
 export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow", "eye"]);
 
@@ -35,23 +36,29 @@ export class Camera {
     this.corners = [new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0)];
     this.target = new THREE.Vector3();
     this.size = { width: 1, height: 1 };
-    this.inset = 0;
+    this.insets = { top: 0, right: 0, bottom: 0, left: 0 };
   }
 
   /** @param {number} width @param {number} height */
   resize(width, height) {
     this.size = { width, height };
+    const { top, right, bottom, left } = this.insets;
     this.camera.aspect = width / height;
-    if (this.inset === 0) this.camera.clearViewOffset();
-    else this.camera.setViewOffset(width, height, -this.inset / 2, 0, width, height);
+    if (top === bottom && left === right) this.camera.clearViewOffset();
+    else this.camera.setViewOffset(width, height, (right - left) / 2, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
     if (!this.touched && !this.goesAlong) this.setView(this.view);
   }
 
-  /** Number of pixels that are covered at the left; worlds are fitted into the rest. @param {number} inset */
-  setInset(inset) {
-    this.inset = inset;
+  /** Space at the edges that is covered: worlds are fitted into the rest. @param {Insets} insets */
+  setInsets(insets) {
+    this.insets = { top: 0, right: 0, bottom: 0, left: 0, ...insets };
     this.resize(this.size.width, this.size.height);
+  }
+
+  /** @param {number} inset  at the left */
+  setInset(inset) {
+    this.setInsets({ left: inset });
   }
 
   /** Whether the view follows a robot. */
@@ -98,7 +105,10 @@ export class Camera {
     // Straight from above, "up" is undefined; a tiny offset makes x point to the right.
     const from = (view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.22, -0.85, 0.85)).normalize();
     const { width, height } = this.size;
-    const shown = { fov: this.camera.fov, aspect: Math.max(0.2, (width - this.inset) / height) };
+    const { top, right, bottom, left } = this.insets;
+    const free = { width: Math.max(0.2 * height, width - left - right), height: Math.max(0.2 * height, height - top - bottom) };
+    const slope = Math.tan((this.camera.fov * Math.PI) / 360) * (free.height / height);
+    const shown = { fov: (360 / Math.PI) * Math.atan(slope), aspect: free.width / free.height };
     const { target, distance } = fit(shown, this.corners, from);
     this.#place(target, from.multiplyScalar(distance).add(target));
   }

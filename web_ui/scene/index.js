@@ -8,7 +8,8 @@ import { robotColor } from "../state/robot_colors.js";
 import { FlatView } from "./flat.js";
 import { Ghost } from "./ghost.js";
 import { createRenderer, isSoftware } from "./graphics.js";
-import { litScene } from "./lights.js";
+import { groundOf } from "./ground_of.js";
+import { lightAs } from "./lights.js";
 import { ValueLabels, valueLabelsOf } from "./value_labels.js";
 import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
@@ -16,6 +17,7 @@ import { watchPointer } from "./pointer.js";
 import { pictureRatio, Quality } from "./quality.js";
 import { RobotsLayer } from "./robots_layer.js";
 import { SketchModel } from "./sketch.js";
+import { Surroundings } from "./surroundings.js";
 import { isSensed } from "../state/names.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -27,7 +29,7 @@ const LOST_FOR_GOOD_MS = 4000;
 /** Distance of a name above its robot in the 2D view. */
 const FLAT_LABEL_PX = 24;
 /** Robots smaller than this on the screen, in drawn pixels, use the coarse model. */
-const SMALL_PX = 40;
+const SMALL_PX = 60;
 const SIZE_M = 0.11;
 
 export class SceneView {
@@ -64,11 +66,12 @@ export class SceneView {
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
     /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.photoRequests = [];
-    this.scene = litScene();
+    this.scene = new THREE.Scene();
+    this.surroundings = new Surroundings(() => this.invalidate());
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
     this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle });
-    this.scene.add(this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
+    this.scene.add(this.surroundings.group, this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     this.quality = new Quality(isSoftware(this.renderer) ? 1 : 0);
@@ -141,6 +144,17 @@ export class SceneView {
   setFlat(flat) {
     this.wantsFlat = flat;
     this.invalidate();
+  }
+
+  /** Day or evening. @param {import("./lights.js").Theme} theme */
+  setTheme(theme) {
+    lightAs(theme);
+    this.invalidate();
+  }
+
+  /** Space at the edges of the canvas that is covered, in CSS pixels. @param {import("./camera.js").Insets} insets */
+  setInsets(insets) {
+    this.camera.setInsets(insets);
   }
 
   /** @param {boolean} shown */
@@ -255,7 +269,10 @@ export class SceneView {
     this.beforeDraw(nowMs);
     const sketch = this.sketch();
     const grown = this.playground.update(state.markers);
-    if (grown) this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
+    if (grown) {
+      this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
+      this.surroundings.update(sketch === null ? groundOf(state.markers.values()) : null);
+    }
     this.framed = sketch !== null;
     this.objects.update(state.objects);
     this.dragController.refresh();

@@ -2,6 +2,10 @@
 
 import * as THREE from "three";
 
+import { groundColor } from "./colors.js";
+import { ContactShade } from "./contact.js";
+import { litMaterial } from "./materials.js";
+import { solidMesh } from "./solids.js";
 import { hasPicture, MARKER } from "../state/markers.js";
 
 /** @typedef {import("../state/markers.js").Marker} Marker */
@@ -27,9 +31,10 @@ export class PlaygroundModel {
     this.decode = decode;
     this.group = new THREE.Group();
     /**
-     * @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial> }>}
+     * @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial> }>}
      */
     this.meshes = new Map();
+    this.shade = new ContactShade();
     /** @type {ReadonlyMap<string, Marker> | null} */ this.shown = null;
   }
 
@@ -48,6 +53,9 @@ export class PlaygroundModel {
     for (const [key, marker] of markers) {
       if (!this.meshes.has(key) && marker.type in GEOMETRIES) this.#add(key, marker);
     }
+    this.shade.update(markers.values());
+    if (this.shade.mesh.visible) this.group.add(this.shade.mesh);
+    else this.group.remove(this.shade.mesh);
     return true;
   }
 
@@ -66,6 +74,7 @@ export class PlaygroundModel {
 
   dispose() {
     for (const key of [...this.meshes.keys()]) this.#remove(key);
+    this.shade.dispose();
   }
 
   /** @param {string} key @param {Marker} marker */
@@ -79,9 +88,9 @@ export class PlaygroundModel {
   /** An image lies flat in the marker's frame; the scale gives its size. @param {Marker} marker */
   #pictured({ scale, texture }) {
     const map = new THREE.Texture();
-    map.colorSpace = THREE.SRGBColorSpace;
     map.anisotropy = 8;
-    const material = new THREE.MeshLambertMaterial({ map, transparent: true, visible: false, side: THREE.DoubleSide });
+    const material = litMaterial({ map, flat: true, print: true, side: THREE.DoubleSide });
+    material.visible = false;
     /** @param {ImageBitmap | HTMLCanvasElement} image */
     const show = (image) => {
       map.image = image;
@@ -101,17 +110,15 @@ export class PlaygroundModel {
 
   /** @param {Marker} marker */
   #plain(marker) {
-    const { r, g, b, a } = marker.color;
+    const geometry = GEOMETRIES[marker.type](marker);
+    if (!isGround(marker)) return solidMesh(marker, geometry);
     const perPoint = marker.colors.length > 0;
-    const material = new THREE.MeshLambertMaterial({
-      color: perPoint ? new THREE.Color(0xffffff) : new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace),
-      vertexColors: perPoint,
-      transparent: a < 1,
-      opacity: a,
-      side:
-        marker.type === MARKER.TRIANGLE_LIST || marker.type === MARKER.LINE_STRIP ? THREE.DoubleSide : THREE.FrontSide,
-    });
-    return new THREE.Mesh(GEOMETRIES[marker.type](marker), material);
+    const color = perPoint ? new THREE.Color(0xffffff) : groundColor(marker.color);
+    const opacity = marker.color.a;
+    return new THREE.Mesh(
+      geometry,
+      litMaterial({ color, flat: true, vertexColors: perPoint, opacity, side: THREE.DoubleSide }),
+    );
   }
 
   /** @param {string} key */
@@ -120,15 +127,26 @@ export class PlaygroundModel {
     if (entry === undefined) return;
     this.group.remove(entry.mesh);
     entry.mesh.geometry.dispose();
-    entry.mesh.material.map?.dispose();
+    entry.mesh.material.uniforms.uMap.value?.dispose();
     entry.mesh.material.dispose();
     this.meshes.delete(key);
   }
 }
 
+/** Whether it is floor, paint, or a line of a pen: flat on the ground, seen by the ground sensors. @param {Marker} marker */
+function isGround({ ns, type }) {
+  return !ns.startsWith("solid/") && (type === MARKER.TRIANGLE_LIST || type === MARKER.LINE_STRIP);
+}
+
+/** Layers of the ground, closer to each other than in the marker: what stands on them must not sink in. @param {number} z */
+function layerHeight(z) {
+  return Math.min(z / 4, 0.002 + Math.max(0, z - 0.008) / 200);
+}
+
 /** @param {THREE.Mesh} mesh @param {Marker} marker */
-function place(mesh, { pose: { position, orientation } }) {
-  mesh.position.set(position.x, position.y, position.z);
+function place(mesh, marker) {
+  const { position, orientation } = marker.pose;
+  mesh.position.set(position.x, position.y, isGround(marker) ? layerHeight(position.z) : position.z);
   mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
 }
 
@@ -174,7 +192,7 @@ function triangles({ points, colors, scale }) {
   );
   if (colors.length > 0) {
     const color = new THREE.Color();
-    const values = colors.flatMap(({ r, g, b }) => color.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
+    const values = colors.flatMap((declared) => groundColor(declared, color).toArray());
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(values, 3));
   }
   geometry.computeVertexNormals();

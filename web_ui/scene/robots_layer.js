@@ -74,7 +74,7 @@ export class RobotsLayer {
       const frame = this.visibleModel(name)?.group.matrix;
       if (frame === undefined) return [];
       const button = hovered?.robot === name ? hovered.button : null;
-      return [{ look: { robot: state.robots[name], hovered: button, sensing: isSensing(name) }, frame }];
+      return [{ look: { robot: state.robots[name], hovered: button, sensing: isSensing(name), flash: 0 }, frame }];
     });
     this.near.update(drawn.filter(({ frame }) => !isSmall(frame)));
     this.far.update(drawn.filter(({ frame }) => isSmall(frame)));
