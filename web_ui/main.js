@@ -133,6 +133,7 @@ async function main() {
     },
     dragController,
     robotTitle: (name) => name || t("app.robot"),
+    select: (robot) => store.dispatch({ type: "select", robot }),
     contextLost: (trouble) => graphics.set(trouble),
   });
   const thumbnails = new ThumbnailCache((world) => scene.photograph(world));

@@ -13,13 +13,15 @@ export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow
 const FOLLOW = { back: 0.42, up: 0.3 };
 /** The robot's view: from its front, above the front sensors. */
 const EYE = { ahead: 0.083, up: 0.045 };
+const NEAREST_M = 0.02;
+const NEAR_SHARE = 0.05;
 const TURN_STEP = Math.PI / 24;
 const ZOOM_STEP = 1.15;
 
 export class Camera {
   /** @param {HTMLElement} element  element that gets pointer events @param {() => void} changed */
   constructor(element, changed) {
-    this.camera = new THREE.PerspectiveCamera(42, 1, 0.02, 30);
+    this.camera = new THREE.PerspectiveCamera(42, 1, NEAREST_M, 30);
     this.camera.up.set(0, 0, 1);
     this.camera.position.set(-1, -0.8, 0.9);
     this.controls = new OrbitControls(this.camera, element);
@@ -59,6 +61,21 @@ export class Camera {
   /** @param {number} inset  at the left */
   setInset(inset) {
     this.setInsets({ left: inset });
+  }
+
+  /** Nothing is nearer than this share of the way to what is looked at; near and far need a small ratio. */
+  #setNear() {
+    const far = this.camera.position.distanceTo(this.controls.target);
+    const near = this.view === "eye" ? NEAREST_M : Math.max(NEAREST_M, NEAR_SHARE * far);
+    if (Math.abs(near - this.camera.near) < 0.1 * near) return;
+    this.camera.near = near;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** Prepare for drawing. */
+  ready() {
+    this.#setNear();
+    return this.camera;
   }
 
   /** Whether the view follows a robot. */

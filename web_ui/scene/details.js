@@ -15,7 +15,7 @@ const SEAM = [0.62, 0.595, 0.565];
 const RIM = [0.83, 0.815, 0.79];
 const STUD = [0.985, 0.975, 0.955];
 const UNLIT_RING = [0.79, 0.765, 0.725];
-const UNLIT = [0.74, 0.71, 0.68];
+const UNLIT = [0.8, 0.775, 0.745];
 const BUTTON = [0.6, 0.58, 0.555];
 const STRIP = [0.86, 0.845, 0.82];
 const WHITE = [1, 0.992, 0.975];
@@ -46,10 +46,10 @@ export function addDetails(builder) {
   const top = (/** @type {THREE.BufferGeometry} */ shape) => shape.translate(0, 0, TOP_M);
   builder.add(top(new THREE.CircleGeometry(PEN_HOLE_M, 14)), HOLE);
   builder.add(top(new THREE.RingGeometry(PEN_HOLE_M, PEN_HOLE_M + 0.0015, 14)), RIM);
-  const rear = (/** @type {THREE.BufferGeometry} */ shape, /** @type {number} */ z) =>
-    shape.rotateY(-Math.PI / 2).translate(-0.0303, 0, z);
-  builder.add(rear(new THREE.PlaneGeometry(0.006, 0.0125), 0.0285), BEZEL); // USB
-  builder.add(rear(new THREE.PlaneGeometry(0.0034, 0.0098), 0.0285), HOLE);
+  const rear = (/** @type {THREE.BufferGeometry} */ shape, /** @type {number} */ before) =>
+    shape.rotateY(-Math.PI / 2).translate(-0.03 - before, 0, 0.0285);
+  builder.add(rear(new THREE.PlaneGeometry(0.006, 0.0125), 0.0002), BEZEL); // USB
+  builder.add(rear(new THREE.PlaneGeometry(0.0034, 0.0098), 0.0005), HOLE);
   builder.add(new THREE.BoxGeometry(0.006, 0.012, 0.004).translate(-0.031, 0, 0.0085), RIM); // trailer hook
 }
 
@@ -147,7 +147,7 @@ function round(x, y, radius, sides) {
 
 /** @param {Builder} builder */
 function addStuds(builder) {
-  for (const y of STUDS.y) for (const x of STUDS.x) addRaised(builder, round(x, y, STUDS.radius, 5), STUDS.high, STUD);
+  for (const y of STUDS.y) for (const x of STUDS.x) addRaised(builder, round(x, y, STUDS.radius, 6), STUDS.high, STUD);
 }
 
 /** @param {Builder} builder */

@@ -34,6 +34,7 @@ export function createHalos({ robots }) {
   halos.mesh.renderOrder = 5;
   return {
     parts: [halos],
+    isGlow: true,
     /** @param {number} slot @param {Look} look @param {Look | null} before */
     show(slot, { robot }, before) {
       if (before?.robot.leds === robot.leds) return;
@@ -57,6 +58,7 @@ export function createGroundGlow({ robots }) {
   const color = new THREE.Color();
   return {
     parts: [glows],
+    isGlow: true,
     isOnGround: true,
     /** @param {number} slot @param {Look} look @param {Look | null} before */
     show(slot, { robot }, before) {

@@ -17,6 +17,7 @@ import { watchPointer } from "./pointer.js";
 import { pictureRatio, Quality } from "./quality.js";
 import { RobotsLayer } from "./robots_layer.js";
 import { SketchModel } from "./sketch.js";
+import { drawAll, StillGround } from "./still_ground.js";
 import { Surroundings } from "./surroundings.js";
 import { isSensed } from "../state/names.js";
 
@@ -31,6 +32,8 @@ const FLAT_LABEL_PX = 24;
 /** Robots smaller than this on the screen, in drawn pixels, use the coarse model. */
 const SMALL_PX = 60;
 const SIZE_M = 0.11;
+/** Nothing has moved for this long: the view rests. */
+const REST_MS = 200;
 
 export class SceneView {
   /**
@@ -43,10 +46,11 @@ export class SceneView {
    * @param {(target: Target, pressed: boolean) => void} options.press
    * @param {import("../move/drag_controller.js").DragController} options.dragController   the dragged body
    * @param {(name: string) => string} options.robotTitle
+   * @param {(robot: string) => void} [options.select]   a robot's dot has been clicked
    * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   overlay of the creator; null while it is closed
    * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: permanently, drawn in 2D
    */
-  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, sketch, contextLost }) {
+  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, select = () => {}, sketch, contextLost }) {
     this.canvas = canvas;
     this.state = state;
     this.beforeDraw = beforeDraw;
@@ -60,6 +64,7 @@ export class SceneView {
     this.size = { width: 0, height: 0 }; // CSS pixels; cached, since reading it after moving a label forces a layout
     this.showSensors = true;
     this.showNumbers = false;
+    this.isCalm = false;
     this.valueLabels = new ValueLabels(labels);
     this.flat = new FlatView(flatCanvas);
     this.wantsFlat = false;
@@ -67,14 +72,17 @@ export class SceneView {
     /** @type {Target | null} */ this.hovered = null;
     /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.photoRequests = [];
     this.scene = new THREE.Scene();
-    this.surroundings = new Surroundings(() => this.invalidate());
-    this.playground = new PlaygroundModel(() => this.invalidate());
+    this.still = new StillGround();
+    this.surroundings = new Surroundings(() => this.#redraw());
+    this.playground = new PlaygroundModel(() => this.#redraw(), undefined, { isStill: true });
     this.objects = new PlaygroundModel(() => this.invalidate());
-    this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle });
+    this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle, select });
     this.scene.add(this.surroundings.group, this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
-    this.quality = new Quality(isSoftware(this.renderer) ? 1 : 0);
+    this.isSoftware = isSoftware(this.renderer);
+    this.quality = new Quality({ isSoftware: this.isSoftware });
+    this.restTimer = 0;
     let lostTimer = 0;
     canvas.addEventListener("webglcontextlost", () => {
       contextLost("lost");
@@ -87,6 +95,7 @@ export class SceneView {
     canvas.addEventListener("webglcontextrestored", () => {
       window.clearTimeout(lostTimer);
       this.isLost = false;
+      this.still.forget();
       contextLost(null);
       this.invalidate();
     });
@@ -149,6 +158,12 @@ export class SceneView {
   /** Day or evening. @param {import("./lights.js").Theme} theme */
   setTheme(theme) {
     lightAs(theme);
+    this.#redraw();
+  }
+
+  /** Less movement: nothing flashes. @param {boolean} calm */
+  setCalm(calm) {
+    this.isCalm = calm;
     this.invalidate();
   }
 
@@ -180,15 +195,16 @@ export class SceneView {
    * The view as PNG in full resolution, whatever the current quality; null if the browser cannot create it. This runs
    * in one task, so that the browser never shows a frame of the large canvas.
    *
+   * @param {{ scale?: number }} [how]  times the usual size
    * @returns {Promise<Blob | null>}
    */
-  picture() {
+  picture({ scale = 1 } = {}) {
     const nowMs = performance.now();
-    const ratio = pictureRatio(this.size, window.devicePixelRatio);
+    const ratio = pictureRatio(this.size, window.devicePixelRatio, scale);
     this.renderer?.setPixelRatio(ratio);
     this.flat.pixelRatio = ratio;
     this.#updateRobots(this.state(), nowMs); // robots that are large in the image need the fine model
-    this.#draw(nowMs); // WebGL content is readable only until the browser has shown the frame
+    this.#draw(nowMs, true); // WebGL content is readable only until the browser has shown the frame
     const shown = this.isFlat ? this.flat.canvas : this.canvas;
     const picture = new Promise((/** @type {(png: Blob | null) => void} */ resolve) => shown.toBlob(resolve, "image/png"));
     this.flat.pixelRatio = 1;
@@ -265,11 +281,17 @@ export class SceneView {
   /** @param {number} nowMs */
   #frame(nowMs) {
     this.requested = false;
+    if (this.quality.isEarly(nowMs)) {
+      this.invalidate();
+      return;
+    }
+    window.clearTimeout(this.restTimer);
     const state = this.state();
     this.beforeDraw(nowMs);
     const sketch = this.sketch();
     const grown = this.playground.update(state.markers);
     if (grown) {
+      this.still.forget();
       this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
       this.surroundings.update(sketch === null ? groundOf(state.markers.values()) : null);
     }
@@ -289,13 +311,38 @@ export class SceneView {
     this.#placeLabels();
     if (moving) this.invalidate();
     if (this.quality.note(nowMs, moving)) this.#resize();
+    if (this.quality.isReduced) this.#sharpenLater(moving);
   }
 
-  /** @param {number} nowMs */
-  #draw(nowMs) {
+  /** Full resolution as soon as nothing moves. @param {boolean} moving */
+  #sharpenLater(moving) {
+    if (moving && this.quality.rest(false)) this.#resize();
+    if (moving || this.quality.isResting) return;
+    this.restTimer = window.setTimeout(() => {
+      if (this.quality.rest(true)) this.#resize();
+    }, REST_MS);
+  }
+
+  /** Desk and ground have changed. */
+  #redraw() {
+    this.still.forget();
+    this.invalidate();
+  }
+
+  /** @param {THREE.WebGLRenderer} renderer @param {boolean} isWhole */
+  #draw3d(renderer, isWhole) {
+    const camera = this.camera.ready();
+    // From a table robots fall, and its top then hides them: no image of the ground can.
+    const mayBeKept = this.isSoftware && !isWhole && this.surroundings.ground?.isWalled === true;
+    if (mayBeKept) this.still.draw(renderer, this.scene, camera);
+    else drawAll(renderer, this.scene, camera);
+  }
+
+  /** @param {number} nowMs @param {boolean} [isWhole]  nothing kept from the frame before */
+  #draw(nowMs, isWhole = false) {
     this.flat.canvas.hidden = !this.isFlat;
     if (!this.isFlat) {
-      this.renderer?.render(this.scene, this.camera.camera);
+      if (this.renderer !== null) this.#draw3d(this.renderer, isWhole);
       return;
     }
     const state = this.state();
@@ -317,6 +364,8 @@ export class SceneView {
     const { hovered } = this;
     return this.robots.update(state, {
       nowMs,
+      hasGlows: this.quality.settings.hasGlows,
+      isCalm: this.isCalm,
       hovered,
       isSensing: (name) => this.#isSensing(name),
       isSmall: (frame) => this.#isSmall(frame),

@@ -91,6 +91,13 @@ const LIT_FRAGMENT = /* glsl */ `
   }
 `;
 
+/** What lies on the ground may be translucent, but is drawn in its turn, before all other translucent things. */
+const COVERING = /** @type {const} */ ({
+  blending: THREE.CustomBlending,
+  blendSrc: THREE.SrcAlphaFactor,
+  blendDst: THREE.OneMinusSrcAlphaFactor,
+});
+
 /**
  * A lit surface.
  *
@@ -132,8 +139,9 @@ export function litMaterial({
     vertexShader: LIT_VERTEX,
     fragmentShader: LIT_FRAGMENT,
     vertexColors,
-    transparent: opacity < 1 || print,
     side,
+    transparent: opacity < 1 && !flat,
+    ...(flat && (print || opacity < 1) ? COVERING : {}),
   });
 }
 

@@ -6,6 +6,7 @@ import { groundColor } from "./colors.js";
 import { ContactShade } from "./contact.js";
 import { litMaterial } from "./materials.js";
 import { solidMesh } from "./solids.js";
+import { STILL_LAYER } from "./still_ground.js";
 import { hasPicture, MARKER } from "../state/markers.js";
 
 /** @typedef {import("../state/markers.js").Marker} Marker */
@@ -25,9 +26,15 @@ export class PlaygroundModel {
   /**
    * @param {() => void} changed  called when an image has been decoded
    * @param {(png: Blob) => Promise<ImageBitmap>} decode  decodes an image, its last row first
+   * @param {{ isStill?: boolean }} [how]   whether its ground rarely changes (still_ground.js)
    */
-  constructor(changed = () => {}, decode = (png) => createImageBitmap(png, { imageOrientation: "flipY" })) {
+  constructor(
+    changed = () => {},
+    decode = (png) => createImageBitmap(png, { imageOrientation: "flipY" }),
+    { isStill = false } = {},
+  ) {
     this.changed = changed;
+    this.isStill = isStill;
     this.decode = decode;
     this.group = new THREE.Group();
     /**
@@ -35,6 +42,7 @@ export class PlaygroundModel {
      */
     this.meshes = new Map();
     this.shade = new ContactShade();
+    if (isStill) this.shade.mesh.layers.set(STILL_LAYER);
     /** @type {ReadonlyMap<string, Marker> | null} */ this.shown = null;
   }
 
@@ -81,6 +89,7 @@ export class PlaygroundModel {
   #add(key, marker) {
     const mesh = hasPicture(marker) ? this.#pictured(marker) : this.#plain(marker);
     place(mesh, marker);
+    if (this.isStill && isGround(marker)) mesh.layers.set(STILL_LAYER);
     this.meshes.set(key, { marker, mesh });
     this.group.add(mesh);
   }
@@ -138,15 +147,29 @@ function isGround({ ns, type }) {
   return !ns.startsWith("solid/") && (type === MARKER.TRIANGLE_LIST || type === MARKER.LINE_STRIP);
 }
 
-/** Layers of the ground, closer to each other than in the marker: what stands on them must not sink in. @param {number} z */
-function layerHeight(z) {
-  return Math.min(z / 4, 0.002 + Math.max(0, z - 0.008) / 200);
+/** Paint lies this much above the floor; `layered` decides what covers what. */
+const PAINT_M = 0.0004;
+const LOWER = 40;
+
+/**
+ * Paint and floors cover each other in the order of their heights, by drawing them one after another: so they can lie
+ * closer together than the depth buffer tells apart, and what stands on them does not sink in.
+ *
+ * @param {THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>} mesh
+ * @param {Marker} marker
+ */
+function layered(mesh, { ns, pose: { position } }) {
+  const isFloor = ns.startsWith("floor/");
+  mesh.renderOrder = 10 + 1000 * position.z;
+  mesh.material.depthWrite = isFloor;
+  mesh.position.z = (isFloor ? 0 : PAINT_M) + Math.min(0.002, position.z / LOWER);
 }
 
-/** @param {THREE.Mesh} mesh @param {Marker} marker */
+/** @param {THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>} mesh @param {Marker} marker */
 function place(mesh, marker) {
   const { position, orientation } = marker.pose;
-  mesh.position.set(position.x, position.y, isGround(marker) ? layerHeight(position.z) : position.z);
+  mesh.position.set(position.x, position.y, position.z);
+  if (isGround(marker)) layered(mesh, marker);
   mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
 }
 

@@ -25,6 +25,7 @@ import { createWheels } from "./wheels.js";
  * @property {Instances[]} parts
  * @property {(slot: number, look: Look, before: Look | null) => void} show  before: what was shown in this slot, null: nothing
  * @property {(slot: number, frame: THREE.Matrix4) => void} [follow]  called before it is placed at another frame
+ * @property {boolean} [isGlow]      soft light, which slow machines leave out
  * @property {boolean} [isOnGround]  it stays flat on the ground, however the robot stands
  * @property {import("./lamps.js").Lamps} [lamps]
  * @property {() => void} [dispose]
@@ -71,6 +72,13 @@ export class RobotInstances {
     });
     if (this.shown.length > robots.length) this.shown.length = robots.length;
     for (const { parts } of this.pieces) for (const part of parts) part.show(robots.length);
+  }
+
+  /** Whether soft light is drawn. @param {boolean} shown */
+  setGlows(shown) {
+    for (const { parts, isGlow } of this.pieces) {
+      if (isGlow) for (const { mesh } of parts) mesh.layers[shown ? "enable" : "disable"](0);
+    }
   }
 
   /** Allocate slots for twice the current number of robots. @param {number} robots */

@@ -6,6 +6,7 @@ import * as THREE from "three";
 import { LIGHT } from "./lights.js";
 import { litMaterial, overlayMaterial } from "./materials.js";
 import { merged } from "./merged.js";
+import { STILL_LAYER } from "./still_ground.js";
 
 /** @typedef {{ min: { x: number, y: number }, max: { x: number, y: number } }} Bounds */
 /** @typedef {{ bounds: Bounds, edges: [number, number][][], isWalled: boolean }} Ground  edges: borders of its floors */
@@ -34,6 +35,7 @@ export class Surroundings {
     this.changed = changed;
     this.group = new THREE.Group();
     this.backdrop = backdrop();
+    this.backdrop.layers.set(STILL_LAYER);
     /** @type {THREE.Texture | null} */ this.wood = null;
     /** @type {Ground | null} */ this.ground = null;
     this.isPainting = false;
@@ -52,6 +54,7 @@ export class Surroundings {
     this.group.add(desk(ground.bounds, isDesk, floor, this.wood));
     if (!ground.isWalled) this.group.add(...sheet(ground.edges));
     if (isDesk && ground.isWalled) this.group.add(...things(ground.bounds, floor));
+    for (const mesh of this.group.children) mesh.layers.set(STILL_LAYER);
     if (this.wood === null && !this.isPainting && typeof document !== "undefined") {
       this.isPainting = true;
       whenIdle(() => {
@@ -110,7 +113,7 @@ function backdrop() {
   });
   const mesh = new THREE.Mesh(geometry, material);
   mesh.frustumCulled = false;
-  mesh.renderOrder = 100; // last of the opaque ones
+  mesh.renderOrder = 20_000; // last of the opaque ones
   mesh.raycast = () => {};
   return mesh;
 }
@@ -164,7 +167,7 @@ function desk({ min, max }, isDesk, height, wood) {
     color: wood === null ? PLAIN : new THREE.Color(0xffffff),
   });
   const mesh = new THREE.Mesh(geometry, material);
-  mesh.renderOrder = 90; // after everything that covers it
+  mesh.renderOrder = 10_000; // after everything that covers it
   mesh.raycast = () => {};
   return mesh;
 }
