@@ -7,6 +7,8 @@ THREE.ColorManagement.enabled = false;
 
 export const PAPER = new THREE.Color(0xf3eee3);
 export const TAPE = new THREE.Color(0x26221f);
+/** Wood, where its grain is not drawn. */
+export const DESK = new THREE.Color(0xd8b184);
 /** Cardboard that was declared black, and white. */
 const KRAFT = { dark: new THREE.Color(0x9d7d57), light: new THREE.Color(0xedc68f) };
 /** Below this saturation the declared color of a wall is only a shade of cardboard. */

@@ -3,6 +3,7 @@
 
 import * as THREE from "three";
 
+import { DESK } from "./colors.js";
 import { LIGHT } from "./lights.js";
 import { litMaterial, overlayMaterial } from "./materials.js";
 import { merged } from "./merged.js";
@@ -15,7 +16,6 @@ import { STILL_LAYER } from "./still_ground.js";
 const LONGEST_ON_DESK_M = 1.5;
 const TILE = { pixels: 512, planks: 6, size: 0.9 };
 const TINTS = ["#d3a977", "#d9b17f", "#dcb688", "#d6ad7b", "#e1bd90", "#d8b084"];
-const PLAIN = new THREE.Color(0xd8b184);
 const SHEET_M = 0.012;
 const GRID = { columns: 28, rows: 20 };
 const WALL = { top: new THREE.Color(0xefe4d3), bottom: new THREE.Color(0xd9c7ab) };
@@ -164,7 +164,7 @@ function desk({ min, max }, isDesk, height, wood) {
     flat: true,
     vertexColors: true,
     map: wood,
-    color: wood === null ? PLAIN : new THREE.Color(0xffffff),
+    color: wood === null ? DESK.clone() : new THREE.Color(0xffffff),
   });
   const mesh = new THREE.Mesh(geometry, material);
   mesh.renderOrder = 10_000; // after everything that covers it
