@@ -85,7 +85,8 @@ def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(sui
     page.wait_for_function("() => document.querySelectorAll('#labels .dot').length === 2")
     names, tabs = page.evaluate(
         "() => [[...document.querySelectorAll('#labels .dot')].map((one) => {"
-        " one.style.outlineColor = one.style.getPropertyValue('--color'); return getComputedStyle(one).outlineColor; }),"
+        " one.style.outlineColor = one.style.getPropertyValue('--color');"
+        " return getComputedStyle(one).outlineColor; }),"
         " [...document.querySelectorAll('.robots button')].map((one) => getComputedStyle(one).borderInlineStartColor)]"
     )
     assert len(set(names)) == 2
