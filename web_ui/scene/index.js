@@ -10,6 +10,7 @@ import { Ghost } from "./ghost.js";
 import { createRenderer, isSoftware } from "./graphics.js";
 import { groundOf } from "./ground_of.js";
 import { lightAs } from "./lights.js";
+import { FrameLoop } from "./loop.js";
 import { ValueLabels, valueLabelsOf } from "./value_labels.js";
 import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
@@ -32,8 +33,6 @@ const FLAT_LABEL_PX = 24;
 /** Robots smaller than this on the screen, in drawn pixels, use the coarse model. */
 const SMALL_PX = 60;
 const SIZE_M = 0.11;
-/** Nothing has moved for this long: the view rests. */
-const REST_MS = 200;
 
 export class SceneView {
   /**
@@ -60,11 +59,18 @@ export class SceneView {
     this.sketchModel = new SketchModel();
     this.framed = false;
     this.frames = 0;
-    this.requested = false;
     this.size = { width: 0, height: 0 }; // CSS pixels; cached, since reading it after moving a label forces a layout
     this.showSensors = true;
     this.showNumbers = false;
     this.isCalm = false;
+    this.renderer = createRenderer(canvas);
+    this.isSoftware = isSoftware(this.renderer);
+    this.quality = new Quality({ isSoftware: this.isSoftware });
+    this.loop = new FrameLoop({
+      quality: this.quality,
+      draw: (nowMs) => this.#frame(nowMs),
+      resize: () => this.#resize(),
+    });
     this.valueLabels = new ValueLabels(labels);
     this.flat = new FlatView(flatCanvas);
     this.wantsFlat = false;
@@ -79,10 +85,6 @@ export class SceneView {
     this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle, select });
     this.scene.add(this.surroundings.group, this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
     this.camera = new Camera(canvas, () => this.invalidate());
-    this.renderer = createRenderer(canvas);
-    this.isSoftware = isSoftware(this.renderer);
-    this.quality = new Quality({ isSoftware: this.isSoftware });
-    this.restTimer = 0;
     let lostTimer = 0;
     canvas.addEventListener("webglcontextlost", () => {
       contextLost("lost");
@@ -124,9 +126,7 @@ export class SceneView {
 
   /** Request one frame; several calls before it have the effect of one. */
   invalidate() {
-    if (this.requested) return;
-    this.requested = true;
-    requestAnimationFrame((nowMs) => this.#frame(nowMs));
+    this.loop.invalidate();
   }
 
   /** @param {ViewName} view */
@@ -278,14 +278,8 @@ export class SceneView {
     return this.#toWindow(new THREE.Vector3(x, y, z));
   }
 
-  /** @param {number} nowMs */
+  /** Draw the state; returns whether something still moves. @param {number} nowMs */
   #frame(nowMs) {
-    this.requested = false;
-    if (this.quality.isEarly(nowMs)) {
-      this.invalidate();
-      return;
-    }
-    window.clearTimeout(this.restTimer);
     const state = this.state();
     this.beforeDraw(nowMs);
     const sketch = this.sketch();
@@ -309,18 +303,7 @@ export class SceneView {
     this.frames += 1;
     if (this.photoRequests.length > 0) this.invalidate();
     this.#placeLabels();
-    if (moving) this.invalidate();
-    if (this.quality.note(nowMs, moving)) this.#resize();
-    if (this.quality.isReduced) this.#sharpenLater(moving);
-  }
-
-  /** Full resolution as soon as nothing moves. @param {boolean} moving */
-  #sharpenLater(moving) {
-    if (moving && this.quality.rest(false)) this.#resize();
-    if (moving || this.quality.isResting) return;
-    this.restTimer = window.setTimeout(() => {
-      if (this.quality.rest(true)) this.#resize();
-    }, REST_MS);
+    return moving;
   }
 
   /** Desk and ground have changed. */

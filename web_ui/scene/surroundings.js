@@ -8,14 +8,13 @@ import { LIGHT } from "./lights.js";
 import { litMaterial, overlayMaterial } from "./materials.js";
 import { merged } from "./merged.js";
 import { STILL_LAYER } from "./still_ground.js";
+import { WOOD_M, woodTexture } from "./wood.js";
 
 /** @typedef {{ min: { x: number, y: number }, max: { x: number, y: number } }} Bounds */
 /** @typedef {{ bounds: Bounds, edges: [number, number][][], isWalled: boolean }} Ground  edges: borders of its floors */
 
 /** A ground that is longer lies on the floor of a room. */
 const LONGEST_ON_DESK_M = 1.5;
-const TILE = { pixels: 512, planks: 6, size: 0.9 };
-const TINTS = ["#d3a977", "#d9b17f", "#dcb688", "#d6ad7b", "#e1bd90", "#d8b084"];
 const SHEET_M = 0.012;
 const GRID = { columns: 28, rows: 20 };
 const WALL = { top: new THREE.Color(0xefe4d3), bottom: new THREE.Color(0xd9c7ab) };
@@ -133,7 +132,7 @@ function desk({ min, max }, isDesk, height, wood) {
   const right = middleX + 2.6 * size;
   const front = middleY - 2.4 * size;
   const back = max.y + 0.42 * size;
-  const tile = TILE.size * (isDesk ? 1 : 2.2);
+  const tile = WOOD_M * (isDesk ? 1 : 2.2);
   const base = isDesk ? 1 : 0.93;
   /** @type {number[]} */ const positions = [];
   /** @type {number[]} */ const colors = [];
@@ -227,63 +226,4 @@ function things({ min, max }, floor) {
     mesh.raycast = () => {};
     return mesh;
   });
-}
-
-/** Planks, painted once. */
-function woodTexture() {
-  const { pixels, planks } = TILE;
-  const canvas = Object.assign(document.createElement("canvas"), { width: pixels, height: pixels });
-  const context = canvas.getContext("2d");
-  const random = randomNumbers(7);
-  if (context !== null) for (let plank = 0; plank < planks; plank++) paintPlank(context, plank, random);
-  const texture = new THREE.CanvasTexture(canvas);
-  texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-  texture.minFilter = THREE.LinearMipmapNearestFilter;
-  texture.anisotropy = 1;
-  return texture;
-}
-
-/** @param {CanvasRenderingContext2D} context @param {number} plank @param {() => number} random */
-function paintPlank(context, plank, random) {
-  const { pixels, planks } = TILE;
-  const [top, high] = [(plank * pixels) / planks, pixels / planks];
-  const joint = random() * pixels;
-  context.save();
-  context.beginPath();
-  context.rect(0, top, pixels, high);
-  context.clip();
-  context.fillStyle = TINTS[plank % TINTS.length];
-  context.fillRect(0, top, pixels, high);
-  context.fillStyle = TINTS[(plank + 2) % TINTS.length];
-  context.fillRect(joint, top, pixels * 0.45, high);
-  context.fillRect(joint - pixels, top, pixels * 0.45, high);
-  for (let grain = 0; grain < 26; grain++) {
-    const y = top + random() * high;
-    const long = pixels * (0.25 + 0.75 * random());
-    const from = random() * pixels;
-    const bend = (random() - 0.5) * 9;
-    context.strokeStyle = `rgb(143 98 52 / ${7 + 10 * random()}%)`;
-    context.lineWidth = 0.6 + 1.6 * random();
-    for (const shift of [0, -pixels]) {
-      context.beginPath();
-      context.moveTo(from + shift, y);
-      context.bezierCurveTo(from + shift + long / 3, y + bend, from + shift + (2 * long) / 3, y - bend, from + shift + long, y);
-      context.stroke();
-    }
-  }
-  context.fillStyle = "rgb(92 58 24 / 38%)";
-  context.fillRect(0, top + high - 1, pixels, 1);
-  for (const at of [joint, joint - pixels, joint + 0.45 * pixels, joint - 0.55 * pixels]) context.fillRect(at, top, 1, high);
-  context.fillStyle = "rgb(255 240 214 / 30%)";
-  context.fillRect(0, top, pixels, 1);
-  context.restore();
-}
-
-/** The same numbers on every machine. @param {number} seed */
-function randomNumbers(seed) {
-  let state = seed;
-  return () => {
-    state = (state * 1_664_525 + 1_013_904_223) % 4_294_967_296;
-    return state / 4_294_967_296;
-  };
 }
