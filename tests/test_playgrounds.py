@@ -48,7 +48,7 @@ def steps(world: World, seconds: float) -> None:
 
 def test_their_names_stay_as_they_are() -> None:
     assert [path.stem for path in SHIPPED] == [
-        "arena", "base", "borderless", "calibration", "classroom", "gate", "line", "line_eight", "line_gaps",
+        "arena", "base", "borderless", "calibration", "classroom", "desk", "gate", "line", "line_eight", "line_gaps",
         "line_gradient", "maze", "obstacle", "table", "two_robots",
     ]  # fmt: skip
 
@@ -129,7 +129,17 @@ def test_line_is_black_40_mm_wide_and_never_tighter_than_20_cm() -> None:
     assert track.corner_radius_m >= 0.2
 
 
-@pytest.mark.parametrize("name", ["line", "line_eight", "line_gaps", "line_gradient", "classroom"])
+def test_on_the_desk_the_explorer_drives_about_and_takes_no_tape_for_an_edge() -> None:
+    runner = Runner(loaded("desk"), behaviour="explorer")
+    robot = runner.world.robots["thymio"]
+    fields = set()
+    for _ in range(600):
+        runner.run(0.1)
+        fields.add((round(robot.pose.x_m, 1), round(robot.pose.y_m, 1)))
+    assert len(fields) >= 12
+
+
+@pytest.mark.parametrize("name", ["desk", "line", "line_eight", "line_gaps", "line_gradient", "classroom"])
 def test_robots_start_with_both_ground_sensors_on_the_line(name: str) -> None:
     world = loaded(name)
     ground = Ground(world.floors, world.paints)

@@ -146,8 +146,15 @@ async function main() {
     },
     dragController,
     robotTitle: (name) => name || text("page")("app.robot"),
+    select: (robot) => store.dispatch({ type: "select", robot }),
     contextLost: (trouble) => graphics.set(trouble),
   });
+  const followTheme = () => scene.setTheme(theme.isDark ? "dark" : "light");
+  const followMotion = () => scene.setCalm(motion.isCalm);
+  theme.subscribe(followTheme);
+  motion.subscribe(followMotion);
+  followTheme();
+  followMotion();
   const thumbnails = new ThumbnailCache((world) => scene.photograph(world));
 
   const visit = visitOptions(location.search);

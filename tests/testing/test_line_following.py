@@ -38,7 +38,7 @@ def test_at_a_crossing_the_way_goes_straight_on() -> None:
     assert EIGHT.locate((0.0, 0.001), other - 0.1)[1] == pytest.approx(other, abs=0.01)
 
 
-@pytest.mark.parametrize("playground", ["line", "line_eight"])
+@pytest.mark.parametrize("playground", ["desk", "line", "line_eight"])
 def test_the_line_follower_follows_the_line(playground: str) -> None:
     (thymio,) = Classroom(playground, "line_follower")
     thymio.until(followed_line(thymio), 120.0)

@@ -8,14 +8,14 @@ import { applyMarkers } from "../../web_ui/state/markers.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import { captured } from "./support.js";
 
-const TRIANGLES = 4000;
-/** However many robots: shadow, two of the body, wheels, two of the buttons, three of the lights, three of the beams, two of the ground. */
-const MOST_DRAW_CALLS = 14;
+const TRIANGLES = 1900;
+/** However many robots: shadow, light on the ground, body, line around it, wheels, halos, beams, their ends, ground patches. */
+const MOST_DRAW_CALLS = 9;
 
 /** @param {number} count @param {Partial<import("../../web_ui/state/robot.js").Robot>} [state] */
 function standing(count, state = {}) {
   return Array.from({ length: count }, (_, x) => ({
-    look: { robot: { ...NEW_ROBOT, ...state }, hovered: null, sensing: true },
+    look: { robot: { ...NEW_ROBOT, ...state }, hovered: null, sensing: true, flash: 0 },
     frame: frameAt(x),
   }));
 }
@@ -51,7 +51,7 @@ test("twenty robots take as many draw calls as one", () => {
   const instances = new RobotInstances({ fine: true });
   for (const count of [1, 20, 3]) {
     instances.update(standing(count));
-    assert.ok(drawn(instances).length > 7);
+    assert.ok(drawn(instances).length > 3);
     assert.ok(drawn(instances).length <= MOST_DRAW_CALLS);
     assert.ok(triangles(instances) < count * TRIANGLES);
   }
@@ -66,28 +66,57 @@ test("a distant robot has a fifth of the triangles of a near one", () => {
   assert.ok(coarse < fine / 5, `${coarse} of ${fine}`);
 });
 
-test("invisible parts are not drawn: a distant robot is its body and the lit lights", () => {
+test("invisible parts are not drawn: a distant robot is its body, its shadow, and the light it throws", () => {
   const instances = new RobotInstances({ fine: false });
-  const look = { sensing: false, hovered: null };
+  const look = { sensing: false, hovered: null, flash: 0 };
   /** @param {Partial<import("../../web_ui/state/robot.js").Robot>} state */
   const many = (state) => standing(20, state).map(({ frame }) => ({ frame, look: { ...look, robot: { ...NEW_ROBOT, ...state } } }));
   instances.update(many({}));
-  assert.equal(sum(copies(instances)), 20 * 2);
-  instances.update(many({ leds: { circle: [0, 0, 1], bottom_left: [0, 0.5, 0] } }));
+  assert.equal(sum(copies(instances)), 20 * 3, "the shadow has two parts");
+  instances.update(many({ leds: { top: [0, 0.5, 0] } }));
   assert.equal(sum(copies(instances)), 20 * 4);
   instances.update(many({}));
-  assert.equal(sum(copies(instances)), 20 * 2);
+  assert.equal(sum(copies(instances)), 20 * 3);
 });
 
-test("parts of several robots are at the right positions, whatever is left out before them", () => {
-  const instances = new RobotInstances({ fine: false });
+test("every robot has the colors of its own lights and buttons", () => {
+  const instances = new RobotInstances({ fine: true });
   const [dark, lit] = standing(2);
-  instances.update([dark, { ...lit, look: { ...lit.look, robot: { ...NEW_ROBOT, leds: { circle: [0, 1] } } } }]);
-  const [, , discs] = /** @type {import("three").InstancedMesh[]} */ (instances.group.children);
-  assert.equal(discs.count, 1);
-  assert.ok(Math.abs(placeOf(discs, 0)[12] - 1.066) < 1e-6);
-  const [red, , blue] = discs.instanceColor?.array ?? [];
-  assert.ok(red > blue, "yellow, as all of the circle");
+  const leds = { circle: [0, 1], top: [0, 0, 0.5], bottom_left: [1, 0, 0] };
+  const buttons = { ...NEW_ROBOT.buttons, forward: true };
+  instances.update([dark, { ...lit, look: { ...lit.look, robot: { ...NEW_ROBOT, leds, buttons } } }]);
+  /** @param {number} slot @param {string} name */
+  const levelOf = (slot, name) => lampsOf(instances).lampOf(slot, name).level;
+  for (const name of ["led.circle.1", "bottom_left", "forward", ""]) {
+    assert.equal(levelOf(0, name), 0);
+    assert.ok(levelOf(1, name) > 0.25, name);
+  }
+  assert.equal(levelOf(1, "led.circle.0"), 0);
+  const { r, b } = lampsOf(instances).lampOf(1, "led.circle.1");
+  assert.ok(r > b, "yellow, as all of the circle");
+  const { r: red, b: blue } = lampsOf(instances).lampOf(1, "");
+  assert.ok(red === 0 && blue === 1, "the color at full brightness");
+});
+
+test("a flash tints the whole body, also where its light is off", () => {
+  const instances = new RobotInstances({ fine: true });
+  const [robot] = standing(1);
+  instances.update([{ ...robot, look: { ...robot.look, flash: 1 } }]);
+  assert.equal(lampsOf(instances).lampOf(0, "").level, 1);
+  instances.update([robot]);
+  assert.equal(lampsOf(instances).lampOf(0, "").level, 0);
+});
+
+test("the shadow stays on the ground and grows pale when the robot is lifted", () => {
+  const instances = new RobotInstances({ fine: true });
+  const [robot] = standing(1);
+  instances.update([robot]);
+  const [shadow] = drawn(instances);
+  const before = shadow.instanceColor?.array[0] ?? 0;
+  const frame = robot.frame.clone().setPosition(0, 0, 0.06);
+  instances.update([{ ...robot, frame }]);
+  assert.ok(placeOf(shadow, 0)[14] < 0.003);
+  assert.ok((shadow.instanceColor?.array[0] ?? 1) < before);
 });
 
 test("an unchanged robot is not updated, a moved one is drawn at its pose", () => {
@@ -99,7 +128,8 @@ test("an unchanged robot is not updated, a moved one is drawn at its pose", () =
   instances.update(robots);
   assert.deepEqual(versions(), before);
   instances.update([robots[0], { ...robots[1], frame: frameAt(7) }]);
-  const [, body] = drawn(instances);
+  const body = drawn(instances).find(({ geometry }) => geometry.attributes.aLamp !== undefined);
+  assert.ok(body !== undefined);
   assert.equal(placeOf(body, 1)[12], 7);
   assert.ok(versions().every((version, index) => version > before[index]));
 });
@@ -125,12 +155,19 @@ test("beams and patches are shown only where they are wanted", () => {
   const instances = new RobotInstances({ fine: true });
   const seeing = { proximity: { center: 0.05, left: Infinity }, raw: { ground: [0, 0, 0, 0, 500, 500] } };
   const [robot] = standing(1, seeing);
-  const sensed = () => copies(instances).slice(-7, -2);
+  const sensed = () => copies(instances).slice(-3);
   instances.update([robot]);
-  assert.deepEqual(sensed(), [1, 1, 1, 2, 2]);
+  assert.deepEqual(sensed(), [2, 1, 4], "beams, the end of one, rims and fills");
   instances.update([{ ...robot, look: { ...robot.look, sensing: false } }]);
-  assert.deepEqual(sensed(), [0, 0, 0, 0, 0]);
+  assert.deepEqual(sensed(), [0, 0, 0]);
 });
+
+/** @param {RobotInstances} instances */
+function lampsOf(instances) {
+  const found = instances.pieces.map(({ lamps }) => lamps).find((lamps) => lamps !== undefined);
+  assert.ok(found !== undefined);
+  return found;
+}
 
 /** How many copies of each shape are drawn. @param {RobotInstances} instances */
 function copies(instances) {

@@ -39,16 +39,61 @@ test("a heading turns the short way across ±π", () => {
   assert.equal(shortestTurn(0.5, 1), 0.5);
 });
 
-test("slow frames lower the quality, down to the last level", () => {
-  const quality = new Quality(0);
-  for (let frame = 0; frame < 1000; frame++) quality.note(frame * 100, true);
-  assert.equal(quality.level, LEVELS.length - 1);
+/** Frames at this interval; returns the levels that were passed. @param {Quality} quality @param {number} intervalMs */
+function run(quality, intervalMs) {
+  const levels = [quality.level];
+  for (let frame = 0; frame < 1000; frame++) if (quality.note(frame * intervalMs, true)) levels.push(quality.level);
+  return levels.map((level) => LEVELS[level]);
+}
+
+test("slow frames cost first every second frame, then glows, then resolution", () => {
+  const passed = run(new Quality({ isSoftware: true }), 100);
+  assert.deepEqual(
+    passed.map(({ framesPerSecond, hasGlows, pixelRatio }) => [framesPerSecond, hasGlows, pixelRatio]),
+    [
+      [Infinity, true, 1],
+      [30, true, 1],
+      [30, false, 1],
+      [30, false, 0.87],
+      [30, false, 0.75],
+    ],
+  );
+});
+
+test("on a graphics card nothing is left out", () => {
+  assert.equal(run(new Quality({ isSoftware: false }), 100).length, 1);
+});
+
+test("thirty frames a second are enough where every second one is left out", () => {
+  assert.equal(run(new Quality({ isSoftware: true }), 33).length, 2);
+});
+
+test("where every second frame is left out, a frame may be too early", () => {
+  const quality = new Quality({ isSoftware: true });
+  quality.level = 2;
+  assert.equal(quality.isEarly(0), false);
+  quality.note(0, true);
+  assert.deepEqual([quality.isEarly(16), quality.isEarly(33)], [true, false]);
+  quality.note(40, false);
+  assert.equal(quality.isEarly(41), false, "nothing moved before");
+});
+
+test("resolution is full while nothing moves", () => {
+  const quality = new Quality({ isSoftware: true });
+  assert.equal(quality.rest(true), false, "it was full");
+  quality.rest(false);
+  run(quality, 100);
+  assert.equal(quality.isReduced, true);
+  assert.equal(quality.rest(true), true);
+  assert.equal(quality.settings.pixelRatio, 1);
+  assert.equal(quality.rest(false), true);
+  assert.equal(quality.settings.pixelRatio, 0.75);
 });
 
 test("fast frames and pauses leave the quality alone", () => {
-  const quality = new Quality(0);
+  const quality = new Quality({ isSoftware: true });
   for (let frame = 0; frame < 1000; frame++) quality.note(frame * 20 + Math.floor(frame / 10) * 1000, frame % 10 !== 9);
-  assert.equal(quality.level, 0);
+  assert.equal(quality.level, 1);
 });
 
 test("a saved image is large whatever the quality, and never too large for a graphics card", () => {

@@ -99,7 +99,7 @@ test("value labels are at the ends of the beams and beside the ground patches", 
 });
 
 test("a fixed quality stays, and automatic starts over", () => {
-  const quality = new Quality(1);
+  const quality = new Quality({ isSoftware: true });
   quality.choose("fine");
   for (let frame = 0; frame < 200; frame++) assert.equal(quality.note(frame * 200, true), false);
   assert.equal(quality.settings.pixelRatio, 2);

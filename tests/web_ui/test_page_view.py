@@ -84,11 +84,12 @@ def test_the_view_is_saved_as_an_image_and_the_robot_view_works(suite, page):
 def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(suite, page):
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
-    page.wait_for_function("() => document.querySelectorAll('.robot-label').length === 2")
+    page.wait_for_function("() => document.querySelectorAll('#labels .dot').length === 2")
     open_menu(page, "#robot-chooser")
     names, choices = page.evaluate(
-        "() => [[...document.querySelectorAll('.robot-label')]"
-        ".map((one) => getComputedStyle(one, '::before').backgroundColor),"
+        "() => [[...document.querySelectorAll('#labels .dot')].map((one) => {"
+        " one.style.outlineColor = one.style.getPropertyValue('--color');"
+        " return getComputedStyle(one).outlineColor; }),"
         " [...document.querySelectorAll('#robot-menu .swatch')].map((one) => getComputedStyle(one).backgroundColor)]"
     )
     assert len(set(names)) == 2
@@ -98,3 +99,14 @@ def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(sui
     page.wait_for_function("() => document.querySelectorAll('.ray-number:not([hidden])').length === 9")
     choose_robot(page, "red")
     page.wait_for_function("() => window.thymio.state().selected === 'red'")
+    names = page.locator("#labels .tag:not([hidden])")
+    playwright.expect(names).to_have_text(["red"])
+    page.locator("#labels .dot[data-robot=blue]").dispatch_event("click")
+    page.wait_for_function("() => window.thymio.state().selected === 'blue'")
+    playwright.expect(names).to_have_text(["blue"])
+
+
+def test_one_robot_needs_no_name(suite, page):
+    open_page(page, suite(*RESTING))
+    wait_for_position(page, "robot")
+    assert page.locator("#labels .dot, #labels .tag").count() == 0

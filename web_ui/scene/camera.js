@@ -6,19 +6,22 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { fit } from "./fit.js";
 
 /** @typedef {"home" | "top" | "follow" | "eye"} ViewName */
+/** @typedef {{ top?: number, right?: number, bottom?: number, left?: number }} Insets  CSS pixels */
 
 export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow", "eye"]);
 
 const FOLLOW = { back: 0.42, up: 0.3 };
 /** The robot's view: from its front, above the front sensors. */
 const EYE = { ahead: 0.083, up: 0.045 };
+const NEAREST_M = 0.02;
+const NEAR_SHARE = 0.05;
 const TURN_STEP = Math.PI / 24;
 const ZOOM_STEP = 1.15;
 
 export class Camera {
   /** @param {HTMLElement} element  element that gets pointer events @param {() => void} changed */
   constructor(element, changed) {
-    this.camera = new THREE.PerspectiveCamera(42, 1, 0.02, 30);
+    this.camera = new THREE.PerspectiveCamera(42, 1, NEAREST_M, 30);
     this.camera.up.set(0, 0, 1);
     this.camera.position.set(-1, -0.8, 0.9);
     this.controls = new OrbitControls(this.camera, element);
@@ -35,23 +38,44 @@ export class Camera {
     this.corners = [new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0)];
     this.target = new THREE.Vector3();
     this.size = { width: 1, height: 1 };
-    this.inset = 0;
+    this.insets = { top: 0, right: 0, bottom: 0, left: 0 };
   }
 
   /** @param {number} width @param {number} height */
   resize(width, height) {
     this.size = { width, height };
+    const { top, right, bottom, left } = this.insets;
     this.camera.aspect = width / height;
-    if (this.inset === 0) this.camera.clearViewOffset();
-    else this.camera.setViewOffset(width, height, -this.inset / 2, 0, width, height);
+    if (top === bottom && left === right) this.camera.clearViewOffset();
+    else this.camera.setViewOffset(width, height, (right - left) / 2, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
     if (!this.touched && !this.goesAlong) this.setView(this.view);
   }
 
-  /** Number of pixels that are covered at the left; worlds are fitted into the rest. @param {number} inset */
-  setInset(inset) {
-    this.inset = inset;
+  /** Space at the edges that is covered: worlds are fitted into the rest. @param {Insets} insets */
+  setInsets(insets) {
+    this.insets = { top: 0, right: 0, bottom: 0, left: 0, ...insets };
     this.resize(this.size.width, this.size.height);
+  }
+
+  /** @param {number} inset  at the left */
+  setInset(inset) {
+    this.setInsets({ left: inset });
+  }
+
+  /** Nothing is nearer than this share of the way to what is looked at; near and far need a small ratio. */
+  #setNear() {
+    const far = this.camera.position.distanceTo(this.controls.target);
+    const near = this.view === "eye" ? NEAREST_M : Math.max(NEAREST_M, NEAR_SHARE * far);
+    if (Math.abs(near - this.camera.near) < 0.1 * near) return;
+    this.camera.near = near;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** Prepare for drawing. */
+  ready() {
+    this.#setNear();
+    return this.camera;
   }
 
   /** Whether the view follows a robot. */
@@ -98,7 +122,10 @@ export class Camera {
     // Straight from above, "up" is undefined; a tiny offset makes x point to the right.
     const from = (view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.22, -0.85, 0.85)).normalize();
     const { width, height } = this.size;
-    const shown = { fov: this.camera.fov, aspect: Math.max(0.2, (width - this.inset) / height) };
+    const { top, right, bottom, left } = this.insets;
+    const free = { width: Math.max(0.2 * height, width - left - right), height: Math.max(0.2 * height, height - top - bottom) };
+    const slope = Math.tan((this.camera.fov * Math.PI) / 360) * (free.height / height);
+    const shown = { fov: (360 / Math.PI) * Math.atan(slope), aspect: free.width / free.height };
     const { target, distance } = fit(shown, this.corners, from);
     this.#place(target, from.multiplyScalar(distance).add(target));
   }

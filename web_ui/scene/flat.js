@@ -4,6 +4,8 @@
 import * as THREE from "three";
 
 import { hasPicture, MARKER } from "../state/markers.js";
+import { DESK, groundColor, wallColor } from "./colors.js";
+import { LIGHT } from "./lights.js";
 import { placed, ROBOT_OUTLINE } from "../move/placed_bodies.js";
 import { poseAt } from "./motion.js";
 import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
@@ -18,6 +20,7 @@ const MARGIN = 1.06;
 const FOLLOW_M = 0.9; // height of the visible area while following a robot
 const ABOVE_M = 5;
 const HALF_BEAM = 0.15; // rad
+const WHITE = [252, 250, 246];
 
 export class FlatView {
   /** @param {HTMLCanvasElement} canvas  canvas over the 3D canvas */
@@ -68,7 +71,7 @@ export class FlatView {
     const { context, canvas, camera } = this;
     if (context === null) return;
     Object.assign(canvas, this.#size);
-    context.fillStyle = "#dfecf6";
+    context.fillStyle = DESK.getStyle();
     context.fillRect(0, 0, canvas.width, canvas.height);
     const scale = canvas.height / (camera.top - camera.bottom);
     const { x, y } = camera.position;
@@ -88,8 +91,9 @@ export class FlatView {
       drawRobot(context, robot, senses(name), color(name));
       context.restore();
     }
+    dim(context);
     if (held !== null) {
-      context.fillStyle = held.blocker === null ? "rgb(23 105 209 / 50%)" : "rgb(209 26 26 / 60%)";
+      context.fillStyle = held.blocker === null ? "rgb(75 67 184 / 50%)" : "rgb(179 38 30 / 60%)";
       for (const polygon of placed(held.body.outline, held.pose)) fill(context, polygon);
     }
     if (sketch !== null) drawSketch(context, sketch, this.pixelRatio / scale);
@@ -113,7 +117,8 @@ export class FlatView {
     context.save();
     context.translate(pose.position.x, pose.position.y);
     context.rotate(Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)));
-    context.fillStyle = context.strokeStyle = css(color);
+    const isSolid = marker.ns.startsWith("solid/");
+    context.fillStyle = context.strokeStyle = isSolid ? css(wallColor(color), color.a) : css(groundColor(color), color.a);
     const picture = hasPicture(marker) ? this.#picture(marker, changed) : null;
     if (picture !== null) {
       context.scale(1, -1);
@@ -132,7 +137,7 @@ export class FlatView {
         if (colors.length > 0) {
           context.fill();
           context.beginPath();
-          context.fillStyle = css(colors[at]);
+          context.fillStyle = css(groundColor(colors[at]), colors[at].a);
         }
         const [a, b, c] = points.slice(at, at + 3);
         context.moveTo(a.x * scale.x, a.y * scale.y);
@@ -176,7 +181,7 @@ function drawRobot(context, robot, sensors, color) {
       if (range === undefined) continue;
       const seen = Number.isFinite(range) || range === -Infinity;
       const length = seen ? Math.max(range, 0.004) : MAX_RANGE_M;
-      context.fillStyle = seen ? "rgb(224 45 27 / 55%)" : "rgb(59 130 208 / 18%)";
+      context.fillStyle = seen ? "rgb(239 125 46 / 65%)" : "rgb(239 125 46 / 18%)";
       context.beginPath();
       context.moveTo(x, y);
       context.arc(x, y, length, yaw - HALF_BEAM, yaw + HALF_BEAM);
@@ -186,16 +191,16 @@ function drawRobot(context, robot, sensors, color) {
   const [outline] = ROBOT_OUTLINE;
   const lit = robot.leds.top ?? [0, 0, 0];
   const most = Math.max(...lit);
-  const [r, g, b] = lit.map((level) => 247 + (most > 0 ? most * (255 * (level / most) - 247) : 0));
+  const [r, g, b] = lit.map((level, at) => WHITE[at] + (most > 0 ? 0.45 * most * (255 * (level / most) - WHITE[at]) : 0));
   context.fillStyle = `rgb(${r} ${g} ${b})`;
   context.strokeStyle = color;
   context.lineWidth = 0.004;
   fill(context, outline);
   context.stroke();
-  context.fillStyle = "#343b44";
+  context.fillStyle = "#45403b";
   for (const side of [1, -1]) context.fillRect(-0.022, side * 0.047 - 0.0075, 0.044, 0.015);
   for (const [name, { x, y }] of Object.entries(BUTTON_PLACES)) {
-    context.fillStyle = robot.buttons[name] ? "#0b2f66" : "#66758a";
+    context.fillStyle = robot.buttons[name] ? "#25225c" : "#99948d";
     disc(context, x, y, 0.005);
   }
   for (const { group, index, place, color: full, normal } of LIGHTS) {
@@ -223,7 +228,19 @@ function disc(context, x, y, radius) {
   context.fill();
 }
 
-/** @param {import("../state/markers.js").Color} color */
-function css({ r, g, b, a }) {
-  return `rgb(${r * 255} ${g * 255} ${b * 255} / ${a})`;
+/** @param {THREE.Color} color @param {number} opacity */
+function css({ r, g, b }, opacity) {
+  return `rgb(${r * 255} ${g * 255} ${b * 255} / ${opacity})`;
+}
+
+/** The evening of the dark theme. @param {CanvasRenderingContext2D} context */
+function dim(context) {
+  const color = LIGHT.uDim.value;
+  if (color.r === 1) return;
+  context.save();
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.globalCompositeOperation = "multiply";
+  context.fillStyle = css(color, 1);
+  context.fillRect(0, 0, context.canvas.width, context.canvas.height);
+  context.restore();
 }

@@ -7,8 +7,8 @@ import { reach } from "../move/placed_bodies.js";
 
 /** @typedef {import("../move/drag_controller.js").Dragged} Held */
 
-const FREE = 0x1769d1;
-const TAKEN = 0xd11a1a;
+const FREE = 0x4b43b8;
+const TAKEN = 0xb3261e;
 const OPACITY = 0.45;
 const ABOVE_M = 0.004;
 

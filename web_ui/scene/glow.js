@@ -1,40 +1,39 @@
-// The color of a material that an RGB light shines through.
+// Colors of lights, and textures of soft spots.
 
 import * as THREE from "three";
 
+import "./colors.js";
+
 /**
- * Color = levels divided by the largest, opacity = the largest (docs/spec/thymio-robot.md section 8.1).
+ * The color of an RGB light at full brightness (levels divided by the largest), and its brightness
+ * (docs/spec/thymio-robot.md section 8.1).
  *
- * @param {THREE.Color} target
- * @param {THREE.Color} off
  * @param {readonly number[] | undefined} levels
- * @param {number} most  share of the light's color at full brightness
+ * @returns {{ color: [number, number, number], level: number }}
  */
-export function glow(target, off, levels = [0, 0, 0], most) {
+export function glow(levels = [0, 0, 0]) {
   const largest = Math.max(...levels);
-  target.copy(off);
-  if (largest <= 0) return;
+  if (largest <= 0) return { color: [0, 0, 0], level: 0 };
   const [r, g, b] = levels.map((level) => level / largest);
-  target.lerp(new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), most * Math.min(1, 0.25 + 0.75 * largest));
+  return { color: [r, g, b], level: Math.min(1, 0.25 + 0.75 * largest) };
 }
 
 /**
- * The texture of a round spot, opaque in its center.
+ * The texture of an opacity, in its red channel.
  *
  * @param {number} size  pixels
- * @param {[number, number, number]} color  0…255
- * @param {(share: number) => number} opacity  opacity 0…1 as a function of 1 in the center to 0 at the edge
+ * @param {(x: number, y: number) => number} opacity  0…1, as a function of the place: -1…1 across the texture
  */
-export function spotTexture(size, color, opacity) {
+export function opacityTexture(size, opacity) {
   const data = new Uint8Array(size * size * 4);
   for (let row = 0; row < size; row++) {
     for (let column = 0; column < size; column++) {
-      const distance = Math.hypot(row - size / 2 + 0.5, column - size / 2 + 0.5) / (size / 2);
-      data.set([...color, 255 * opacity(Math.max(0, 1 - distance))], (row * size + column) * 4);
+      const [x, y] = [column, row].map((at) => ((at + 0.5) / size) * 2 - 1);
+      data.fill(255 * Math.min(1, Math.max(0, opacity(x, y))), 4 * (row * size + column), 4 * (row * size + column + 1));
     }
   }
   const texture = new THREE.DataTexture(data, size, size);
-  texture.magFilter = THREE.LinearFilter;
+  texture.magFilter = texture.minFilter = THREE.LinearFilter;
   texture.needsUpdate = true;
   return texture;
 }

@@ -2,13 +2,15 @@
 
 import * as THREE from "three";
 
+import "./colors.js";
+
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
 /** Null if the browser has no WebGL: panels and buttons still work. @param {HTMLCanvasElement} canvas */
 export function createRenderer(canvas) {
   try {
     const renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftwareHere(), powerPreference: "low-power" });
-    renderer.outputColorSpace = THREE.SRGBColorSpace;
+    renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // colors are display values already (colors.js)
     return renderer;
   } catch {
     return null;

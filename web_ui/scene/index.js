@@ -8,7 +8,9 @@ import { robotColor } from "../state/robot_colors.js";
 import { FlatView } from "./flat.js";
 import { Ghost } from "./ghost.js";
 import { createRenderer, isSoftware } from "./graphics.js";
-import { litScene } from "./lights.js";
+import { groundOf } from "./ground_of.js";
+import { lightAs } from "./lights.js";
+import { FrameLoop } from "./loop.js";
 import { ValueLabels, valueLabelsOf } from "./value_labels.js";
 import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
@@ -16,6 +18,8 @@ import { watchPointer } from "./pointer.js";
 import { pictureRatio, Quality } from "./quality.js";
 import { RobotsLayer } from "./robots_layer.js";
 import { SketchModel } from "./sketch.js";
+import { drawAll, StillGround } from "./still_ground.js";
+import { Surroundings } from "./surroundings.js";
 import { isSensed } from "../state/names.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -27,7 +31,7 @@ const LOST_FOR_GOOD_MS = 4000;
 /** Distance of a name above its robot in the 2D view. */
 const FLAT_LABEL_PX = 24;
 /** Robots smaller than this on the screen, in drawn pixels, use the coarse model. */
-const SMALL_PX = 40;
+const SMALL_PX = 60;
 const SIZE_M = 0.11;
 
 export class SceneView {
@@ -41,10 +45,11 @@ export class SceneView {
    * @param {(target: Target, pressed: boolean) => void} options.press
    * @param {import("../move/drag_controller.js").DragController} options.dragController   the dragged body
    * @param {(name: string) => string} options.robotTitle
+   * @param {(robot: string) => void} [options.select]   a robot's dot has been clicked
    * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   overlay of the creator; null while it is closed
    * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: permanently, drawn in 2D
    */
-  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, sketch, contextLost }) {
+  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, select = () => {}, sketch, contextLost }) {
     this.canvas = canvas;
     this.state = state;
     this.beforeDraw = beforeDraw;
@@ -54,24 +59,32 @@ export class SceneView {
     this.sketchModel = new SketchModel();
     this.framed = false;
     this.frames = 0;
-    this.requested = false;
     this.size = { width: 0, height: 0 }; // CSS pixels; cached, since reading it after moving a label forces a layout
     this.showSensors = true;
     this.showNumbers = false;
+    this.isCalm = false;
+    this.renderer = createRenderer(canvas);
+    this.isSoftware = isSoftware(this.renderer);
+    this.quality = new Quality({ isSoftware: this.isSoftware });
+    this.loop = new FrameLoop({
+      quality: this.quality,
+      draw: (nowMs) => this.#frame(nowMs),
+      resize: () => this.#resize(),
+    });
     this.valueLabels = new ValueLabels(labels);
     this.flat = new FlatView(flatCanvas);
     this.wantsFlat = false;
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
     /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.photoRequests = [];
-    this.scene = litScene();
-    this.playground = new PlaygroundModel(() => this.invalidate());
+    this.scene = new THREE.Scene();
+    this.still = new StillGround();
+    this.surroundings = new Surroundings(() => this.#redraw());
+    this.playground = new PlaygroundModel(() => this.#redraw(), undefined, { isStill: true });
     this.objects = new PlaygroundModel(() => this.invalidate());
-    this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle });
-    this.scene.add(this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
+    this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle, select });
+    this.scene.add(this.surroundings.group, this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
     this.camera = new Camera(canvas, () => this.invalidate());
-    this.renderer = createRenderer(canvas);
-    this.quality = new Quality(isSoftware(this.renderer) ? 1 : 0);
     let lostTimer = 0;
     canvas.addEventListener("webglcontextlost", () => {
       contextLost("lost");
@@ -84,6 +97,7 @@ export class SceneView {
     canvas.addEventListener("webglcontextrestored", () => {
       window.clearTimeout(lostTimer);
       this.isLost = false;
+      this.still.forget();
       contextLost(null);
       this.invalidate();
     });
@@ -112,9 +126,7 @@ export class SceneView {
 
   /** Request one frame; several calls before it have the effect of one. */
   invalidate() {
-    if (this.requested) return;
-    this.requested = true;
-    requestAnimationFrame((nowMs) => this.#frame(nowMs));
+    this.loop.invalidate();
   }
 
   /** @param {ViewName} view */
@@ -143,6 +155,23 @@ export class SceneView {
     this.invalidate();
   }
 
+  /** Day or evening. @param {import("./lights.js").Theme} theme */
+  setTheme(theme) {
+    lightAs(theme);
+    this.#redraw();
+  }
+
+  /** Less movement: nothing flashes. @param {boolean} calm */
+  setCalm(calm) {
+    this.isCalm = calm;
+    this.invalidate();
+  }
+
+  /** Space at the edges of the canvas that is covered, in CSS pixels. @param {import("./camera.js").Insets} insets */
+  setInsets(insets) {
+    this.camera.setInsets(insets);
+  }
+
   /** @param {boolean} shown */
   setNumbers(shown) {
     this.showNumbers = shown;
@@ -166,15 +195,16 @@ export class SceneView {
    * The view as PNG in full resolution, whatever the current quality; null if the browser cannot create it. This runs
    * in one task, so that the browser never shows a frame of the large canvas.
    *
+   * @param {{ scale?: number }} [how]  times the usual size
    * @returns {Promise<Blob | null>}
    */
-  picture() {
+  picture({ scale = 1 } = {}) {
     const nowMs = performance.now();
-    const ratio = pictureRatio(this.size, window.devicePixelRatio);
+    const ratio = pictureRatio(this.size, window.devicePixelRatio, scale);
     this.renderer?.setPixelRatio(ratio);
     this.flat.pixelRatio = ratio;
     this.#updateRobots(this.state(), nowMs); // robots that are large in the image need the fine model
-    this.#draw(nowMs); // WebGL content is readable only until the browser has shown the frame
+    this.#draw(nowMs, true); // WebGL content is readable only until the browser has shown the frame
     const shown = this.isFlat ? this.flat.canvas : this.canvas;
     const picture = new Promise((/** @type {(png: Blob | null) => void} */ resolve) => shown.toBlob(resolve, "image/png"));
     this.flat.pixelRatio = 1;
@@ -248,14 +278,17 @@ export class SceneView {
     return this.#toWindow(new THREE.Vector3(x, y, z));
   }
 
-  /** @param {number} nowMs */
+  /** Draw the state; returns whether something still moves. @param {number} nowMs */
   #frame(nowMs) {
-    this.requested = false;
     const state = this.state();
     this.beforeDraw(nowMs);
     const sketch = this.sketch();
     const grown = this.playground.update(state.markers);
-    if (grown) this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
+    if (grown) {
+      this.still.forget();
+      this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
+      this.surroundings.update(sketch === null ? groundOf(state.markers.values()) : null);
+    }
     this.framed = sketch !== null;
     this.objects.update(state.objects);
     this.dragController.refresh();
@@ -270,15 +303,29 @@ export class SceneView {
     this.frames += 1;
     if (this.photoRequests.length > 0) this.invalidate();
     this.#placeLabels();
-    if (moving) this.invalidate();
-    if (this.quality.note(nowMs, moving)) this.#resize();
+    return moving;
   }
 
-  /** @param {number} nowMs */
-  #draw(nowMs) {
+  /** Desk and ground have changed. */
+  #redraw() {
+    this.still.forget();
+    this.invalidate();
+  }
+
+  /** @param {THREE.WebGLRenderer} renderer @param {boolean} isWhole */
+  #draw3d(renderer, isWhole) {
+    const camera = this.camera.ready();
+    // From a table robots fall, and its top then hides them: no image of the ground can.
+    const mayBeKept = this.isSoftware && !isWhole && this.surroundings.ground?.isWalled === true;
+    if (mayBeKept) this.still.draw(renderer, this.scene, camera);
+    else drawAll(renderer, this.scene, camera);
+  }
+
+  /** @param {number} nowMs @param {boolean} [isWhole]  nothing kept from the frame before */
+  #draw(nowMs, isWhole = false) {
     this.flat.canvas.hidden = !this.isFlat;
     if (!this.isFlat) {
-      this.renderer?.render(this.scene, this.camera.camera);
+      if (this.renderer !== null) this.#draw3d(this.renderer, isWhole);
       return;
     }
     const state = this.state();
@@ -300,6 +347,8 @@ export class SceneView {
     const { hovered } = this;
     return this.robots.update(state, {
       nowMs,
+      hasGlows: this.quality.settings.hasGlows,
+      isCalm: this.isCalm,
       hovered,
       isSensing: (name) => this.#isSensing(name),
       isSmall: (frame) => this.#isSmall(frame),

@@ -3,6 +3,8 @@
 import * as THREE from "three";
 import { mergeGeometries, mergeVertices } from "three/addons/utils/BufferGeometryUtils.js";
 
+import "./colors.js";
+
 /**
  * @param {readonly [THREE.BufferGeometry, number][]} shapes  with their colors; they are disposed
  * @returns {THREE.BufferGeometry}

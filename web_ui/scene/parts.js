@@ -11,7 +11,7 @@ export const WHEEL = { radius: 0.022, width: 0.015, track: 0.094 };
 
 const UP = { x: 0, y: 0, z: 1 };
 const RED = 0xff2a1f;
-const YELLOW = 0xff9d1f;
+const YELLOW = 0xffb23e;
 const BLUE = 0x2f6bff;
 const TOP_M = HEIGHT_M + 0.0006;
 

@@ -7,12 +7,13 @@ import { robotColor } from "../state/robot_colors.js";
 import { fit } from "./fit.js";
 import { FlatView } from "./flat.js";
 import { RobotInstances } from "./robot_instances.js";
-import { litScene } from "./lights.js";
 import { PlaygroundModel } from "./playground.js";
 import { RobotModel } from "./robot.js";
 
 /** @typedef {import("../state/index.js").State} State */
 
+/** Behind a thumbnail there is paper, no desk. */
+const CARD = new THREE.Color(0xe9ddc9);
 const FROM = new THREE.Vector3(-0.22, -0.85, 0.95).normalize();
 /** Oversampling, which smooths the edges. */
 const SIZE = { width: 480, height: 320 };
@@ -28,7 +29,8 @@ export function photograph(world, renderer) {
 
 /** @param {State} world @param {THREE.WebGLRenderer} renderer */
 function inSpace(world, renderer) {
-  const scene = litScene();
+  const scene = new THREE.Scene();
+  scene.background = CARD;
   const playground = new PlaygroundModel();
   playground.update(world.markers);
   const robots = Object.entries(world.robots).map(([name, robot]) => {
@@ -39,7 +41,7 @@ function inSpace(world, renderer) {
   const instances = new RobotInstances({ fine: true });
   instances.update(
     robots.map(({ name, group }) => ({
-      look: { robot: world.robots[name], hovered: null, sensing: false },
+      look: { robot: world.robots[name], hovered: null, sensing: false, flash: 0 },
       frame: group.matrix,
     })),
   );

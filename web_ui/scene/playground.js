@@ -2,6 +2,11 @@
 
 import * as THREE from "three";
 
+import { groundColor } from "./colors.js";
+import { ContactShade } from "./contact.js";
+import { litMaterial } from "./materials.js";
+import { solidMesh } from "./solids.js";
+import { STILL_LAYER } from "./still_ground.js";
 import { hasPicture, MARKER } from "../state/markers.js";
 
 /** @typedef {import("../state/markers.js").Marker} Marker */
@@ -21,15 +26,23 @@ export class PlaygroundModel {
   /**
    * @param {() => void} changed  called when an image has been decoded
    * @param {(png: Blob) => Promise<ImageBitmap>} decode  decodes an image, its last row first
+   * @param {{ isStill?: boolean }} [how]   whether its ground rarely changes (still_ground.js)
    */
-  constructor(changed = () => {}, decode = (png) => createImageBitmap(png, { imageOrientation: "flipY" })) {
+  constructor(
+    changed = () => {},
+    decode = (png) => createImageBitmap(png, { imageOrientation: "flipY" }),
+    { isStill = false } = {},
+  ) {
     this.changed = changed;
+    this.isStill = isStill;
     this.decode = decode;
     this.group = new THREE.Group();
     /**
-     * @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial> }>}
+     * @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial> }>}
      */
     this.meshes = new Map();
+    this.shade = new ContactShade();
+    if (isStill) this.shade.mesh.layers.set(STILL_LAYER);
     /** @type {ReadonlyMap<string, Marker> | null} */ this.shown = null;
   }
 
@@ -48,6 +61,9 @@ export class PlaygroundModel {
     for (const [key, marker] of markers) {
       if (!this.meshes.has(key) && marker.type in GEOMETRIES) this.#add(key, marker);
     }
+    this.shade.update(markers.values());
+    if (this.shade.mesh.visible) this.group.add(this.shade.mesh);
+    else this.group.remove(this.shade.mesh);
     return true;
   }
 
@@ -66,12 +82,14 @@ export class PlaygroundModel {
 
   dispose() {
     for (const key of [...this.meshes.keys()]) this.#remove(key);
+    this.shade.dispose();
   }
 
   /** @param {string} key @param {Marker} marker */
   #add(key, marker) {
     const mesh = hasPicture(marker) ? this.#pictured(marker) : this.#plain(marker);
     place(mesh, marker);
+    if (this.isStill && isGround(marker)) mesh.layers.set(STILL_LAYER);
     this.meshes.set(key, { marker, mesh });
     this.group.add(mesh);
   }
@@ -79,9 +97,9 @@ export class PlaygroundModel {
   /** An image lies flat in the marker's frame; the scale gives its size. @param {Marker} marker */
   #pictured({ scale, texture }) {
     const map = new THREE.Texture();
-    map.colorSpace = THREE.SRGBColorSpace;
     map.anisotropy = 8;
-    const material = new THREE.MeshLambertMaterial({ map, transparent: true, visible: false, side: THREE.DoubleSide });
+    const material = litMaterial({ map, flat: true, print: true, side: THREE.DoubleSide });
+    material.visible = false;
     /** @param {ImageBitmap | HTMLCanvasElement} image */
     const show = (image) => {
       map.image = image;
@@ -101,17 +119,15 @@ export class PlaygroundModel {
 
   /** @param {Marker} marker */
   #plain(marker) {
-    const { r, g, b, a } = marker.color;
+    const geometry = GEOMETRIES[marker.type](marker);
+    if (!isGround(marker)) return solidMesh(marker, geometry);
     const perPoint = marker.colors.length > 0;
-    const material = new THREE.MeshLambertMaterial({
-      color: perPoint ? new THREE.Color(0xffffff) : new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace),
-      vertexColors: perPoint,
-      transparent: a < 1,
-      opacity: a,
-      side:
-        marker.type === MARKER.TRIANGLE_LIST || marker.type === MARKER.LINE_STRIP ? THREE.DoubleSide : THREE.FrontSide,
-    });
-    return new THREE.Mesh(GEOMETRIES[marker.type](marker), material);
+    const color = perPoint ? new THREE.Color(0xffffff) : groundColor(marker.color);
+    const opacity = marker.color.a;
+    return new THREE.Mesh(
+      geometry,
+      litMaterial({ color, flat: true, vertexColors: perPoint, opacity, side: THREE.DoubleSide }),
+    );
   }
 
   /** @param {string} key */
@@ -120,15 +136,40 @@ export class PlaygroundModel {
     if (entry === undefined) return;
     this.group.remove(entry.mesh);
     entry.mesh.geometry.dispose();
-    entry.mesh.material.map?.dispose();
+    entry.mesh.material.uniforms.uMap.value?.dispose();
     entry.mesh.material.dispose();
     this.meshes.delete(key);
   }
 }
 
-/** @param {THREE.Mesh} mesh @param {Marker} marker */
-function place(mesh, { pose: { position, orientation } }) {
+/** Whether it is floor, paint, or a line of a pen: flat on the ground, seen by the ground sensors. @param {Marker} marker */
+function isGround({ ns, type }) {
+  return !ns.startsWith("solid/") && (type === MARKER.TRIANGLE_LIST || type === MARKER.LINE_STRIP);
+}
+
+/** Paint lies this much above the floor; `layered` decides what covers what. */
+const PAINT_M = 0.0004;
+const LOWER = 40;
+
+/**
+ * Paint and floors cover each other in the order of their heights, by drawing them one after another: so they can lie
+ * closer together than the depth buffer tells apart, and what stands on them does not sink in.
+ *
+ * @param {THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>} mesh
+ * @param {Marker} marker
+ */
+function layered(mesh, { ns, pose: { position } }) {
+  const isFloor = ns.startsWith("floor/");
+  mesh.renderOrder = 10 + 1000 * position.z;
+  mesh.material.depthWrite = isFloor;
+  mesh.position.z = (isFloor ? 0 : PAINT_M) + Math.min(0.002, position.z / LOWER);
+}
+
+/** @param {THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>} mesh @param {Marker} marker */
+function place(mesh, marker) {
+  const { position, orientation } = marker.pose;
   mesh.position.set(position.x, position.y, position.z);
+  if (isGround(marker)) layered(mesh, marker);
   mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
 }
 
@@ -174,7 +215,7 @@ function triangles({ points, colors, scale }) {
   );
   if (colors.length > 0) {
     const color = new THREE.Color();
-    const values = colors.flatMap(({ r, g, b }) => color.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
+    const values = colors.flatMap((declared) => groundColor(declared, color).toArray());
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(values, 3));
   }
   geometry.computeVertexNormals();

@@ -1,18 +1,28 @@
-// Chooses the drawing quality: lowers it by one level when frames are too slow, and never raises it by itself
-// (constant changes of sharpness are worse than a plain image). Pure.
+// Chooses how much is drawn. On a graphics card, everything. In software, what costs least to do without goes first:
+// half of the frames, then soft glows, then resolution; resolution is full again as soon as nothing moves. Pure.
 
-/** @typedef {{ pixelRatio: number }} Level */
+/** @typedef {{ pixelRatio: number, framesPerSecond: number, hasGlows: boolean }} Level */
 
-/** From fine to simple; the pixel ratio costs most (docs/performance.md, "The page"). */
+const EVERY = Infinity;
+
+/** From everything to little. */
 export const LEVELS = /** @type {readonly Level[]} */ ([
-  { pixelRatio: 2 },
-  { pixelRatio: 1 },
-  { pixelRatio: 0.7 },
-  { pixelRatio: 0.5 },
+  { pixelRatio: 2, framesPerSecond: EVERY, hasGlows: true },
+  { pixelRatio: 1, framesPerSecond: EVERY, hasGlows: true },
+  { pixelRatio: 1, framesPerSecond: 30, hasGlows: true },
+  { pixelRatio: 1, framesPerSecond: 30, hasGlows: false },
+  { pixelRatio: 0.87, framesPerSecond: 30, hasGlows: false },
+  { pixelRatio: 0.75, framesPerSecond: 30, hasGlows: false },
 ]);
+const HALF = /** @type {Level} */ ({ pixelRatio: 0.5, framesPerSecond: EVERY, hasGlows: true });
 
 /** Choices of the user: automatic, or a fixed level. */
-export const QUALITIES = /** @type {Readonly<Record<string, number | null>>} */ ({ auto: null, fine: 0, medium: 1, simple: 3 });
+export const QUALITIES = /** @type {Readonly<Record<string, Level | null>>} */ ({
+  auto: null,
+  fine: LEVELS[0],
+  medium: LEVELS[1],
+  simple: HALF,
+});
 
 /** Minimum width of a saved image, and the maximum side that every graphics card supports. */
 const PICTURE_WIDTH = 1920;
@@ -23,35 +33,43 @@ const LONGEST_PICTURE = 4096;
  *
  * @param {{ width: number, height: number }} size  of the view in CSS pixels
  * @param {number} devicePixelRatio
+ * @param {number} [scale]
  */
-export function pictureRatio({ width, height }, devicePixelRatio) {
-  const wanted = Math.max(devicePixelRatio, PICTURE_WIDTH / width);
+export function pictureRatio({ width, height }, devicePixelRatio, scale = 1) {
+  const wanted = scale * Math.max(devicePixelRatio, PICTURE_WIDTH / width);
   return Math.min(wanted, LONGEST_PICTURE / Math.max(width, height));
 }
 
-const SLOWEST_FPS = 15;
+/** Every frame is drawn as long as there are more than these. */
+const SMOOTH_FPS = 36;
+/** Above the halved rate there is nothing to gain, below this more is left out. */
+const SLOWEST_FPS = 24;
 const WINDOW = 24;
 /** A longer gap means that there was nothing to draw. */
 const IDLE_MS = 1500;
+/** A frame may come this much early: frames of the screen are not exactly regular. */
+const EARLY_MS = 5;
 
 export class Quality {
-  /** @param {number} level initial index in `LEVELS` */
-  constructor(level) {
-    this.first = level;
-    this.level = level;
+  /** @param {{ isSoftware: boolean }} how */
+  constructor({ isSoftware }) {
+    this.isSoftware = isSoftware;
+    this.first = isSoftware ? 1 : 0;
+    this.level = this.first;
     this.choice = "auto";
     /** @type {number[]} */ this.intervals = [];
     /** @type {number | null} */ this.lastMs = null;
     /** Whether the first measuring window is over, which is ignored because it includes the start of the page. */
     this.isWarm = false;
+    /** Whether nothing moves. */
+    this.isResting = false;
   }
 
   /** @param {string} choice  one of `QUALITIES` */
   choose(choice) {
-    const level = QUALITIES[choice];
-    if (level === undefined) return;
+    if (QUALITIES[choice] === undefined) return;
     this.choice = choice;
-    this.level = level ?? this.first;
+    this.level = this.first;
     this.intervals = [];
   }
 
@@ -60,9 +78,27 @@ export class Quality {
     this.lastMs = null;
   }
 
-  /** The settings of the level. */
+  /** Whether the resolution is less than it is at rest. */
+  get isReduced() {
+    return this.choice === "auto" && LEVELS[this.level].pixelRatio < LEVELS[this.first].pixelRatio;
+  }
+
+  /** What to draw with now. */
   get settings() {
-    return LEVELS[this.level];
+    const chosen = QUALITIES[this.choice] ?? LEVELS[this.level];
+    return this.isResting && this.isReduced ? { ...chosen, pixelRatio: LEVELS[this.first].pixelRatio } : chosen;
+  }
+
+  /** Nothing has moved for a moment, or something moves again; returns whether the resolution changes. @param {boolean} isResting */
+  rest(isResting) {
+    const before = this.settings.pixelRatio;
+    this.isResting = isResting;
+    return this.settings.pixelRatio !== before;
+  }
+
+  /** Whether it is too early for the next frame. @param {number} nowMs */
+  isEarly(nowMs) {
+    return this.lastMs !== null && nowMs - this.lastMs < 1000 / this.settings.framesPerSecond - EARLY_MS;
   }
 
   /**
@@ -81,8 +117,9 @@ export class Quality {
       this.isWarm = true;
       return false;
     }
-    if (this.choice !== "auto") return false;
-    if (mean <= 1000 / SLOWEST_FPS || this.level === LEVELS.length - 1) return false;
+    const enough = LEVELS[this.level].framesPerSecond === EVERY ? SMOOTH_FPS : SLOWEST_FPS;
+    if (this.choice !== "auto" || !this.isSoftware) return false;
+    if (mean <= 1000 / enough || this.level === LEVELS.length - 1) return false;
     this.level += 1;
     return true;
   }

@@ -3,22 +3,31 @@
 
 import * as THREE from "three";
 
-import { createContactShadow } from "./contact_shadow.js";
 import { createBody, createFarBody } from "./body.js";
-import { createButtons } from "./buttons.js";
 import { createGroundPatches } from "./ground_patches.js";
-import { createLeds } from "./leds.js";
+import { createGroundGlow, createHalos } from "./halos.js";
 import { createRays } from "./rays.js";
+import { createShadow } from "./shadow.js";
 import { createWheels } from "./wheels.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 /** @typedef {import("./instances.js").Instances} Instances */
-/** @typedef {{ robot: Robot, hovered: string | null, sensing: boolean }} Look  button under the pointer; whether beams and patches are shown */
+/**
+ * @typedef {object} Look
+ * @property {Robot} robot
+ * @property {string | null} hovered  button under the pointer
+ * @property {boolean} sensing        whether beams and patches are shown
+ * @property {number} flash           0…1, of the whole body
+ */
 /** @typedef {{ look: Look, frame: THREE.Matrix4 }} DrawnRobot   the appearance of a robot, and its frame */
 /**
  * @typedef {object} Piece
  * @property {Instances[]} parts
  * @property {(slot: number, look: Look, before: Look | null) => void} show  before: what was shown in this slot, null: nothing
+ * @property {(slot: number, frame: THREE.Matrix4) => void} [follow]  called before it is placed at another frame
+ * @property {boolean} [isGlow]      soft light, which slow machines leave out
+ * @property {boolean} [isOnGround]  it stays flat on the ground, however the robot stands
+ * @property {import("./lamps.js").Lamps} [lamps]
  * @property {() => void} [dispose]
  */
 
@@ -26,15 +35,15 @@ import { createWheels } from "./wheels.js";
 
 /** @typedef {(capacity: Capacity) => Piece} PieceFactory */
 const FINE = /** @type {PieceFactory[]} */ ([
-  createContactShadow,
+  createShadow,
+  createGroundGlow,
   createBody,
   createWheels,
-  createLeds,
+  createHalos,
   createRays,
   createGroundPatches,
-  createButtons,
 ]);
-const COARSE = /** @type {PieceFactory[]} */ ([createContactShadow, createFarBody, createLeds, createRays, createGroundPatches]);
+const COARSE = /** @type {PieceFactory[]} */ ([createShadow, createGroundGlow, createFarBody, createRays, createGroundPatches]);
 
 export class RobotInstances {
   /** @param {{ fine: boolean }} how */
@@ -53,14 +62,23 @@ export class RobotInstances {
       const before = this.shown[slot] ?? null;
       const same = before !== null && isSame(before.look, look);
       if (same && before.frame.equals(frame)) return;
-      for (const { parts, show } of this.pieces) {
+      const ground = onGround(frame);
+      for (const { parts, show, follow, isOnGround } of this.pieces) {
         if (!same) show(slot, look, before?.look ?? null);
-        for (const part of parts) part.place(slot, frame);
+        follow?.(slot, frame);
+        for (const part of parts) part.place(slot, isOnGround ? ground : frame);
       }
       this.shown[slot] = { look, frame: frame.clone() };
     });
     if (this.shown.length > robots.length) this.shown.length = robots.length;
     for (const { parts } of this.pieces) for (const part of parts) part.show(robots.length);
+  }
+
+  /** Whether soft light is drawn. @param {boolean} shown */
+  setGlows(shown) {
+    for (const { parts, isGlow } of this.pieces) {
+      if (isGlow) for (const { mesh } of parts) mesh.layers[shown ? "enable" : "disable"](0);
+    }
   }
 
   /** Allocate slots for twice the current number of robots. @param {number} robots */
@@ -85,5 +103,11 @@ export class RobotInstances {
 
 /** @param {Look} one @param {Look} other */
 function isSame(one, other) {
-  return one.robot === other.robot && one.hovered === other.hovered && one.sensing === other.sensing;
+  return /** @type {(keyof Look)[]} */ (["robot", "hovered", "sensing", "flash"]).every((key) => one[key] === other[key]);
+}
+
+/** The frame of a robot that stands flat at the same place. @param {THREE.Matrix4} frame */
+function onGround({ elements }) {
+  const yaw = Math.atan2(elements[1], elements[0]);
+  return new THREE.Matrix4().makeRotationZ(yaw).setPosition(elements[12], elements[13], 0);
 }

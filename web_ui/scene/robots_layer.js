@@ -6,7 +6,8 @@ import { robotColor } from "../state/robot_colors.js";
 import { PlaygroundModel } from "./playground.js";
 import { RobotModel } from "./robot.js";
 import { RobotInstances } from "./robot_instances.js";
-import { NameTags } from "./tags.js";
+import { Flashes } from "./flash.js";
+import { NameTags, numberOf } from "./tags.js";
 
 /** @typedef {import("../state/index.js").State} State */
 /** @typedef {import("./pointer.js").Target} Target */
@@ -20,11 +21,13 @@ export class RobotsLayer {
    * @param {THREE.Scene} options.scene
    * @param {HTMLElement} options.labels       layer for the names
    * @param {(name: string) => string} options.robotTitle
+   * @param {(robot: string) => void} options.select
    */
-  constructor({ scene, labels, robotTitle }) {
+  constructor({ scene, labels, robotTitle, select }) {
     this.scene = scene;
     this.robotTitle = robotTitle;
-    this.tags = new NameTags(labels);
+    this.flashes = new Flashes();
+    this.tags = new NameTags(labels, select);
     /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel }>} */ this.robots = new Map();
     this.near = new RobotInstances({ fine: true });
     this.far = new RobotInstances({ fine: false });
@@ -57,8 +60,10 @@ export class RobotsLayer {
    * @param {Target | null} options.hovered
    * @param {(name: string) => boolean} options.isSensing   whether the beams of a robot are drawn
    * @param {(frame: THREE.Matrix4) => boolean} options.isSmall   whether a robot there is drawn in coarse detail
+   * @param {boolean} options.hasGlows
+   * @param {boolean} options.isCalm     nothing flashes
    */
-  update(state, { nowMs, hovered, isSensing, isSmall }) {
+  update(state, { nowMs, hovered, isSensing, isSmall, hasGlows, isCalm }) {
     this.#removeOthers(state);
     let moving = false;
     const names = Object.keys(state.robots);
@@ -67,15 +72,28 @@ export class RobotsLayer {
       trail.update(robot.trail);
       moving = model.update(robot, nowMs) || moving;
       const sounds = robot.sound[0] > 0 || robot.sound[1] > 0;
-      const color = names.length > 1 ? robotColor(names, name) : "";
-      this.tags.show(name, (sounds ? "♪ " : "") + this.robotTitle(name), color);
+      if (names.length < 2) {
+        this.tags.remove(name);
+        continue;
+      }
+      this.tags.show(name, {
+        title: (sounds ? "♪ " : "") + this.robotTitle(name),
+        number: numberOf(name, names.indexOf(name) + 1),
+        color: robotColor(names, name),
+        isSelected: name === state.selected,
+        isHovered: name === hovered?.robot,
+        hasTrouble: needsHelp(state, name),
+      });
     }
     const drawn = names.flatMap((name) => {
       const frame = this.visibleModel(name)?.group.matrix;
       if (frame === undefined) return [];
       const button = hovered?.robot === name ? hovered.button : null;
-      return [{ look: { robot: state.robots[name], hovered: button, sensing: isSensing(name) }, frame }];
+      const flash = isCalm ? 0 : this.flashes.of(state, name, nowMs);
+      moving = flash > 0 || moving;
+      return [{ look: { robot: state.robots[name], hovered: button, sensing: isSensing(name), flash }, frame }];
     });
+    for (const set of [this.near, this.far]) set.setGlows(hasGlows);
     this.near.update(drawn.filter(({ frame }) => !isSmall(frame)));
     this.far.update(drawn.filter(({ frame }) => isSmall(frame)));
     return moving;
@@ -88,10 +106,13 @@ export class RobotsLayer {
    * @param {number} abovePx
    */
   placeNames(project, abovePx) {
-    for (const [name, { model }] of this.robots) {
-      const position = model.group.visible ? project(model.group.position.clone().setZ(NAME_M)) : null;
-      this.tags.place(name, position && { x: position.x, y: position.y - abovePx });
-    }
+    const positions = new Map(
+      [...this.robots].map(([name, { model }]) => {
+        const position = model.group.visible ? project(model.group.position.clone().setZ(NAME_M)) : null;
+        return [name, position && { x: position.x, y: position.y - abovePx }];
+      }),
+    );
+    this.tags.place(positions);
   }
 
   /** @param {State} state */
@@ -116,4 +137,9 @@ export class RobotsLayer {
     }
     return entry;
   }
+}
+
+/** Whether somebody has to look at this robot: it fell, or its program has ended by a fault. @param {State} state @param {string} name */
+function needsHelp({ simulator, programs }, name) {
+  return (simulator?.fallen?.includes(name) ?? false) || programs[name]?.state === "fault";
 }

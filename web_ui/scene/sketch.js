@@ -7,11 +7,11 @@ import * as THREE from "three";
 
 /** One row per tone: its color and opacities. */
 export const TONES = /** @type {Record<Tone, { color: number, area: number, line: number }>} */ ({
-  free: { color: 0x1769d1, area: 0.45, line: 1 },
-  taken: { color: 0xd11a1a, area: 0.55, line: 1 },
-  chosen: { color: 0x0b57d0, area: 0.22, line: 1 },
-  soft: { color: 0x2a3a4c, area: 0, line: 0.75 },
-  grid: { color: 0x17263a, area: 0, line: 0.13 },
+  free: { color: 0x4b43b8, area: 0.45, line: 1 },
+  taken: { color: 0xb3261e, area: 0.55, line: 1 },
+  chosen: { color: 0x4b43b8, area: 0.22, line: 1 },
+  soft: { color: 0x4a4036, area: 0, line: 0.75 },
+  grid: { color: 0x3a2f22, area: 0, line: 0.13 },
 });
 const ABOVE_M = 0.003;
 const GRID_M = 0.0012;
