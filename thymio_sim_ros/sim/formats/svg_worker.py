@@ -1,29 +1,28 @@
 """The process that draws one SVG; `svg_process` starts this file as a script, without the rest of the package.
 
-Arguments: the folder that holds `resvg_py`, and bytes of memory. Input: the SVG in UTF-8. Output: the PNG, or, with the
-exit code `REFUSED`, the reason why there is none. It limits itself before it reads anything.
+Arguments: the folder that holds `resvg_py`, bytes of memory, and seconds of processor time. Input: the SVG in UTF-8.
+Output: the PNG, or, with the exit code `REFUSED`, the reason why there is none. The last word on the error stream is
+the processor time it took. It limits itself before it reads anything.
 """
 
 from __future__ import annotations
 
 import sys
+import time
 
 __all__ = ["CSS_DPI", "REFUSED"]
 
 REFUSED = 3
 CSS_DPI = 96.0
 """What a millimeter in an SVG is in pixels; only proportions matter here."""
-_CPU_S = 2
-"""Of processor time; `svg_process` limits the wall time."""
 
-
-def _limit(memory: int) -> None:
+def _limit(memory: int, seconds: int) -> None:
     """Limit time and memory of this process where the system can: not on Windows, and memory hardly on macOS."""
     try:
         import resource
     except ImportError:
         return
-    wanted = (("RLIMIT_CPU", _CPU_S), ("RLIMIT_AS", memory), ("RLIMIT_CORE", 0), ("RLIMIT_FSIZE", 0))
+    wanted = (("RLIMIT_CPU", seconds), ("RLIMIT_AS", memory), ("RLIMIT_CORE", 0), ("RLIMIT_FSIZE", 0))
     for name, most in wanted:
         try:
             number = getattr(resource, name)
@@ -34,8 +33,8 @@ def _limit(memory: int) -> None:
             continue
 
 
-def _main(folder: str, memory: str) -> int:
-    _limit(int(memory))
+def _main(folder: str, memory: str, seconds: str) -> int:
+    _limit(int(memory), int(seconds))
     sys.path.append(folder)
     import resvg_py
 
@@ -47,6 +46,7 @@ def _main(folder: str, memory: str) -> int:
         sys.stdout.buffer.write(" ".join(str(error).split())[:200].encode("utf-8", "replace"))
         return REFUSED
     sys.stdout.buffer.write(drawn)
+    print(time.process_time(), file=sys.stderr)
     return 0
 
 
