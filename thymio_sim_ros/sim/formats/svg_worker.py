@@ -16,6 +16,7 @@ REFUSED = 3
 CSS_DPI = 96.0
 """What a millimeter in an SVG is in pixels; only proportions matter here."""
 
+
 def _limit(memory: int, seconds: int) -> None:
     """Limit time and memory of this process where the system can: not on Windows, and memory hardly on macOS."""
     try:
