@@ -85,7 +85,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def measure(options: argparse.Namespace) -> Report:
     """Measure both in turn."""
     quiet, watched, rates = [], [], []
-    with suite() as running:
+    with suite("--program", "line_follower") as running:
         time.sleep(2 * options.settle)
         for _ in range(options.rounds):
             quiet.append(100 * alone(running.process.pid, options.seconds))

@@ -98,7 +98,9 @@ PARTS = {
     "editor": "editor",
     "examples": "examples",
     "playground_tab": "playground",
-    "program_tab": "program",
+    "program_tab/program_badge.js": "program",
+    "program_tab/program_news.js": "program",
+    "program_tab": "editor",
     "robot_tab": "robot",
     "shell": "stage",
     "stage": "stage",
@@ -106,7 +108,7 @@ PARTS = {
     "tour": "tour",
 }
 """Folders and modules of the page, and the file of texts that `t` means there; elsewhere it is page.json."""
-OTHER_FILES = {"pageText": "page", "playgroundText": "playground", "programText": "program"}
+OTHER_FILES = {"exampleText": "examples", "pageText": "page", "playgroundText": "playground"}
 """Names of the texts of other files."""
 
 
@@ -143,6 +145,8 @@ def test_the_page_uses_every_text(file: str) -> None:
     """A key occurs as a string, or fits a template string such as `button.${name}`."""
     everything = "\n".join(source for _, source in sources())
     names = set(re.findall(r"""["'`]([\w.]+)["'`]""", everything))
+    skeletons = "".join(path.read_text() for path in PAGE.glob("program_tab/skeletons/*"))
+    names |= set(re.findall(r"\{([\w.]+)\}", skeletons))
     templates = {
         template for template in re.findall(r"`([\w.${}]+)`", everything) if re.search(r"\w\.\$|\}\.\w", template)
     }

@@ -31,7 +31,7 @@ class SuiteConfig:
     """
 
     playground: str = "line"
-    program: str = "line_follower"
+    program: str = "welcome"
     behaviour: str = ""
     device: DeviceOptions = DEFAULTS
     motor_model: str = MOTOR_MODELS[0]

@@ -5,7 +5,6 @@ import { firstFault, marks, notesOf, readVerdict } from "../../web_ui/editor/che
 import { EditorSession, eventKey } from "../../web_ui/editor/editor_session.js";
 import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
-import { repairLabel } from "../../web_ui/editor/hint.js";
 import { History } from "../../web_ui/editor/history.js";
 import { RuntimeClient } from "../../web_ui/input/runtime_client.js";
 import { csv, parseNumbers } from "../../web_ui/editor/numbers.js";
@@ -218,6 +217,10 @@ test("the running program is shown until the user has changed something", () => 
   session.follow();
   session.setRobotProgram(ALL, program("a = 4"));
   assert.equal(session.code, "a = 4");
+  session.edit("a = 5");
+  session.follow(); // the same example again, which discards the changes
+  session.setRobotProgram(ALL, program("a = 4"));
+  assert.equal(session.code, "a = 4");
 });
 
 test("a new program and an opened file stay when a robot reports its program", () => {
@@ -406,15 +409,4 @@ test("a hint is converted to a sentence and a change of the text", () => {
   const answer = { result: { reason: JSON.stringify({ errors: [REFUSED], notes: [{ message: "guessed" }] }) } };
   assert.equal(firstFault(answer)?.text, "expected 'do' ('do' belongs here)");
   assert.deepEqual(notesOf(answer), ["guessed"]);
-});
-
-test("the button of a repair describes it", () => {
-  /** @param {string} key @param {Record<string, any>} [values] */
-  const t = (key, values = {}) => [key, ...Object.values(values)].join(" ");
-  assert.equal(repairLabel(t, "a = 1", { from: 2, to: 3, insert: "==" }), "hint.change ==");
-  assert.equal(repairLabel(t, "a b", { from: 1, to: 1, insert: " then" }), "hint.insert then");
-  assert.equal(repairLabel(t, "a;", { from: 1, to: 2, insert: "" }), "hint.remove ;");
-  assert.equal(repairLabel(t, "a", { from: 0, to: 1, insert: "b\nc" }), "hint.correct");
-  assert.equal(repairLabel(t, "a\u00a0b", { from: 1, to: 2, insert: " " }), "hint.correct");
-  assert.equal(repairLabel(t, "a", { from: 0, to: 0, insert: "x".repeat(30) }), "hint.correct");
 });

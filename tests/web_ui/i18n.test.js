@@ -21,8 +21,8 @@ test("the first available language is chosen", () => {
 
 test("values are filled in", () => {
   assert.equal(
-    translator("en", programTexts)("program.refusedAt", { name: "a", line: 1, column: 2 }),
-    "a was not loaded: line 1, column 2",
+    translator("en", programTexts)("program.refusedAt", { name: "a", line: 1, column: 2, message: "no" }),
+    "a was not loaded: line 1, column 2: no",
   );
 });
 

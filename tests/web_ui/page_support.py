@@ -94,9 +94,29 @@ def open_hands(page: Any) -> None:
 
 
 def open_editor(page: Any) -> None:
-    """Open the tab of the program, and wait for the text."""
+    """Open the tab of the program with the text; with an empty page where the tab asks how to begin."""
     open_tab(page, "program")
+    page.locator(".program[data-shown=start], .program[data-shown=program]").wait_for()
+    empty = page.locator("[data-new=empty]")
+    if empty.is_visible():
+        empty.click()
     page.locator(".cm-content").wait_for()
+
+
+def choose_example(page: Any, name: str) -> None:
+    """Start a built-in behavior from the list of examples."""
+    open_tab(page, "program")
+    page.locator(".program[data-shown=start], .program[data-shown=program]").wait_for()
+    example = page.locator(f"[data-example={name}]")
+    if not example.is_visible():
+        choose_in_file_menu(page, "examples")
+    example.click()
+
+
+def choose_in_file_menu(page: Any, verb: str) -> None:
+    """Choose an entry of the menu of the program's file."""
+    open_menu(page, "#file-menu")
+    page.locator(f"#file-sheet [data-verb={verb}]").click()
 
 
 def build_playground(page: Any) -> None:

@@ -8,6 +8,7 @@ const ROOT = new URL("../../web_ui/", import.meta.url);
 /** Lazily loaded parts: their sheet, and the files and folders that belong to them. */
 const PARTS = [
   { sheet: "editor/editor.css", own: ["editor/", "hosts/program_host.js"] },
+  { sheet: "program_tab/program.css", own: ["program_tab/", "hosts/program_host.js"] },
   { sheet: "creator/creator.css", own: ["creator/", "hosts/creator_host.js"] },
   { sheet: "tour/tour.css", own: ["tour/", "hosts/tour_host.js"] },
 ];

@@ -8,6 +8,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.page_support import (
     MARKS,
+    choose_in_file_menu,
     choose_language,
     choose_robot,
     drop_file,
@@ -39,7 +40,9 @@ def editor(suite, page):
     return page
 
 
-RECENT = ".editor .recent optgroup:first-of-type option"
+RECENT = "[data-recent]"
+CARD = ".mistake-card"
+EDITED = ".values-list input"
 
 
 def write(page, text):
@@ -64,19 +67,21 @@ def edit_variable(page, name, text):
     """Type a new value; returns the element that shows it."""
     value = page.locator(f"[data-variable='{name}']")
     value.click()
-    page.locator(".variables td input").fill(text)
+    page.locator(EDITED).fill(text)
     page.keyboard.press("Enter")
     return value
 
 
 def test_a_broken_program_is_marked_while_it_is_typed_and_a_good_one_runs(editor):
     write(editor, "onevent prox\nmotor.left.targt = 1\n")
-    expect(editor, ".verdict").to_contain_text("Line 2")
-    expect(editor, ".verdict").to_contain_text("motor.left.target")
+    expect(editor, ".verdict").to_have_text("1 mistake, line 2")
+    expect(editor, CARD).to_contain_text("motor.left.target")
+    playwright.expect(editor.get_by_role("button", name="Run program")).to_be_disabled()
+    editor.keyboard.press("F9")  # runs nothing, as long as there is a mistake
     expect(editor, ".cm-lint-marker-error").to_have_count(1)
     expect(editor, ".cm-lintRange-error").to_have_text("motor.left.targt")
     write(editor, PROGRAM)
-    expect(editor, ".verdict").to_contain_text("No errors")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
     expect(editor, ".cm-lint-marker-error").to_have_count(0)
     editor.keyboard.press("F9")
     editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
@@ -87,9 +92,9 @@ def test_a_breakpoint_stops_the_program_and_it_is_stepped_by_lines(editor):
     write(editor, PROGRAM)
     editor.keyboard.press("Control+Enter")
     editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
-    expect(editor, ".editor-head small").to_be_hidden()  # "not in the robot": from then on nothing moves the lines
+    expect(editor, "#program-state").to_have_text("running")  # as shown: from then on nothing moves the lines
     click_beside(editor, 4)
-    expect(editor, ".editor-foot .state").to_contain_text("paused (line 4)")
+    expect(editor, "#program-state").to_have_text("halted in line 4")
     expect(editor, ".current-line").to_have_text("count = count + 1")
     edit_variable(editor, "count", "41")
     expect(editor, "[data-variable=count]").to_have_text("41")
@@ -101,19 +106,21 @@ def test_a_breakpoint_stops_the_program_and_it_is_stepped_by_lines(editor):
     editor.keyboard.press("Control+b")
     expect(editor, ".breakpoints .breakpoint:visible").to_have_count(0)
     editor.keyboard.press("F9")
-    expect(editor, ".editor-foot .state").to_have_text("running")
+    expect(editor, "#program-state").to_have_text("running")
 
 
 def test_a_variable_is_edited_within_its_range(editor):
-    editor.fill(".variables input[type=search]", "motor.left.target")
+    editor.click(".values-all")
+    editor.fill(".values-search input[type=search]", "motor.left.target")
     value = edit_variable(editor, "motor.left.target", "40000")
-    expect(editor, ".variables .fault").to_contain_text("40000")
-    editor.locator(".variables td input").fill("120")
+    expect(editor, ".values > .fault").to_contain_text("40000")
+    editor.locator(EDITED).fill("120")
     editor.keyboard.press("Enter")
     playwright.expect(value).to_have_text("120")
 
 
 def test_a_long_array_takes_at_most_three_lines(editor):
+    editor.click(".values-all")
     value = editor.locator("[data-variable='event.args']")
     playwright.expect(value).to_contain_text("0 0 0 0")
     height, line = value.evaluate("(cell) => [cell.clientHeight, parseFloat(getComputedStyle(cell).lineHeight)]")
@@ -128,7 +135,7 @@ def test_an_event_is_defined_sent_and_logged(editor):
         editor.keyboard.press("Enter")
         editor.locator(f"[data-send={name}]").wait_for()
     write(editor, "onevent ping\nemit pong event.args[0] + 1\n")
-    expect(editor, ".verdict").to_contain_text("No errors")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
     editor.keyboard.press("Control+Enter")
     editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
     editor.get_by_label("Values of ping: 1").fill("41")
@@ -137,7 +144,7 @@ def test_an_event_is_defined_sent_and_logged(editor):
 
 
 def test_tab_moves_on_from_a_constant_and_event_values_stay_when_events_are_added(editor):
-    editor.click("#tool-tab-constants")
+    editor.click(".constants > summary")
     for name in ("FAR", "NEAR"):
         editor.fill("[data-new=constant]", name)
         editor.keyboard.press("Enter")
@@ -167,14 +174,14 @@ def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the
     editor.focus(".cm-content")
     editor.keyboard.press("Control+End")
     editor.keyboard.type("_")
-    playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()
+    playwright.expect(editor.get_by_label("Not saved to a file")).to_be_visible()
     editor.reload()
     editor.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
     open_editor(editor)
     editor.click("[data-draft=restore]")
     expect(editor, ".cm-content").to_have_text("var a = SIZE_")
     with editor.expect_download() as saved:
-        editor.click("[data-verb=save]")
+        choose_in_file_menu(editor, "save")
     assert saved.value.suggested_filename == "my maze.aesl"
     assert saved.value.path().read_text() == text.replace("= SIZE", "= SIZE_")
     broken = tmp_path / "broken.aesl"
@@ -193,7 +200,7 @@ def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
     editor.set_input_files("#editor-file", str(old))
     expect(editor, ".cm-content").to_have_text("var a # größer")
     with editor.expect_download() as saved:
-        editor.click("[data-verb=save]")
+        choose_in_file_menu(editor, "save")
     assert saved.value.path().read_bytes() == text.format("UTF-8").encode()
     editor.set_input_files("#editor-file", str(broken))
     expect(editor, ".verdict").to_contain_text("broken.aesl cannot be read as text")
@@ -210,8 +217,9 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path)
     program.write_text('<network><node nodeId="1" name="thymio-II">var other = 1</node></network>')
     drop_file(editor, program, ".cm-content")
     expect(editor, ".cm-content").to_have_text("var other = 1")
+    choose_in_file_menu(editor, "new")
     expect(editor, RECENT).to_have_count(2)
-    editor.select_option(".editor .recent", index=2)  # after the heading and the file
+    editor.locator(RECENT).nth(1).click()  # below the file
     expect(editor, ".cm-content").to_have_text("var mine = 1")
 
 
@@ -220,13 +228,14 @@ def test_an_overwritten_draft_is_added_to_the_recent_files(editor):
     editor.reload()
     editor.wait_for_function("window.thymio && window.thymio.connected")
     open_editor(editor)
-    expect(editor, ".draft").to_contain_text("program.aesl")
+    expect(editor, ".program-draft").to_contain_text("program.aesl")
     write(editor, "var second = 2")
-    expect(editor, ".draft").to_be_hidden()
+    expect(editor, ".program-draft").to_be_hidden()
+    choose_in_file_menu(editor, "new")
     expect(editor, RECENT).to_have_count(1)
-    editor.select_option(".editor .recent", index=1)
+    editor.click(RECENT)
     expect(editor, ".cm-content").to_have_text("var first = 1")
-    playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()
+    playwright.expect(editor.get_by_label("Not saved to a file")).to_be_visible()
 
 
 def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_changes(editor):
@@ -257,8 +266,10 @@ def test_common_names_come_first_in_completion_and_help(editor):
         playwright.expect(offered.first).to_have_text(first)
         editor.keyboard.press("Escape")
     editor.get_by_role("tab", name="Help").click()
-    names = editor.locator(".reference .entry-help button")
-    playwright.expect(names.first).to_contain_text("leds.top(")
+    topics = editor.locator(".reference h3")
+    playwright.expect(topics.nth(3)).to_be_visible()
+    assert topics.all_inner_texts()[:4] == ["Motors", "Lights", "Sound", "Sensors"]
+    playwright.expect(editor.locator(".reference .entry-help button").first).to_have_text("motor.left.target")
 
 
 def test_each_of_two_robots_has_its_program(suite, page):
@@ -301,34 +312,34 @@ def text_of(page):
 def test_a_mistake_is_explained_and_corrected_by_its_button(editor):
     for source, words, repaired in MISTAKES:
         write(editor, source)
-        button = editor.locator(".editor-hint .correct")
+        button = editor.locator(".mistake-card .correct")
         playwright.expect(button).to_have_text(words)
         expect(editor, ".verdict").to_have_attribute("data-kind", "error")
         button.click()
-        expect(editor, ".verdict").to_contain_text("No errors")
-        expect(editor, ".editor-hint").to_be_hidden()
+        expect(editor, ".verdict").to_contain_text("No mistakes")
+        expect(editor, CARD).to_have_count(0)
         assert [line.strip("\n") for line in text_of(editor)] == repaired.split("\n")
 
 
 def test_a_mistake_is_corrected_by_keyboard_and_the_correction_can_be_undone(editor):
     write(editor, "var a\na == 3\n")
-    expect(editor, ".editor-hint .meant").to_contain_text("a variable gets a new value with '='")
-    editor.focus(".editor-hint .correct")
+    expect(editor, CARD).to_contain_text("Two “=” compare. One stores.")
+    editor.focus(".mistake-card .correct")
     editor.keyboard.press("Enter")
-    expect(editor, ".verdict").to_contain_text("No errors")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
     editor.keyboard.press("Control+z")
-    expect(editor, ".editor-hint .correct").to_have_text("Change it to =")
+    expect(editor, ".mistake-card .correct").to_have_text("Change it to =")
     editor.focus(".cm-content")
     editor.keyboard.press("Control+.")
-    expect(editor, ".verdict").to_contain_text("No errors")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
 
 
 def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the_page(editor):
     write(editor, "var a = 1.5\n")
-    expect(editor, ".editor-hint .meant").to_contain_text("Aseba has whole numbers only")
-    expect(editor, ".editor-hint .correct").to_be_hidden()
+    expect(editor, CARD).to_contain_text("Aseba has whole numbers only")
+    expect(editor, ".mistake-card .correct").to_have_count(0)
     choose_language(editor, "fr")
-    expect(editor, ".editor-hint .meant").to_contain_text("Aseba n'a que des nombres entiers")
+    expect(editor, CARD).to_contain_text("Aseba n'a que des nombres entiers")
 
 
 def test_the_mark_in_the_text_offers_the_correction_too(editor):
@@ -336,7 +347,7 @@ def test_the_mark_in_the_text_offers_the_correction_too(editor):
     editor.locator(".cm-lintRange-error").hover()
     expect(editor, ".cm-tooltip-lint .cm-diagnosticText").to_contain_text("to compare two values write '=='")
     editor.locator(".cm-tooltip-lint .cm-diagnosticAction").click()
-    expect(editor, ".verdict").to_contain_text("No errors")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
 
 
 def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(editor, tmp_path):
@@ -348,7 +359,7 @@ def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(ed
     path = tmp_path / "suite.aesl"
     path.write_text(text)
     editor.set_input_files("#editor-file", str(path))
-    expect(editor, ".verdict").to_contain_text("No errors")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
     editor.focus(".cm-content")
     editor.keyboard.press("Control+Enter")
     expect(editor, ".verdict").to_contain_text("node 'Thymio_4 on LAPTOP - 8636' runs here")
@@ -356,5 +367,5 @@ def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(ed
     editor.keyboard.press("Control+Home")
     editor.keyboard.insert_text("call leds.top(0, 0, 0)\n")
     with editor.expect_download() as download:
-        editor.click("[data-verb=save]")
+        choose_in_file_menu(editor, "save")
     assert download.value.path().read_text() == text.replace("emit pair_run", "call leds.top(0, 0, 0)\nemit pair_run")

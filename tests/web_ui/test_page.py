@@ -64,7 +64,7 @@ def colors(page) -> int:
 
 
 def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
-    open_page(page, suite())
+    open_page(page, suite("--program", "line_follower"))
     page.wait_for_function("window.thymio.frames() > 2 && window.thymio.state().markers > 0")
     wait_for_frame(page)
     assert colors(page) > 20
@@ -161,7 +161,7 @@ def test_stimuli_reach_the_program(suite, page, tmp_path):
 
 
 def test_the_pen_leaves_a_trail(suite, page):
-    open_page(page, suite())
+    open_page(page, suite("--program", "line_follower"))
     open_hands(page)
     page.select_option("[data-operate=pen]", "down")
     page.wait_for_function("() => window.thymio.state().robot.trail > 0")
@@ -178,14 +178,17 @@ def press(page, part):
 
 
 def test_an_error_is_shown_at_its_position_and_the_previous_program_keeps_running(suite, page, tmp_path):
-    open_page(page, suite())
+    open_page(page, suite("--program", "line_follower"))
     broken = tmp_path / "broken.aesl"
     broken.write_text("var a\nonevent prox\n  motor.left.targt = 5\n")
     wait_for_program(page, "line_follower.aesl")
-    page.set_input_files("#program-file", str(broken))
+    drop_file(page, broken, "#view")
     page.locator(".notice", has_text="motor.left.target").wait_for()
     playwright.expect(page.locator("body")).to_contain_text("line 3", ignore_case=True, use_inner_text=True)
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "line_follower.aesl"
+    open_tab(page, "program")  # there the mistake is explained at its place
+    playwright.expect(page.locator(".mistake-card")).to_contain_text("motor.left.target")
+    playwright.expect(page.locator("#program-state")).to_have_text("Robot runs Follow the line")
 
 
 def test_a_rejection_is_shown_whatever_tab_is_open(suite, page, tmp_path):

@@ -77,7 +77,7 @@ def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(suite, 
     assert page.evaluate(OVERLAPPING) == []
     open_editor(page)
     page.wait_for_function("() => document.querySelector('.cm-scroller')?.getBoundingClientRect().height > 120")
-    page.get_by_role("tab", name="Constants").click()
+    page.locator(".constants > summary").click()
     page.fill("[data-new=constant]", "FAR")
 
 

@@ -12,6 +12,7 @@ from tests.web_ui.page_support import (
     MARKS,
     build_playground,
     choose_language,
+    drop_file,
     open_editor,
     open_page,
     wait_for_service,
@@ -62,9 +63,14 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     go_to(page, "#tab-playground", "Shift+Tab")
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("Enter")
-    page.locator(".cm-content:focus").wait_for()  # the editor opens with the cursor in it
+    page.locator("[data-new=button]:focus").wait_for()  # the tab asks how to begin
+    go_to(page, "[data-new=empty]")
+    page.keyboard.press("Enter")
+    page.locator(".cm-content:focus").wait_for()  # the text has the cursor in it
     page.keyboard.press("Escape")
-    go_to(page, ".editor .file button", "Shift+Tab")
+    go_to(page, "#file-menu", "Shift+Tab")
+    page.keyboard.press("Enter")
+    go_to(page, "#file-sheet .file button")
     with page.expect_file_chooser() as chooser:
         page.keyboard.press("Enter")
     chooser.value.set_files(str(file))
@@ -73,7 +79,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     go_to(page, ".cm-content")
     page.keyboard.press("Control+End")
     page.keyboard.insert_text("call leds.top(0, 32 * button.forward, 0)\n")
-    expect(page, ".verdict").to_contain_text("No errors")
+    expect(page, ".verdict").to_contain_text("No mistakes")
     page.keyboard.press("F9")
     page.wait_for_function(f"({STATE})().program?.name === 'drive.aesl'")
 
@@ -90,7 +96,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     go_to(page, "#view", "Shift+Tab")
     page.keyboard.down("ArrowUp")
     page.wait_for_function(f"({STATE})().robot.buttons.forward")
-    expect(page, ".editor-foot .state").to_contain_text("paused (line 3)")
+    expect(page, "#program-state").to_have_text("halted in line 3")
     wait_for_service(page, "/aseba/step_line", "/aseba/run", "/aseba/stop")
     page.keyboard.press("F7")
     expect(page, ".current-line").to_have_text("motor.left.target = 150 * button.forward")
@@ -123,11 +129,10 @@ def test_editor_and_program_panel_show_errors_in_the_language_of_the_page(
     open_page(page, suite("--playground", "base", "--program", "none"))
     choose_language(page, language)
     page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
-    page.set_input_files("#program-file", str(broken))
-    expect(page, ".upload.refused").to_contain_text(error)
-    open_editor(page)
-    page.set_input_files("#editor-file", str(broken))
-    expect(page, ".verdict").to_contain_text(error)
+    drop_file(page, broken, "#view")
+    expect(page, ".notice.error").to_contain_text(error)
+    open_editor(page)  # with the text, at the mistake
+    expect(page, ".mistake-card").to_contain_text(error.removeprefix("keine"))
     page.click("#tool-tab-reference")
     page.fill(".reference input", "motor.left.target")
     expect(page, ".reference .entry-help:visible p").to_contain_text(help_text)

@@ -6,7 +6,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, open_tab
+from tests.web_ui.page_support import MARKS, drop_file, open_page
 from tests.web_ui.test_gallery import open_gallery
 
 pytestmark = MARKS
@@ -66,7 +66,6 @@ def test_success_notices_disappear_and_errors_stay_until_closed(suite, page, tmp
     playwright.expect(page.locator(".notice.info")).to_have_count(0)
     page.locator(".notice.error button").click()
     playwright.expect(page.locator(".notice")).to_have_count(0)
-    open_tab(page, "program")
-    page.set_input_files("#program-file", str(program))
-    page.locator(".upload.accepted").wait_for()
-    playwright.expect(page.locator(".upload")).to_be_hidden()
+    drop_file(page, program, "#view")
+    playwright.expect(page.locator(".notice.info")).to_contain_text("good.aesl is loaded")
+    playwright.expect(page.locator(".notice.info")).to_have_count(0)

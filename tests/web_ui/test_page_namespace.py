@@ -10,6 +10,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.page_support import (
     MARKS,
+    drop_file,
     open_editor,
     open_hands,
     open_page,
@@ -63,7 +64,7 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
 
     broken = tmp_path / "broken.aesl"
     broken.write_text("var a\nonevent prox\n  motor.left.targt = 5\n")
-    page.set_input_files("#program-file", str(broken))
+    drop_file(page, broken, "#view")
     playwright.expect(page.locator("body")).to_contain_text("line 3", ignore_case=True, use_inner_text=True)
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "switch.aesl"
     open_tab(page, "playground")
@@ -76,6 +77,6 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
     page.focus(".cm-content")
     page.keyboard.press("Control+a")
     page.keyboard.insert_text("call leds.top(32, 0, 0)\n")
-    playwright.expect(page.locator(".verdict")).to_contain_text("No errors")
+    playwright.expect(page.locator(".verdict")).to_contain_text("No mistakes")
     page.keyboard.press("Control+Enter")
     page.wait_for_function("() => window.thymio.state().robot.leds.top?.[0] === 1")

@@ -42,7 +42,7 @@ def test_the_page_reconnects_to_a_restarted_simulator_and_discards_old_state(sui
 
 
 LOCKED = {
-    "program": ".pad button, .program-card [data-program], #time button, #time select, .stop",
+    "program": ".pad button, .program-head [data-verb], #time button, #time select, .stop",
     "playground": "#playground-choice, #gallery-open",
 }
 STIMULI = "#hands-sheet input, #hands-sheet button, #hands-sheet select"
@@ -112,17 +112,19 @@ def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(s
     wait_for_service(page, "/aseba_runtime/check")
     open_editor(page)
     verdict = page.locator(".verdict")
-    playwright.expect(verdict).to_contain_text("No errors")
+    playwright.expect(verdict).to_contain_text("No mistakes")
     suite.end()
     page.wait_for_function("() => !window.thymio.connected")
     page.focus(".cm-content")
     page.keyboard.insert_text("var a = b")
-    playwright.expect(verdict).to_contain_text("Errors appear when the Aseba runtime is connected")
+    playwright.expect(verdict).to_contain_text("as soon as the robot is connected")
     open_tab(page, "playground")
     page.click("[data-build]")
     playwright.expect(page.locator(".notice")).to_contain_text("Reload the page")
     suite("--playground", "base", "--program", "none", ports=ports)
-    playwright.expect(verdict).to_contain_text("no variable is called 'b'")
+    playwright.expect(verdict).to_have_text("1 mistake, line 1")
+    open_tab(page, "program")
+    playwright.expect(page.locator(".mistake-card")).to_contain_text("No variable is called 'b'")
 
 
 def test_actions_in_one_browser_are_visible_in_one_that_connects_late(suite, page, other_page):

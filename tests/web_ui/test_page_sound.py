@@ -9,7 +9,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, open_tab
+from tests.web_ui.page_support import MARKS, choose_example, choose_in_file_menu, open_page
 
 pytestmark = MARKS
 
@@ -93,11 +93,12 @@ def test_a_pause_suspends_the_sound(suite, page, tmp_path):
 
 def test_a_built_in_behavior_is_chosen_and_shows_its_color(suite, page):
     open_page(page, suite("--playground", "base"))
-    open_tab(page, "program")
-    page.select_option("#behavior-choice", "friendly")
+    choose_example(page, "friendly")
     page.wait_for_function("() => window.thymio.state().program?.name.startsWith('friendly')")
-    page.wait_for_function("() => document.querySelector('#behavior-choice').value === 'friendly'")
-    playwright.expect(page.locator(".behavior .swatch")).to_have_attribute("style", re.compile("#12c22f"))
+    choose_in_file_menu(page, "examples")
+    playwright.expect(page.locator("[data-example=friendly]")).to_have_attribute("aria-pressed", "true")
+    swatch = page.locator("[data-example=friendly] .swatch")
+    playwright.expect(swatch).to_have_attribute("style", re.compile("#12c22f"))
     # Green, as on the robot.
     page.wait_for_function(
         "() => { const [r, g, b] = window.thymio.state().robot.leds.top ?? []; return g > r && g > b; }"

@@ -25,18 +25,12 @@ def class_page(suite, page) -> Any:
     return page
 
 
-def choose(page: Any, label: str, option: str) -> None:
-    """Choose an option by its text, once it is there."""
-    box = page.get_by_role("combobox", name=label)
-    playwright.expect(box.get_by_text(option, exact=True)).to_have_count(1)
-    box.select_option(label=option)
-
-
-def choose_behavior(page: Any, option: str, about: str) -> None:
-    """Choose a built-in behavior, and wait until the page describes it: then the robot runs it."""
+def choose_example(page: Any, title: str, about: str) -> None:
+    """Choose an example, which starts at once and is shown."""
     page.get_by_role("tab", name="Program").click()
-    choose(page, "Built-in behavior", option)
-    playwright.expect(page.get_by_text(about, exact=True)).to_be_visible()
+    page.get_by_role("button", name=f"{title} {about}").click()
+    playwright.expect(page.get_by_role("textbox", name="Program text")).to_be_visible()
+    playwright.expect(page.get_by_text("running", exact=True).first).to_be_visible()
 
 
 def robot_button(page: Any, name: str) -> Any:
@@ -52,9 +46,8 @@ def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
 
 
 def test_the_basic_mode_drives_by_the_arrow_buttons(class_page):
-    choose_behavior(
-        class_page, "Thesis: basic (white)", "The arrow buttons drive the robot until it meets an obstacle."
-    )
+    about = "Press an arrow and the robot drives until something is in its way."
+    choose_example(class_page, "Drive with the arrows", about)
     wait_until_moved(class_page, 0.05, robot_button(class_page, "Forward").click)
     wait_for_service(class_page, "/aseba/stop")
     class_page.get_by_role("banner").get_by_role("button", name="Stop").click()
@@ -67,7 +60,7 @@ def test_the_explorer_avoids_obstacles(class_page):
     class_page.get_by_role("dialog").get_by_role("button", name="Obstacle").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
     about = "Forward starts, backward stops. Avoids obstacles."
-    choose_behavior(class_page, "Thesis: explorer (orange)", about)
+    choose_example(class_page, "Avoid things after forward", about)
     wait_until_moved(class_page, 0.2, robot_button(class_page, "Forward").click)
     playwright.expect(class_page.get_by_text("running", exact=True).first).to_be_visible()
 
@@ -77,22 +70,23 @@ def test_the_track_follower_follows_the_track(class_page):
     class_page.get_by_role("combobox", name="Choose a playground").select_option(label="Borderless")
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'borderless'")
     about = "Forward starts, backward stops. Follows the track."
-    choose_behavior(class_page, "Thesis: track follower (pink)", about)
+    choose_example(class_page, "Follow the track after forward", about)
     wait_until_moved(class_page, 0.3, robot_button(class_page, "Forward").click)
 
 
 def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
     class_page.get_by_role("tab", name="Program").click()
-    text = class_page.get_by_role("textbox", name="Program")
-    playwright.expect(text).to_contain_text("Follow a black line")  # that of the robot, which takes its time
+    class_page.get_by_role("button", name="Follow a line").click()
+    text = class_page.get_by_role("textbox", name="Program text")
+    playwright.expect(text).to_contain_text("Follow a line")
     text.press("Control+a")
     class_page.keyboard.insert_text("onevent button.center\ncall leds.top(32, 0, 0)\nmotor.left.target = ")
     playwright.expect(text).not_to_contain_text("Follow")
-    playwright.expect(class_page.get_by_text("No errors")).to_have_count(0)  # or it would be of the text before
+    playwright.expect(class_page.get_by_text("No mistakes")).to_have_count(0)  # or it would be of the text before
     class_page.keyboard.insert_text("100\n")
-    playwright.expect(class_page.get_by_text("No errors")).to_be_visible()
-    class_page.get_by_role("region", name="Aseba editor").get_by_role("button", name="Run").click()
-    playwright.expect(class_page.get_by_role("region", name="Aseba editor")).to_contain_text("is loaded")
+    playwright.expect(class_page.get_by_text("No mistakes")).to_be_visible()
+    class_page.get_by_role("region", name="Program").get_by_role("button", name="Run program").click()
+    playwright.expect(class_page.get_by_role("region", name="Program")).to_contain_text("is loaded")
     robot_button(class_page, "Center").click()
     class_page.wait_for_function("() => window.thymio.state().robot.leds.top?.[0] === 1")
     class_page.wait_for_function("() => window.thymio.state().robot.wheelSpeeds.left > 0.5")

@@ -24,7 +24,7 @@ def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite,
     state = page.locator("#program-state")
     playwright.expect(state).to_have_text("running")
     page.locator("#pause").click()
-    playwright.expect(state).to_have_text("running, simulation paused")
+    playwright.expect(state).to_have_text("time is paused")
     step = page.locator("#time [data-verb=step]")
     playwright.expect(step).to_be_enabled()
     page.wait_for_function("() => window.thymio.state().timeNs > 0")

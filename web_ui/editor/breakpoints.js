@@ -16,7 +16,6 @@ class BreakpointMarker extends GutterMarker {
   toDOM() {
     const mark = document.createElement("span");
     mark.className = "breakpoint";
-    mark.textContent = "●";
     return mark;
   }
 }

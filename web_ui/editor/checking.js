@@ -12,7 +12,19 @@
  * @property {Use | null} use
  * @property {{ name: string, size?: number }[]} variables
  */
-/** @typedef {{ from: number, to: number, severity: "error" | "warning", message: string, hint?: string, repair?: Repair | null }} Mark */
+/**
+ * A remark at its place in the text.
+ *
+ * @typedef {object} Mark
+ * @property {number} from
+ * @property {number} to
+ * @property {"error" | "warning"} severity
+ * @property {string} message
+ * @property {string} [kind]       of the message
+ * @property {string} [hint]       what was probably meant
+ * @property {string} [hintKind]
+ * @property {Repair | null} [repair]
+ */
 /** @typedef {{ name: string, value: number }} Entry */
 
 /** @typedef {{ text: string, line: number | null, column: number | null }} Fault */
@@ -70,6 +82,11 @@ export function notesOf(answer) {
   return notes.map((/** @type {{ message: string }} */ { message }) => message);
 }
 
+/** The errors of the text itself, without a check that failed. @param {Verdict | null} verdict */
+export function mistakesIn(verdict) {
+  return (verdict?.errors ?? []).filter(({ kind }) => kind !== NO_ANSWER);
+}
+
 /** @param {any} answer @returns {Verdict} */
 export function readVerdict(answer) {
   const { errors = [], warnings = [], nodes = [] } = JSON.parse(answer.result.reason);
@@ -103,15 +120,15 @@ export function marks(text, { errors, warnings }) {
     return { from, to: from + under };
   };
   /** @param {Remark} remark @param {Mark["severity"]} severity @returns {Mark} */
-  const mark = ({ line, column, length = 1, message, hint }, severity) => {
+  const mark = ({ line, column, length = 1, message, kind, hint }, severity) => {
     const edit = hint?.edit ?? null;
     const repair = edit && {
       from: range(edit.line, edit.column, 0).from,
       to: range(edit.end_line, edit.end_column, 0).from,
       insert: edit.text,
     };
-    const place = { ...range(line, column, Math.max(length, 1)), severity, message };
-    return hint ? { ...place, hint: hint.message, repair } : place;
+    const place = { ...range(line, column, Math.max(length, 1)), severity, message, ...(kind ? { kind } : {}) };
+    return hint ? { ...place, hint: hint.message, hintKind: hint.kind, repair } : place;
   };
   const found = [
     ...errors.map((remark) => mark(remark, "error")),

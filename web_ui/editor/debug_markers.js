@@ -18,8 +18,10 @@ export class DebugMarkers {
    * @param {(text: string, kind: "error") => void} options.report
    * @param {(text: string) => void} options.announce
    * @param {() => void} options.redraw
+   * @param {(place: import("./breakpoints.js").Place) => void} options.placed   called with the line in which it is
+   *   halted or failed; null: none
    */
-  constructor({ t, runtime, workspace, selection, view, report, announce, redraw }) {
+  constructor({ t, runtime, workspace, selection, view, report, announce, redraw, placed }) {
     this.t = t;
     this.runtime = runtime;
     this.workspace = workspace;
@@ -28,6 +30,7 @@ export class DebugMarkers {
     this.report = report;
     this.announce = announce;
     this.redraw = redraw;
+    this.placed = placed;
   }
 
   get #firstLine() {
@@ -68,13 +71,18 @@ export class DebugMarkers {
     const reported = status !== null && isTextRunning ? status : OTHER;
     if (reported === this.#drawn) return;
     this.#drawn = reported;
-    if (reported === OTHER || status === null) return showPlace(this.view, null);
+    if (reported === OTHER || status === null) {
+      this.placed(null);
+      return showPlace(this.view, null);
+    }
     const first = this.#firstLine;
     const { values } = status;
     const inEffect = JSON.parse(values.breakpoints || "[]").map((/** @type {number} */ line) => line - first + 1);
     showBreakpoints(this.view, inEffect);
     const line = lineOf(values);
-    showPlace(this.view, line > 0 ? { line, fault: values.state === "fault" } : null);
+    const place = line > 0 ? { line, fault: values.state === "fault" } : null;
+    showPlace(this.view, place);
+    this.placed(place);
     for (const [wanted, moved] of Object.entries(JSON.parse(values.breakpoints_moved || "{}"))) {
       if (moved === null) this.announce(this.t("breakpoint.none", { line: Number(wanted) - first + 1 }));
     }

@@ -17,7 +17,11 @@ export class EditorSession {
     this.storage = storage;
     this.state = INITIAL;
     this.history = new History();
-    this.tool = "variables";
+    this.tool = "values";
+    /** Whether the user is choosing how to begin a new program. */
+    this.isChoosing = false;
+    /** Whether the values of all variables are listed. */
+    this.isAllListed = false;
     /** @type {Map<string, any>} editor state of each text: cursor and undo history */ this.texts = new Map();
     /** @type {() => void} */ this.onText = () => {};
     this.workspace = new Workspace({ fileStore: new FileStore(storage), now, changed: () => this.onText() });

@@ -1,66 +1,56 @@
-// The editor: creates the objects of one session and language, and draws them once per frame when something changed.
+// Programs as text: creates the objects of one view (hosts/program_host.js) and draws them.
 //
-//   RobotSelection   which robots the text is for
-//   ProgramChecker   the compiler's verdict on the text, and its repair
-//   DebugMarkers     breakpoints and the line at which the program is stopped
-//   RobotStatus      state and memory of the robot's program in the footer
-//   EditorCommands   what buttons and keys do
+//   TextField        the text (CodeMirror)
+//   ProgramChecker   the compiler's verdict on the text
+//   MistakeGuide     leads to mistakes, and repairs them
+//   DebugMarkers     halt marks, and the line in which the program is halted
+//   debugRow, toolbox, foot   line by line, values beside the text, room left
 
 import PHRASES from "../i18n/codemirror.texts.js";
-import WORDS from "../i18n/editor.texts.js";
-import { translator } from "../i18n/index.js";
 import { disabledReason } from "../state/disabled_reason.js";
+import { faultMessage } from "../state/program_status.js";
 import { h } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 import { allEvents } from "./aesl.js";
-import { CHECK_SERVICE } from "./checking.js";
-import { EditorCommands } from "./commands.js";
+import { mistakesIn } from "./checking.js";
 import { DebugMarkers } from "./debug_markers.js";
-import { footer } from "./footer.js";
-import { header } from "./header.js";
-import { hintBar, repairLabel } from "./hint.js";
-import { HelpTexts } from "./help_texts.js";
+import { debugRow } from "./debug_row.js";
+import { footOf } from "./foot.js";
+import { mistakeCard } from "./mistake_card.js";
+import { MistakeGuide } from "./mistake_guide.js";
+import { repairLabel } from "./mistakes.js";
 import { ProgramChecker } from "./program_checker.js";
-import { RobotSelection } from "./robot_selection.js";
-import { RobotStatus } from "./robot_status.js";
 import { createText } from "./text.js";
-import { toolbar, watchKeys } from "./toolbar.js";
 import { toolbox } from "./tools/index.js";
 import { ALL } from "./workspace.js";
 
 import "./editor.css";
 
-export { EditorSession } from "./editor_session.js";
-export { splitEditorTopic } from "./state.js";
+/** @typedef {import("../program_tab/tab.js").Parts} Parts */
+/** @typedef {import("../hosts/program_host.js").ProgramView} ProgramView */
 
-/**
- * @typedef {object} EditorOptions
- * @property {import("./editor_session.js").EditorSession} session
- * @property {import("../shell/context.js").Context} context
- */
-
-export class Editor {
-  #isScheduled = false;
-
-  /** @param {EditorOptions} options */
-  constructor({ session, context }) {
-    const { store, language, announce, actions } = context;
-    const pageText = context.text("page");
-    this.session = session;
-    this.store = store;
-    this.pageText = pageText;
-    const t = translator(language, WORDS);
+/** @implements {ProgramView} */
+class TextView {
+  /** @param {Parts} parts */
+  constructor(parts) {
+    const { t, context, session, selection, commands, redraw } = parts;
     const { workspace } = session;
-    this.runtime = actions.runtime;
-    this.helpTexts = new HelpTexts(language);
-    this.selection = new RobotSelection({ store, session, helpTexts: this.helpTexts });
+    const { announce, language } = context;
+    const { runtime } = context.actions;
+    this.parts = parts;
 
-    const redraw = () => this.redraw();
-    /** @param {string} text @param {"good" | "warning" | "error"} kind */
-    const report = (text, kind) => {
-      this.foot.report({ text, kind });
-      announce(text);
-    };
     const code = h("div", { class: "code" });
+    this.foot = footOf(t, () => this.guide.go());
+    this.guide = new MistakeGuide({ t, text: () => this.text, foot: this.foot, announce });
+    this.checker = new ProgramChecker({
+      language,
+      runtime,
+      workspace,
+      found: (finding) => {
+        this.guide.found(finding);
+        redraw();
+      },
+    });
     this.text = createText({
       parent: code,
       kept: session.texts,
@@ -69,30 +59,33 @@ export class Editor {
       vocabulary: () => this.#vocabulary(),
       changed: (content) => {
         workspace.edit(content);
+        this.guide.typed();
         this.checker.checkSoon();
         redraw();
       },
       toggleBreakpoint: (line) => void this.markers.toggle(line),
       repairLabel: (content, repair) => repairLabel(t, content, repair),
-      correct: () => this.checker.correct(),
+      correct: () => this.guide.correct(),
+      extensions: [mistakeCard({ t, correct: () => this.guide.correct() })],
     });
-    const { runtime, selection, text } = this;
-    const { view } = text;
-    this.foot = footer(t, () => this.#goToRemark());
-    const { foot } = this;
-    const hints = hintBar(t, () => this.checker.correct());
-    this.checker = new ProgramChecker({ t, language, runtime, workspace, text, hints, foot, announce, redraw });
-    this.markers = new DebugMarkers({ t, runtime, workspace, selection, view, report, announce, redraw });
-    this.status = new RobotStatus({ language, programText: context.text("program"), foot, announce });
-    const { markers } = this;
-    this.commands = new EditorCommands({
-      t, pageText, language, session, actions, selection, view, markers, report, redraw,
+    const { view } = this.text;
+    this.markers = new DebugMarkers({
+      t, runtime, workspace, selection, view, announce, redraw,
+      report: (text, kind) => this.report(text, kind),
+      placed: (place) => this.#placed(place),
     }); // prettier-ignore
 
-    /** @param {import("./file_store.js").StoredFile} kept */
-    const draftLabel = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
-    this.head = header({ t, draftLabel, session, redraw });
-    this.bar = toolbar(t, this.commands, draftLabel);
+    const { markers } = this;
+    this.debug = debugRow({
+      t,
+      commands,
+      mark: {
+        get isMarked() {
+          return markers.lines.includes(view.state.doc.lineAt(view.state.selection.main.head).number);
+        },
+        toggle: () => void markers.toggle(view.state.doc.lineAt(view.state.selection.main.head).number),
+      },
+    });
     this.tools = toolbox({
       t,
       session,
@@ -110,115 +103,160 @@ export class Editor {
         redraw();
       },
     });
+    this.bar = this.debug.element;
+    this.entries = this.#entries();
     this.element = h(
-      "section",
-      { class: "editor", "aria-label": t("editor") },
-      this.head.element,
-      this.bar.element,
-      this.head.draft,
+      "div",
+      { class: "editor" },
       h("div", { class: "editor-body" }, code, this.tools.element),
-      h("div", { class: "editor-end" }, hints.element, foot.element),
+      this.foot.element,
     );
-    this.removeKeys = watchKeys(this.element, this.commands);
-    session.onText = () => this.#showText();
   }
 
-  /** Call after the editor has been added to the page. */
-  start() {
-    this.#showText();
-    this.#render();
-    this.text.view.focus();
-  }
-
-  /** Call when the tab is shown again: sizes were not known while it was hidden. */
   show() {
+    const { workspace } = this.parts.session;
+    this.guide.forget();
+    this.text.show(`${workspace.tab} ${workspace.current.node} ${workspace.current.name}`, workspace.code);
+    this.markers.forget();
+    this.checker.restart();
+  }
+
+  resized() {
     this.text.view.requestMeasure();
-    this.redraw();
+  }
+
+  hasMistake() {
+    return mistakesIn(this.checker.verdict).length > 0;
+  }
+
+  showMistake() {
+    this.guide.go();
+    this.parts.context.announce(this.parts.t("editor.runBlocked"));
+  }
+
+  /** @param {string} text @param {"good" | "warning" | "error"} kind */
+  report(text, kind) {
+    this.foot.report({ text, kind });
+  }
+
+  /** Send the current halt marks: one may have been set while the program was being loaded. */
+  async loaded() {
+    if (this.markers.lines.length > 0) await this.markers.send();
+  }
+
+  focus() {
     this.text.view.focus();
-  }
-
-  /** @param {string} name @param {string} content */
-  openText(name, content) {
-    this.commands.openText(name, content);
-  }
-
-  /** @param {File} file */
-  openFile(file) {
-    void this.commands.open(file);
-  }
-
-  /** Draw with the next frame. */
-  redraw() {
-    if (this.#isScheduled || !this.element.isConnected) return;
-    this.#isScheduled = true;
-    requestAnimationFrame(() => {
-      this.#isScheduled = false;
-      this.#render();
-    });
   }
 
   destroy() {
     this.checker.destroy();
-    this.removeKeys();
+    this.guide.destroy();
     this.text.destroy();
+    this.bar.remove();
     this.element.remove();
   }
 
-  /** Show the current text of the workspace, which is another one. */
-  #showText() {
-    const { workspace } = this.session;
-    this.text.show(`${workspace.tab} ${workspace.current.node} ${workspace.current.name}`, workspace.code);
-    this.markers.forget();
-    this.checker.restart();
-    this.redraw();
+  redraw() {
+    const { session, selection, context } = this.parts;
+    const { state } = context.store;
+    const { workspace } = session;
+    this.checker.retry(state.services);
+    const reason = disabledReason(state, context.text("page"));
+    this.element.style.setProperty("--code-size", `${session.fontSize}px`);
+    this.markers.render();
+    const values = selection.status?.values ?? {};
+    this.debug.render({
+      state: values.state ?? "",
+      robot: workspace.tab === ALL && selection.robots.length > 1 ? selection.robot : "",
+      reason,
+    });
+    this.foot.memories(memoriesOf(values, this.checker.verdict?.use));
+    this.tools.render({
+      robot: selection.robot,
+      target: selection.target,
+      variables: session.state.variables[selection.robot] ?? null,
+      log: session.state.log,
+      file: workspace.file,
+      code: workspace.code,
+      disabledReason: reason,
+    });
   }
 
   #vocabulary() {
-    const { file } = this.session.workspace;
+    const { session, selection } = this.parts;
+    const { file } = session.workspace;
     return {
-      target: this.selection.target,
+      target: selection.target,
       events: allEvents(file),
       constants: file.constants,
       variables: this.checker.verdict?.variables ?? [],
     };
   }
 
-  /** Put the cursor at the first error or warning. */
-  #goToRemark() {
-    const { line, column } = this.checker.firstRemark ?? {};
-    const { view } = this.text;
-    const { doc } = view.state;
-    if (!line || line > doc.lines) return;
-    const at = doc.line(line);
-    const anchor = Math.min(at.from + (column ?? 1) - 1, at.to);
-    view.dispatch({ selection: { anchor }, scrollIntoView: true });
-    view.focus();
+  /** What the text adds to the menu of the file. */
+  #entries() {
+    const { t, session, redraw } = this.parts;
+    const find = h(
+      "button",
+      {
+        type: "button",
+        class: "btn",
+        "data-verb": "find",
+        onclick: () => {
+          /** @type {HTMLElement | null} */ (find.closest("[popover]"))?.hidePopover();
+          this.text.find();
+        },
+      },
+      icon("search", { small: true }),
+      h("span", { class: "grow" }, t("editor.find")),
+      h("kbd", { class: "kbd" }, "Ctrl+F"),
+    );
+    /** @param {string} name @param {string} sign @param {number} step */
+    const sizer = (name, sign, step) =>
+      h(
+        "button",
+        {
+          type: "button",
+          class: "btn line",
+          title: t(`editor.${name}`),
+          "aria-label": `${sign} ${t(`editor.${name}`)}`,
+          onclick: () => {
+            session.resize(step);
+            redraw();
+          },
+        },
+        sign,
+      );
+    return [find, h("div", { class: "row" }, sizer("smaller", "A−", -1), sizer("larger", "A+", 1))];
   }
 
-  #render() {
-    const { session, selection, store } = this;
-    const { workspace } = session;
-    const { services, simulator } = store.state;
-    workspace.choose(selection.wanted);
-    if (services.includes(CHECK_SERVICE)) void this.helpTexts.load(this.runtime, () => this.redraw());
-    this.checker.retry(services);
-    workspace.setRobotProgram(ALL, session.state.targets[store.state.selected]?.program);
-    if (workspace.tab !== ALL) workspace.setRobotProgram(workspace.tab, selection.target?.program);
-
-    const { file } = workspace;
-    const reason = disabledReason(store.state, this.pageText);
-    this.element.style.setProperty("--code-size", `${session.fontSize}px`);
-    this.head.render(file);
-    this.markers.render();
-    this.status.render(selection.status?.values ?? {}, simulator?.paused ?? false, this.checker.verdict?.use);
-    this.bar.render(workspace.fileStore.recent(), store.state.behaviors, reason);
-    this.tools.render({
-      robot: selection.robot,
-      target: selection.target,
-      variables: session.state.variables[selection.robot] ?? null,
-      log: session.state.log,
-      file,
-      disabledReason: reason,
-    });
+  /** @param {import("./breakpoints.js").Place} place  where the program is halted or failed */
+  #placed(place) {
+    const { selection, context } = this.parts;
+    const values = selection.status?.values ?? {};
+    this.guide.failed(place?.fault ? place.line : 0, faultMessage(values, context.language));
   }
+}
+
+/**
+ * Memory in use: of the shown text if it compiles, else what the robot reports.
+ *
+ * @param {Readonly<Record<string, string>>} values   status that the runtime reports
+ * @param {import("./checking.js").Use | null | undefined} use
+ * @returns {Record<"variables" | "bytecode" | "stack", import("./foot.js").Share | null>}
+ */
+function memoriesOf(values, use) {
+  /** @param {string} name @returns {import("./foot.js").Share | null} */
+  const reported = (name) =>
+    values[`${name}_size`] === undefined ? null : [Number(values[`${name}_used`]), Number(values[`${name}_size`])];
+  return {
+    variables: use?.variables ?? reported("variables"),
+    bytecode: use?.bytecode ?? reported("bytecode"),
+    stack: use?.stack ?? reported("stack"),
+  };
+}
+
+/** @param {Parts} parts @returns {ProgramView} */
+export function createView(parts) {
+  return new TextView(parts);
 }

@@ -75,16 +75,16 @@ export const asebaLanguage = LRLanguage.define({
   },
 });
 
-/** Each color has a contrast of at least 4.5:1 on white and on the current line. */
+/** Tokens of the design (styles/tokens.css), in both themes. */
 const COLORS = HighlightStyle.define([
-  { tag: [tags.controlKeyword, tags.definitionKeyword, tags.operatorKeyword], color: "#7a1fa2", fontWeight: "600" },
-  { tag: tags.number, color: "#9a3800" },
-  { tag: tags.variableName, color: "#17263a" },
-  { tag: tags.constant(tags.variableName), color: "#9a3800" },
-  { tag: tags.function(tags.variableName), color: "#0b57a8" },
-  { tag: tags.className, color: "#0a6b4f" },
-  { tag: tags.operator, color: "#44525f" },
-  { tag: tags.comment, color: "#5b6672", fontStyle: "italic" },
+  { tag: [tags.controlKeyword, tags.definitionKeyword, tags.operatorKeyword], color: "var(--c-key)", fontWeight: "600" },
+  { tag: tags.number, color: "var(--c-num)" },
+  { tag: tags.variableName, color: "var(--ink)" },
+  { tag: tags.constant(tags.variableName), color: "var(--c-num)" },
+  { tag: tags.function(tags.variableName), color: "var(--c-fn)" },
+  { tag: tags.className, color: "var(--c-ev)" },
+  { tag: tags.operator, color: "var(--ink-2)" },
+  { tag: tags.comment, color: "var(--c-com)", fontStyle: "italic" },
 ]);
 
 export function aseba() {

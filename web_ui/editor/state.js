@@ -1,9 +1,9 @@
 // Robot data of the editor: targets, variables, events, built-in behaviors (docs/aseba_ros.md).
 // Pure: `state = reduce(state, message)`.
 
-/** @typedef {{ name: string, help: string }} Named */
-/** @typedef {{ name: string, size: number, address: number, hidden: boolean, help: string }} TargetVariable */
-/** @typedef {{ name: string, parameters: { name: string, size: number }[], hidden: boolean, help: string }} Native */
+/** @typedef {{ name: string, help: string, topic?: string }} Named   topic: of the help */
+/** @typedef {Named & { size: number, address: number, hidden: boolean }} TargetVariable */
+/** @typedef {Named & { parameters: { name: string, size: number }[], hidden: boolean }} Native */
 /**
  * @typedef {object} ProgramInfo
  * @property {string} name
@@ -21,6 +21,7 @@
  * @property {Named[]} events
  * @property {Native[]} natives
  * @property {string[]} keywords
+ * @property {string[]} [topics]   in the order of the help
  * @property {Record<string, number>} limits
  * @property {ProgramInfo | null} [program]
  */

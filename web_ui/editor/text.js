@@ -19,7 +19,7 @@ import {
   syntaxTree,
 } from "@codemirror/language";
 import { lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
-import { gotoLine, highlightSelectionMatches, search, searchKeymap } from "@codemirror/search";
+import { gotoLine, highlightSelectionMatches, openSearchPanel, search, searchKeymap } from "@codemirror/search";
 import { EditorState } from "@codemirror/state";
 import {
   EditorView,
@@ -48,6 +48,9 @@ const TYPES = /** @type {Record<Item["kind"], string>} */ ({
   keyword: "keyword",
 });
 
+/** Columns of a tab, which leave room beside the values. */
+const TAB_COLUMNS = 2;
+
 /** State of a text that outlives its field, beside content and cursor. */
 const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldState };
 
@@ -62,6 +65,7 @@ const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldS
  * @param {(line: number) => void} options.toggleBreakpoint
  * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairLabel  label of a repair button
  * @param {() => void} options.correct               called when the user asks for the first repair
+ * @param {import("@codemirror/state").Extension[]} options.extensions   of other modules
  */
 export function createText(options) {
   const { parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint, repairLabel, correct } = options;
@@ -90,6 +94,7 @@ export function createText(options) {
       },
     }),
     lintGutter(),
+    options.extensions,
     codeFolding(),
     foldGutter({ openText: "▾", closedText: "▸" }),
     highlightActiveLineGutter(),
@@ -97,7 +102,7 @@ export function createText(options) {
     history(),
     indentOnInput(),
     indentUnit.of(INDENT),
-    EditorState.tabSize.of(4),
+    EditorState.tabSize.of(TAB_COLUMNS),
     bracketMatching(),
     closeBrackets(),
     autocompletion({ override: [complete], icons: false }),
@@ -166,6 +171,9 @@ export function createText(options) {
     destroy() {
       keep();
       view.destroy();
+    },
+    find() {
+      openSearchPanel(view);
     },
     /** @param {import("./checking.js").Mark[]} marks */
     mark(marks) {

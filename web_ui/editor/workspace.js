@@ -25,7 +25,7 @@ export class Workspace {
     /** @type {Map<string, Document>} */ this.documents = new Map();
     /** @type {import("./aesl.js").Aesl | null} */ this.parsed = null;
     /** @type {Map<string, import("./file_store.js").StoredFile>} */ this.drafts = new Map();
-    /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's next program whatever they hold
+    /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's program whatever they hold
   }
 
   /** @returns {Document} */
@@ -125,7 +125,7 @@ export class Workspace {
     this.documents.set(tab, { ...this.at(tab), loaded: text, source: text });
   }
 
-  /** Show the next program that the robot gets, whatever the tab contains. */
+  /** Show the program that the robot has, whatever the tab contains. */
   follow() {
     this.following.add(this.tab);
   }
@@ -139,9 +139,10 @@ export class Workspace {
   setRobotProgram(tab, program) {
     if (!program?.file) return;
     const document = this.at(tab);
-    if (program.file === document.source) return;
+    const isWanted = this.following.has(tab);
+    if (program.file === document.source && !isWanted) return;
     const untouched = isInRobot(document) || (!document.own && !isUnsaved(document));
-    if (!untouched && !this.following.has(tab)) return;
+    if (!untouched && !isWanted) return;
     this.following.delete(tab);
     try {
       this.#replace(tab, fromRobot(program));

@@ -1,8 +1,11 @@
-// The built-in behaviors as examples: the menu, and each behavior with its color.
+// The built-in behaviors as examples: their names, their colors, and a list to choose from. The first visit and the
+// class use them too.
 
 import { programOf } from "../state/index.js";
-import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock, setAttribute } from "../ui/dom.js";
+
+/** @typedef {import("../i18n/index.js").Translate} Translate */
+/** @typedef {import("../state/index.js").Behavior} Behavior */
 
 /** The colors that the robot shows in each behavior (docs/behaviors.md). */
 export const COLORS = /** @type {Record<string, string>} */ ({
@@ -17,63 +20,99 @@ export const COLORS = /** @type {Record<string, string>} */ ({
   thesis_track_follower: "#ff6fb5",
 });
 
-/**
- * The choice of an example, embedded in another panel.
- *
- * @param {import("../shell/context.js").Context} context
- * @returns {{ element: HTMLElement, render: (state: import("../state/index.js").State) => void }}
- */
-export function exampleChoice({ text, actions }) {
-  const t = text("examples");
-  const pageText = text("page");
-  const select = h("select", { id: "behavior-choice", class: "select", "aria-label": t("behavior.choose") });
-  const swatch = h("span", { class: "swatch", "aria-hidden": "true" });
-  const description = h("small", { class: "description muted small" });
-  const element = h(
-    "div",
-    { class: "behavior" },
-    h("label", { class: "row" }, swatch, h("span", {}, t("behavior")), select),
-    description,
-  );
-  select.addEventListener("change", () => {
-    if (select.value !== "") void actions.loadExample(select.value);
-  });
-  /** @type {import("../state/index.js").Behavior[] | null} */ let listed = null;
-  return {
-    element,
-    render(state) {
-      const { behaviors } = state;
-      lock(select, disabledReason(state, pageText));
-      if (behaviors !== listed) {
-        listed = behaviors;
-        element.hidden = behaviors.length === 0;
-        const menuFirst = [...behaviors].sort((a, b) => Number(b.name === "menu") - Number(a.name === "menu"));
-        select.replaceChildren(
-          h("option", { value: "" }, t("behavior.none")),
-          ...menuFirst.map(({ name }) => h("option", { value: name }, titleOf(name, t))),
-        );
-      }
-      const running = programOf(state)?.name ?? "";
-      const known = behaviors.find(({ name }) => running === name || running === `${name}.aesl`);
-      if (document.activeElement !== select || known !== undefined) select.value = known?.name ?? "";
-      const color = COLORS[known?.name ?? ""];
-      setAttribute(swatch, "data-known", String(color !== undefined));
-      setAttribute(swatch, "style", `--color: ${color ?? "transparent"}`);
-      const text = known === undefined ? "" : t(`behavior.${known.name}.about`);
-      const about = text.startsWith("behavior.") ? (known?.description ?? "") : text;
-      if (description.textContent !== about) description.textContent = about;
-    },
-  };
-}
+/** The behavior that only waits for a choice (docs/behaviors.md). */
+export const WELCOME = "welcome";
+/** What pupils use first. */
+const FIRST = ["thesis_basic", "line_follower", "thesis_explorer"];
+/** What is no program to look at. */
+const LAST = [WELCOME, "menu"];
 
 /**
  * The displayed name; behaviors added by a plug-in or a teacher keep their own.
  *
  * @param {string} name
- * @param {import("../i18n/index.js").Translate} t
+ * @param {Translate} t  texts of the examples
  */
 export function titleOf(name, t) {
   const key = `behavior.${name}`;
   const text = t(key);
   return text === key ? name.replaceAll("_", " ") : text;
+}
+
+/** What a behavior does, in a sentence. @param {Behavior} behavior @param {Translate} t  texts of the examples */
+export function aboutOf({ name, description }, t) {
+  const key = `behavior.${name}.about`;
+  const text = t(key);
+  return text === key ? description : text;
+}
+
+/**
+ * The displayed name of a program that may be an example; other programs keep theirs.
+ *
+ * @param {string} program  name of the program in a robot
+ * @param {Translate} t     texts of the examples
+ */
+export function exampleTitle(program, t) {
+  const key = `behavior.${program.replace(/\.aesl$/, "")}`;
+  const text = t(key);
+  return text === key ? program : text;
+}
+
+/** In the order in which they are offered. @param {readonly Behavior[]} behaviors */
+export function inOrder(behaviors) {
+  /** @param {Behavior} behavior */
+  const rank = ({ name }) => {
+    const first = FIRST.indexOf(name);
+    const last = LAST.indexOf(name);
+    return first >= 0 ? first : FIRST.length + 1 + last;
+  };
+  return [...behaviors].sort((one, other) => rank(one) - rank(other));
+}
+
+/** Whether a robot's program is this example. @param {string} program @param {string} example */
+export function isExample(program, example) {
+  return program === example || program === `${example}.aesl`;
+}
+
+/**
+ * A list of all examples; the one that the robot runs is marked.
+ *
+ * @param {object} options
+ * @param {Translate} options.t  texts of the examples
+ * @param {(name: string) => void} options.choose
+ */
+export function exampleList({ t, choose }) {
+  const element = h("ul", { class: "examples", "aria-label": t("behavior.choose") });
+  /** @type {readonly Behavior[] | null} */ let listed = null;
+
+  /** @param {Behavior} behavior */
+  const rowOf = (behavior) => {
+    const color = COLORS[behavior.name];
+    const swatch = h("span", { class: "swatch", "aria-hidden": "true", style: `--color: ${color ?? "transparent"}` });
+    setAttribute(swatch, "data-known", String(color !== undefined));
+    const { name } = behavior;
+    const title = h("b", {}, titleOf(name, t));
+    const words = h("span", { class: "example-words" }, title, " ", h("small", {}, aboutOf(behavior, t)));
+    const attributes = { type: "button", class: "example", "data-example": name, onclick: () => choose(name) };
+    return h("li", {}, h("button", attributes, swatch, words));
+  };
+
+  return {
+    element,
+    /**
+     * @param {import("../state/index.js").State} state
+     * @param {string} reason  why none can be chosen; empty: all can
+     */
+    render(state, reason) {
+      if (state.behaviors !== listed) {
+        listed = state.behaviors;
+        element.replaceChildren(...inOrder(listed).map(rowOf));
+      }
+      const running = programOf(state)?.name ?? "";
+      for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (element.querySelectorAll(".example"))) {
+        lock(button, reason);
+        setAttribute(button, "aria-pressed", String(isExample(running, button.dataset.example ?? "")));
+      }
+    },
+  };
 }

@@ -1,6 +1,6 @@
-// The panels of the tab "Program", above the editor. To add one: a file, and a line here.
+// The panels of the tab "Program" that are there before its languages are loaded. To add one: a file, and a line here.
 
-import { programPanel } from "./program_card.js";
+import { programNews } from "./program_news.js";
 
 /** @type {import("../shell/context.js").CreatePanel[]} */
-export const PROGRAM_TAB = [programPanel];
+export const PROGRAM_TAB = [programNews];

@@ -4,10 +4,12 @@
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 
 const KNOWN = ["running", "paused", "stopped", "fault", "off"];
+/** States in which the robot stands in a line. */
+const PLACED = ["paused", "fault"];
 
 /** @param {string} state @param {Translate} t @param {boolean} [timePaused]  whether the simulation is paused */
 export function stateLabel(state, t, timePaused = false) {
-  if (timePaused && state === "running") return t("state.runningPaused");
+  if (timePaused && state === "running") return t("state.timePaused");
   return t(KNOWN.includes(state) ? `state.${state}` : "state.unknown");
 }
 
@@ -16,10 +18,17 @@ export function lineOf(values) {
   return values.line ? Math.max(0, Number(values.line) - (Number(values.first_line) || 1) + 1) : 0;
 }
 
-/** The line at which it is stopped, in parentheses; empty while it runs. @param {Values} values @param {Translate} t */
-export function lineLabel(values, t) {
+/**
+ * The state with the line in which the program is halted or failed.
+ *
+ * @param {Values} values
+ * @param {Translate} t
+ * @param {boolean} [timePaused]
+ */
+export function stateWithLine(values, t, timePaused = false) {
+  const { state = "" } = values;
   const line = lineOf(values);
-  return line > 0 && values.state !== "running" ? ` (${t("state.line", { line })})` : "";
+  return line > 0 && PLACED.includes(state) ? t(`state.${state}At`, { line }) : stateLabel(state, t, timePaused);
 }
 
 /**

@@ -1,12 +1,13 @@
 // The constants of the program: edited in place, stored in the file.
 
 import { h, renew, setText } from "../../ui/dom.js";
+import { icon } from "../../ui/icons.js";
 import { GREATEST, LEAST } from "../aesl.js";
 import { parseNumbers } from "../numbers.js";
 import { entryForm } from "./entry_form.js";
 
-/** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
-export function constantsTool({ t, define }) {
+/** A part of the values. @param {Pick<import("./index.js").ToolContext, "t" | "define">} context */
+export function constantsPart({ t, define }) {
   const body = h("tbody");
   const errorText = h("p", { class: "fault", role: "alert", hidden: true });
   let listed = "";
@@ -33,11 +34,12 @@ export function constantsTool({ t, define }) {
           "button",
           {
             type: "button",
-            class: "plain",
+            class: "btn icon",
             "aria-label": t("remove", { name }),
+            title: t("remove", { name }),
             onclick: () => define("constant", name, null),
           },
-          "✕",
+          icon("close", { small: true }),
         ),
       ),
     );
@@ -52,9 +54,16 @@ export function constantsTool({ t, define }) {
     add: (name, value) => define("constant", name, value),
   });
   return {
-    name: "constants",
-    element: h("div", { class: "constants" }, h("table", {}, body), errorText, form),
-    render({ file }) {
+    element: h(
+      "details",
+      { class: "constants disc" },
+      h("summary", {}, h("span", {}, t("tool.constants")), icon("caretDown", { small: true })),
+      h("table", {}, body),
+      errorText,
+      form,
+    ),
+    /** @param {import("../aesl.js").Aesl} file */
+    render(file) {
       const signature = JSON.stringify(file.constants.map(({ name, value }) => [name, value]));
       if (signature === listed) return;
       listed = signature;

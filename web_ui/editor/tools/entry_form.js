@@ -28,7 +28,7 @@ export function entryForm({ t, kind, least, greatest, label, add }) {
     class: "number",
   });
   const errorText = h("p", { class: "fault", role: "alert", hidden: true });
-  const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit" }, t("add")), errorText);
+  const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit", class: "btn line note slim" }, t("add")), errorText);
   /** @param {string} text */
   const showError = (text) => {
     errorText.hidden = text === "";

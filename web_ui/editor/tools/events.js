@@ -1,11 +1,13 @@
 // The program's events: send, add, remove, plot; and the log of received events.
 
-import { h, lock, renew, setAttribute, setText } from "../../ui/dom.js";
+import { h, lock, renew, setText } from "../../ui/dom.js";
 import { LARGEST_EVENT } from "../aesl.js";
 import { eventKey } from "../editor_session.js";
 import { download } from "../download.js";
 import { csv, parseNumbers } from "../numbers.js";
+import { icon } from "../../ui/icons.js";
 import { entryForm } from "./entry_form.js";
+import { pinButton, showPin } from "./pin.js";
 
 const SHOWN_EVENTS = 100;
 
@@ -47,17 +49,11 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
       announce(t("events.sent", { name }));
     };
     input.addEventListener("keydown", ({ key }) => key === "Enter" && send());
-    const plot = h("button", {
-      type: "button",
-      class: "plain star",
-      "data-watch": name,
-      "aria-label": t("variables.watch", { name }),
-      title: t("variables.watch", { name }),
-      onclick: () => {
-        session.toggleWatch(eventKey(name));
-        redraw();
-      },
+    const plot = pinButton(t("variables.watch", { name }), () => {
+      session.toggleWatch(eventKey(name));
+      redraw();
     });
+    plot.dataset.watch = name;
     return h(
       "tr",
       {},
@@ -67,7 +63,7 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
         "td",
         { class: "send" },
         input,
-        h("button", { type: "button", "data-send": name, onclick: send }, t("events.send")),
+        h("button", { type: "button", class: "btn line note slim", "data-send": name, onclick: send }, t("events.send")),
       ),
       h(
         "td",
@@ -76,11 +72,12 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
           "button",
           {
             type: "button",
-            class: "plain",
+            class: "btn icon",
             "aria-label": t("remove", { name }),
+            title: t("remove", { name }),
             onclick: () => define("event", name, null),
           },
-          "✕",
+          icon("close", { small: true }),
         ),
       ),
     );
@@ -95,12 +92,13 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
     h(
       "div",
       { class: "row" },
-      h("h2", {}, t("events.log")),
-      h("button", { type: "button", onclick: () => session.receive({ type: "forgetLog" }, "") ?? redraw() }, t("clear")),
+      h("h3", {}, t("events.log")),
+      h("button", { type: "button", class: "btn note slim", onclick: () => session.receive({ type: "forgetLog" }, "") ?? redraw() }, t("clear")),
       h(
         "button",
         {
           type: "button",
+          class: "btn note slim",
           onclick: () => {
             const rows = (shown?.log ?? []).map(({ timeNs, robot, name, values }) => [
               seconds(timeNs),
@@ -132,10 +130,8 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
       for (const button of body.querySelectorAll("[data-send]")) {
         lock(/** @type {HTMLButtonElement} */ (button), view.disabledReason);
       }
-      for (const star of body.querySelectorAll("[data-watch]")) {
-        const watched = session.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));
-        setText(star, watched ? "★" : "☆");
-        setAttribute(star, "aria-pressed", String(watched));
+      for (const pin of body.querySelectorAll("[data-watch]")) {
+        showPin(pin, session.watched.has(eventKey(pin.getAttribute("data-watch") ?? "")));
       }
       if (view.log === logged) return;
       logged = view.log;

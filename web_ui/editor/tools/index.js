@@ -1,11 +1,10 @@
 // The tools beside the text, one tab each. To add one: a file, and a line here.
 
 import { h, setAttribute } from "../../ui/dom.js";
-import { constantsTool } from "./constants.js";
 import { eventsTool } from "./events.js";
 import { plotTool } from "./plot.js";
 import { referenceTool } from "./reference.js";
-import { variablesTool } from "./variables.js";
+import { valuesTool } from "./values.js";
 
 /**
  * @typedef {object} View   the data that tools draw
@@ -14,6 +13,7 @@ import { variablesTool } from "./variables.js";
  * @property {import("../state.js").Variables | null} variables
  * @property {readonly import("../state.js").LoggedEvent[]} log
  * @property {import("../aesl.js").Aesl} file
+ * @property {string} code   of the shown text
  * @property {string} disabledReason   why robots cannot be controlled; empty if they can
  */
 /**
@@ -30,7 +30,7 @@ import { variablesTool } from "./variables.js";
 /** @typedef {{ name: string, element: HTMLElement, render: (view: View) => void }} Tool */
 
 /** @type {((context: ToolContext) => Tool)[]} */
-const TOOLS = [variablesTool, eventsTool, constantsTool, plotTool, referenceTool];
+const TOOLS = [valuesTool, eventsTool, plotTool, referenceTool];
 
 /** @param {ToolContext} context */
 export function toolbox(context) {
@@ -41,6 +41,7 @@ export function toolbox(context) {
       "button",
       {
         type: "button",
+        class: "tool-tab",
         role: "tab",
         id: `tool-tab-${name}`,
         "aria-controls": `tool-${name}`,

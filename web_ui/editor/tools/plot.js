@@ -14,7 +14,7 @@ export function plotTool({ t, session, redraw }) {
   const nothing = h("p", { class: "nothing" }, t("plot.none"));
   const span = h(
     "select",
-    { "aria-label": t("plot.span"), onchange: redraw },
+    { class: "select", "aria-label": t("plot.span"), onchange: redraw },
     ...SPANS.map((seconds) => h("option", { value: seconds, selected: seconds === 10 }, `${seconds} s`)),
   );
   let paused = false;
@@ -23,6 +23,7 @@ export function plotTool({ t, session, redraw }) {
     "button",
     {
       type: "button",
+      class: "btn line note slim",
       "aria-pressed": "false",
       onclick: () => {
         paused = !paused;
@@ -46,6 +47,7 @@ export function plotTool({ t, session, redraw }) {
           "button",
           {
             type: "button",
+            class: "btn note slim",
             onclick: () => {
               session.history.clear();
               redraw();
@@ -55,7 +57,7 @@ export function plotTool({ t, session, redraw }) {
         ),
         h(
           "button",
-          { type: "button", onclick: () => download("plot.csv", csv(session.history.rows()), "text/csv") },
+          { type: "button", class: "btn note slim", onclick: () => download("plot.csv", csv(session.history.rows()), "text/csv") },
           "CSV",
         ),
       ),

@@ -1,33 +1,30 @@
-// What the user does with files and robots: open, save, load, run and control.
-
-import { openSearchPanel } from "@codemirror/search";
+// What the user does with programs and robots: begin, open, save, load, run and control. All languages share it.
 
 import { textOf } from "../browser/text_file.js";
+import { readAesl } from "../editor/aesl.js";
+import { download } from "../editor/download.js";
 import { LARGEST_PROGRAM } from "../input/actions.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
-import { readAesl } from "./aesl.js";
-import { download } from "./download.js";
 
 const THYMIO = "thymio-II";
 
 /** @typedef {import("../input/runtime_client.js").Verb} Verb */
 
-export class EditorCommands {
+export class ProgramCommands {
   /**
    * @param {object} options
    * @param {import("../i18n/index.js").Translate} options.t
    * @param {import("../i18n/index.js").Translate} options.pageText
    * @param {string} options.language
-   * @param {import("./editor_session.js").EditorSession} options.session
+   * @param {import("../editor/editor_session.js").EditorSession} options.session
    * @param {import("../input/actions.js").Actions} options.actions
-   * @param {import("./robot_selection.js").RobotSelection} options.selection
-   * @param {import("@codemirror/view").EditorView} options.view
-   * @param {import("./debug_markers.js").DebugMarkers} options.markers
+   * @param {import("../editor/robot_selection.js").RobotSelection} options.selection
+   * @param {() => import("../hosts/program_host.js").ProgramView | null} options.view  of the chosen language
    * @param {(text: string, kind: "good" | "warning" | "error") => void} options.report
    * @param {() => void} options.redraw
    */
-  constructor({ t, pageText, language, session, actions, selection, view, markers, report, redraw }) {
+  constructor({ t, pageText, language, session, actions, selection, view, report, redraw }) {
     this.t = t;
     this.pageText = pageText;
     this.language = language;
@@ -37,13 +34,27 @@ export class EditorCommands {
     this.runtime = actions.runtime;
     this.selection = selection;
     this.view = view;
-    this.markers = markers;
     this.report = report;
     this.redraw = redraw;
   }
 
+  /** Show the ways to begin a program; the open one stays until one of them is chosen. */
   newFile() {
+    this.session.isChoosing = true;
+    this.redraw();
+  }
+
+  /** Return to the open program. */
+  back() {
+    this.session.isChoosing = false;
+    this.redraw();
+    this.view()?.focus();
+  }
+
+  /** Begin with an empty page. */
+  empty() {
     this.workspace.newFile();
+    this.back();
   }
 
   /** @param {File} chosen */
@@ -58,20 +69,22 @@ export class EditorCommands {
   openText(name, content) {
     const refusal = this.workspace.open(name, content);
     if (refusal !== null) this.report(this.t("editor.refused", { ...refusal }), "error");
-    this.view.focus();
+    this.back();
   }
 
-  /** Open an entry of the list of recent files and examples. @param {import("./toolbar.js").Choice} choice */
-  async choose(choice) {
-    if ("recent" in choice) {
-      const { recent } = choice;
-      if (!recent.unsaved) return this.openText(recent.name, recent.text);
-      this.workspace.restore(recent);
-      return this.view.focus();
-    }
-    this.workspace.follow();
-    const { ok, message } = await this.actions.loadExample(choice.sample);
-    if (!ok) this.report(message, "error");
+  /** Open one of the last programs. @param {import("../editor/file_store.js").StoredFile} recent */
+  openRecent(recent) {
+    if (!recent.unsaved) return this.openText(recent.name, recent.text);
+    this.workspace.restore(recent);
+    this.back();
+  }
+
+  /** Start a built-in behavior on the robots, and show it. @param {string} name */
+  async openExample(name) {
+    const { ok, message } = await this.actions.loadExample(name);
+    if (!ok) return this.report(message, "error");
+    this.workspace.follow(); // only now: until then the robot has another program
+    this.back();
   }
 
   save() {
@@ -81,21 +94,31 @@ export class EditorCommands {
     this.redraw();
   }
 
-  /** Load the text into the robots of the tab, and report the result. */
+  /** Load the program into the robots that it is for, where it starts, and report the result. Returns whether it did. */
   async load() {
     const { tab } = this.workspace;
     const { name, text: source } = this.workspace.current;
     const { ok, message } = await this.actions.load(name, source);
-    if (!ok) return this.#reportRejection(name, source, message);
+    if (!ok) {
+      await this.#reportRejection(name, source, message);
+      return false;
+    }
     this.workspace.loaded(tab, source);
     this.report(this.t("editor.loaded", { name }), "good");
     if (readAesl(source).nodes.some((node) => node.name !== THYMIO)) {
       const notes = await this.runtime.notes(source, this.language);
       if (notes.length > 0) this.report(`${this.t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
     }
-    // Send the current breakpoints: one may have been set while the request was in progress.
-    if (this.workspace.tab === tab && this.markers.lines.length > 0) await this.markers.send();
+    if (this.workspace.tab === tab) await this.view()?.loaded();
     this.redraw();
+    return true;
+  }
+
+  /** Load the program, and let it wait in its first line. */
+  async put() {
+    if (this.#isBlocked() || !(await this.load())) return;
+    await this.control("reset");
+    this.report(this.t("editor.put", { name: this.workspace.current.name }), "good");
   }
 
   /** @param {string} name @param {string} source @param {string} message  of the runtime */
@@ -105,9 +128,27 @@ export class EditorCommands {
     this.report(place === null ? text : this.t("check.error", { line: place, message: text }), "error");
   }
 
-  /** Run the robot's program if it is the shown text; else load the text. */
+  /** Run the program from its beginning; it is loaded if the robots have another one. */
   async run() {
-    await (this.workspace.isInRobot ? this.control("run") : this.load());
+    if (this.#isBlocked()) return;
+    if (!this.workspace.isInRobot) return void (await this.load());
+    const robots = this.selection.controlled;
+    await Promise.all(robots.map((name) => this.runtime.control(name, "reset"))); // refused by one that is off
+    await this.control("run");
+  }
+
+  /** Go on from where the program is halted; else run it. */
+  async goOn() {
+    const isHalted = this.workspace.isInRobot && this.selection.status?.state === "paused";
+    await (isHalted ? this.control("run") : this.run());
+  }
+
+  /** Whether the program has a mistake, which is then shown. */
+  #isBlocked() {
+    const view = this.view();
+    if (view === null || !view.hasMistake()) return false;
+    view.showMistake();
+    return true;
   }
 
   /** @param {Verb} verb */
@@ -121,15 +162,5 @@ export class EditorCommands {
   can(verb) {
     const { services } = this.selection.store.state;
     return this.selection.controlled.some((name) => services.includes(robotTopic(name, `aseba/${verb}`)));
-  }
-
-  /** @param {number} step  +1 or -1 */
-  resize(step) {
-    this.session.resize(step);
-    this.redraw();
-  }
-
-  find() {
-    openSearchPanel(this.view);
   }
 }

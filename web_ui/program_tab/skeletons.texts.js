@@ -1,0 +1,11 @@
+// Evaluated when the page is built (vite.config.js): the page gets the value.
+
+import { readFileSync } from "node:fs";
+
+const NAMES = /** @type {const} */ (["button", "avoid", "line"]);
+
+export default /** @type {Record<typeof NAMES[number], string>} */ (
+  Object.fromEntries(
+    NAMES.map((name) => [name, readFileSync(new URL(`skeletons/${name}.aseba`, import.meta.url), "utf8")]),
+  )
+);

@@ -1,0 +1,214 @@
+// What all languages of programs share: the head with run and stop, the menu of the file, the badge, drafts, and the
+// ways to begin a program. The language itself is a view (hosts/program_host.js).
+
+import WORDS from "../i18n/editor.texts.js";
+import { translator } from "../i18n/index.js";
+import { CHECK_SERVICE } from "../editor/checking.js";
+import { isInRobot, isUnsaved } from "../editor/documents.js";
+import { HelpTexts } from "../editor/help_texts.js";
+import { RobotSelection } from "../editor/robot_selection.js";
+import { ALL } from "../editor/workspace.js";
+import { exampleTitle, isExample, WELCOME } from "../examples/index.js";
+import { disabledReason } from "../state/disabled_reason.js";
+import { h, setAttribute } from "../ui/dom.js";
+import { ProgramCommands } from "./commands.js";
+import { draftBar } from "./draft_bar.js";
+import { fileMenu } from "./file_menu.js";
+import { watchKeys } from "./keys.js";
+import { programBadge } from "./program_badge.js";
+import { programHead } from "./program_head.js";
+import { startPage } from "./start_page.js";
+
+import "./program.css";
+
+export { EditorSession } from "../editor/editor_session.js";
+
+/** Narrower tabs have the menu of the file in the head, as the tabs leave no room for it. */
+const WIDE_PX = 640;
+
+/** @typedef {import("../hosts/program_host.js").ProgramView} ProgramView */
+/**
+ * @typedef {object} Parts   what a language gets
+ * @property {import("../i18n/index.js").Translate} t
+ * @property {import("../shell/context.js").Context} context
+ * @property {import("../editor/editor_session.js").EditorSession} session
+ * @property {RobotSelection} selection
+ * @property {ProgramCommands} commands
+ * @property {() => void} redraw
+ */
+
+export class ProgramTab {
+  #isScheduled = false;
+  /** @type {ProgramView | null} */ #view = null;
+  #isStartShown = false;
+
+  /**
+   * @param {object} options
+   * @param {import("../editor/editor_session.js").EditorSession} options.session
+   * @param {import("../shell/context.js").Context} options.context
+   * @param {readonly import("../hosts/program_host.js").Language[]} options.languages
+   * @param {(id: string) => void} options.choose   shows the program in another language
+   */
+  constructor({ session, context, languages, choose }) {
+    const { store, language, actions, announce } = context;
+    const t = translator(language, WORDS);
+    this.session = session;
+    this.context = context;
+    this.t = t;
+    this.pageText = context.text("page");
+    this.exampleText = context.text("examples");
+    this.helpTexts = new HelpTexts(language);
+    this.selection = new RobotSelection({ store, session, helpTexts: this.helpTexts });
+    const redraw = () => this.redraw();
+    this.commands = new ProgramCommands({
+      t,
+      pageText: this.pageText,
+      language,
+      session,
+      actions,
+      selection: this.selection,
+      view: () => this.#view,
+      report: (text, kind) => {
+        this.#view?.report(text, kind);
+        announce(text);
+      },
+      redraw,
+    });
+    const { commands } = this;
+    /** @param {import("../editor/file_store.js").StoredFile} kept */
+    const draftLabel = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
+    this.head = programHead({ t, languages, choose, commands });
+    this.file = fileMenu({ t, session, commands, redraw });
+    this.badge = programBadge(context.text("program"));
+    this.draft = draftBar({ t, draftLabel, workspace: session.workspace, redraw });
+    this.start = startPage({ t, exampleText: this.exampleText, draftLabel, commands });
+    this.bar = h("div", { class: "program-row" }, h("span", { class: "grow" }), this.badge.element);
+    this.place = h("div", { class: "program-view" }, this.bar);
+    this.element = h(
+      "section",
+      { class: "program", "aria-label": t("editor") },
+      this.head.element,
+      this.draft.element,
+      this.place,
+      this.start.element,
+    );
+    this.removeKeys = watchKeys(this.element, commands);
+    this.sizes = new ResizeObserver(() => this.#placeFileMenu());
+    this.sizes.observe(this.element);
+    session.onText = () => {
+      this.#view?.show();
+      this.redraw();
+    };
+  }
+
+  /**
+   * Show the program in a language.
+   *
+   * @param {string} id
+   * @param {import("../hosts/program_host.js").CreateView} createView
+   */
+  setView(id, createView) {
+    this.#view?.destroy();
+    const { t, context, session, selection, commands } = this;
+    const view = createView({ t, context, session, selection, commands, redraw: () => this.redraw() });
+    this.#view = view;
+    if (view.bar !== null) this.bar.prepend(view.bar);
+    this.place.append(view.element);
+    this.head.setLanguage(id);
+    this.file.setEntries(view.entries);
+    view.show();
+    this.#render();
+    if (!this.#isStartShown) view.focus();
+  }
+
+  /** Call when the tab is opened or left. @param {boolean} isShown */
+  setShown(isShown) {
+    this.file.element.hidden = !isShown;
+    if (!isShown) return;
+    this.#view?.resized();
+    this.redraw();
+    if (!this.#isStartShown) this.#view?.focus();
+  }
+
+  /** Draw with the next frame. */
+  redraw() {
+    if (this.#isScheduled || !this.element.isConnected) return;
+    this.#isScheduled = true;
+    requestAnimationFrame(() => {
+      this.#isScheduled = false;
+      if (this.element.isConnected) this.#render();
+    });
+  }
+
+  destroy() {
+    this.#view?.destroy();
+    this.removeKeys();
+    this.sizes.disconnect();
+    this.file.element.remove();
+    this.element.remove();
+  }
+
+  /** Whether it is known what there is to show: the robot has told its program, or there is a text already. */
+  get #isKnown() {
+    const { current } = this.session.workspace;
+    return this.selection.target !== null || current.own || isUnsaved(current);
+  }
+
+  /** Whether there is nothing to look at yet: an empty page, or a robot that waits for a program. */
+  get #isBeginning() {
+    const { current } = this.session.workspace;
+    const { target } = this.selection;
+    if (current.own || isUnsaved(current) || target === null) return false;
+    return !target.program || isExample(target.program.name, WELCOME);
+  }
+
+  #placeFileMenu() {
+    const end = document.querySelector('[data-slot="tab-end"]');
+    const isWide = this.element.clientWidth >= WIDE_PX && end?.checkVisibility() === true;
+    const place = isWide ? end : this.head.place;
+    setAttribute(this.file.element, "data-wide", String(isWide));
+    if (this.file.element.parentElement !== place) place.append(this.file.element);
+  }
+
+  #render() {
+    const { session, selection, context, pageText } = this;
+    const { workspace } = session;
+    const { state } = context.store;
+    workspace.choose(selection.wanted);
+    if (state.services.includes(CHECK_SERVICE)) void this.helpTexts.load(context.actions.runtime, () => this.redraw());
+    workspace.setRobotProgram(ALL, session.state.targets[state.selected]?.program);
+    if (workspace.tab !== ALL) workspace.setRobotProgram(workspace.tab, selection.target?.program);
+
+    const reason = disabledReason(state, pageText);
+    const { current } = workspace;
+    const { status } = selection;
+    this.#showStart(session.isChoosing || this.#isBeginning);
+    const hasMistake = this.#view?.hasMistake() ?? false;
+    this.head.render({ reason, hasMistake, isStart: this.#isStartShown });
+    this.file.render({ reason, isUnsaved: isUnsaved(current), hasMistake });
+    this.badge.render({
+      values: status?.values ?? {},
+      title: status === null ? "" : exampleTitle(status.name, this.exampleText),
+      timePaused: state.simulator?.paused ?? false,
+      isTextInRobot: isInRobot(current),
+      wasInRobot: current.loaded !== null && current.own,
+    });
+    this.draft.render();
+    if (this.#isStartShown) {
+      this.start.render({ state, reason, recent: workspace.fileStore.recent(), canGoBack: !this.#isBeginning });
+    } else this.#view?.redraw();
+  }
+
+  /** Show the ways to begin, or the program. @param {boolean} isStart */
+  #showStart(isStart) {
+    setAttribute(this.element, "data-shown", isStart ? "start" : this.#isKnown ? "program" : "wait");
+    if (isStart === this.#isStartShown) return;
+    this.#isStartShown = isStart;
+    const hadFocus = document.activeElement === document.body || this.element.contains(document.activeElement);
+    this.start.element.hidden = !isStart;
+    this.place.hidden = isStart;
+    if (isStart) return void (hadFocus && this.start.focus());
+    this.#view?.resized();
+    if (hadFocus) this.#view?.focus();
+  }
+}
