@@ -97,6 +97,8 @@ PARTS = {
     "creator": "creator",
     "editor": "editor",
     "examples": "examples",
+    "playground_tab/reasons.js": "creator",
+    "playground_tab/refusal.js": "creator",
     "playground_tab": "playground",
     "program_tab/program_badge.js": "program",
     "program_tab/program_news.js": "program",

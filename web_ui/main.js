@@ -15,6 +15,7 @@ import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
 import { localStore, tabStore } from "./browser/local_storage.js";
 import { MotionSetting } from "./browser/motion_setting.js";
+import { OpenedFile } from "./browser/opened_file.js";
 import { exposeForTests } from "./browser/test_access.js";
 import { Theme } from "./browser/theme.js";
 import { visitOptions } from "./browser/visit_options.js";
@@ -43,6 +44,8 @@ import { Speaker } from "./sound/speaker.js";
 import { GraphicsNotice } from "./stage/graphics_notice.js";
 import { isWatched, PARAMETERS, subscriptionKey } from "./state/names.js";
 import { Store } from "./state/store.js";
+import { h } from "./ui/dom.js";
+import { MessageAt } from "./ui/message_at.js";
 import { isSomethingOpen } from "./ui/sheet.js";
 
 /** @param {string} selector @returns {HTMLElement} */
@@ -96,6 +99,8 @@ async function main() {
   const motion = new MotionSetting({ storage: localStore, systemIsCalm, root });
   const workspace = new Workspace(localStore);
   const frame = new Frame({ element, workspace });
+  const opened = new OpenedFile();
+  const messageAt = new MessageAt(document.body);
 
   const program = new ProgramHost({ slot: element("#panel-program"), client: () => client });
   const creator = new CreatorHost({ element, scene: () => scene });
@@ -183,6 +188,8 @@ async function main() {
       creator,
       tour,
       thumbnails,
+      opened,
+      messageAt,
     };
     fillTexts(element, context);
     showTabs = fillTabs(element("#tabs"), context);
@@ -218,10 +225,14 @@ async function main() {
   watchSubscriptions(store, client);
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
   watchKeyboard(scene.canvas, scene, dragController, (button, pressed) => actions.pressPad(button, pressed));
-  watchDrops(element("#drop"), (file) => {
-    if (creator.isOpen && !isProgram(file)) creator.openFile(file);
+  watchDrops(element("#drop"), (file, place) => {
+    /** @param {string} words */
+    const refuse = (words) => messageAt.show(place, [h("p", {}, words)], text("page")("notice.dismiss"));
+    messageAt.hide();
+    opened.note(file, place);
+    if (creator.isOpen && !isProgram(file)) creator.openFile(file, place);
     else if (program.isOpen && isProgram(file)) void program.openFile(file);
-    else void actions.loadFile(file);
+    else void actions.loadFile(file, refuse);
   });
   window.addEventListener("keydown", ({ key }) => {
     if (key !== "Escape" || isSomethingOpen()) return; // it closes what is open first

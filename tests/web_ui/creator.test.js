@@ -10,13 +10,26 @@ import { rounded, snapped } from "../../web_ui/creator/snap.js";
 import { toDisplay, toFile } from "../../web_ui/creator/units.js";
 import { WheelSteps } from "../../web_ui/creator/wheel.js";
 import creatorTexts from "../../web_ui/i18n/creator.texts.js";
+import { placeOver } from "../../web_ui/creator/context_bar.js";
 import { CreatorSession } from "../../web_ui/creator/creator_session.js";
+import { slidingWord } from "../../web_ui/creator/load.js";
+import { Drafts } from "../../web_ui/playground_tab/drafts.js";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { lacksGround, itemsOffGround } from "../../web_ui/playground/validation.js";
 import { shapeKinds } from "../../web_ui/playground/kinds/index.js";
 
 /** Straight down. @param {number} x @param {number} y */
 const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1 } });
+
+/** A browser's storage in memory. */
+function newStorage() {
+  /** @type {Map<string, string>} */ const kept = new Map();
+  return {
+    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
+    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
+    removeItem: (/** @type {string} */ key) => void kept.delete(key),
+  };
+}
 
 /** A model on a new playground, with what it reported. */
 function prepared() {
@@ -295,42 +308,74 @@ test("the overlay shows whether a position is free", () => {
   assert.deepEqual(new Set(sketchOf(model).areas.map(({ tone }) => tone)), new Set(["taken"]));
 });
 
-test("the draft is stored and restored; a full storage is reported", () => {
-  /** @type {Map<string, string>} */ const kept = new Map();
-  const storage = {
-    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
-    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
-    removeItem: (/** @type {string} */ key) => void kept.delete(key),
-  };
+/** A session whose drafts are in memory, with what it reported; `again` starts the next visit. */
+function session(storage = newStorage()) {
   /** @type {string[]} */ const reported = [];
-  const options = { storage, title: "Mine", report: (/** @type {any} */ { word }) => reported.push(word), changed: () => {} };
-  const session = new CreatorSession(options);
-  assert.equal(session.isUnsaved, false);
-  session.model.choose("box");
-  session.model.placing?.hover([0.3, 0.3], false);
-  session.model.placing?.put();
-  session.keep();
-  const again = new CreatorSession(options);
-  assert.deepEqual(again.model.playground.items, session.model.playground.items);
-  assert.equal(again.isUnsaved, true);
-  assert.equal(again.fileName, "Mine.json");
+  const drafts = new Drafts(storage);
+  const one = new CreatorSession({ drafts, title: "Mine", report: ({ word }) => void reported.push(word), changed: () => {} });
+  const again = () => {
+    const next = session(storage);
+    const [draft] = next.drafts.list();
+    if (draft === undefined) return next;
+    const playground = { ...parse(next.drafts.read(draft.id) ?? ""), draft: draft.id };
+    next.one.replacePlayground(playground, { word: "change.opened" }, draft.inFile);
+    return next;
+  };
+  return { one, drafts, reported, storage, again };
+}
+
+/** @param {CreatorSession} one @param {string} title */
+function titled(one, title) {
+  one.model.replacePlayground({ ...one.model.playground, title }, { word: "change.titled" });
+}
+
+test("what is built is kept and restored; a full storage is reported", () => {
+  const { one, storage, again } = session();
+  assert.equal(one.kept, "fresh");
+  one.model.choose("box");
+  one.model.placing?.hover([0.3, 0.3], false);
+  one.model.placing?.put();
+  one.keep();
+  assert.equal(one.kept, "device");
+  const next = again();
+  assert.deepEqual(next.one.model.playground.items, one.model.playground.items);
+  assert.equal(next.one.kept, "device");
+  assert.equal(next.one.fileName, "Mine.json");
   storage.setItem = () => {
     throw new Error("full");
   };
-  again.model.undo();
-  again.replacePlayground(newPlayground("Ünser Feld!"), { word: "change.new" });
-  again.keep();
-  assert.equal(reported.at(-1), "status.noDraft");
-  assert.equal(again.fileName, "Unser_Feld.json");
-  again.model.undo();
-  assert.ok(again.model.playground.items.some(({ name }) => name === "box_1"));
-  clearTimeout(again.timer);
-  clearTimeout(session.timer);
+  titled(next.one, "Ünser Feld!");
+  next.one.keep();
+  assert.equal(next.reported.at(-1), "status.noDraft");
+  assert.equal(next.one.kept, "none");
+  assert.equal(next.one.fileName, "Unser_Feld.json");
+  next.one.model.undo();
+  assert.ok(next.one.model.playground.items.some(({ name }) => name === "box_1"));
+  clearTimeout(next.one.timer);
+  clearTimeout(one.timer);
+});
+
+test("each playground is a draft of its own, which undo finds again; what was only opened is not kept", () => {
+  const { one, drafts } = session();
+  titled(one, "First");
+  one.replacePlayground(newPlayground("Second"), { word: "change.new" });
+  assert.deepEqual(drafts.list().map(({ title }) => title), ["First"]);
+  one.keep();
+  assert.equal(drafts.list().length, 1);
+  titled(one, "Third");
+  one.keep();
+  assert.deepEqual(drafts.list().map(({ title }) => title), ["Third", "First"]);
+  one.model.undo();
+  one.model.undo();
+  titled(one, "First again");
+  one.keep();
+  assert.deepEqual(drafts.list().map(({ title }) => title), ["First again", "Third"]);
+  clearTimeout(one.timer);
 });
 
 test("the creator has texts for every shape and its fields", () => {
   for (const { name, fields } of shapeKinds()) {
-    assert.ok(`kind.${name}` in creatorTexts.en && `tool.${name}` in creatorTexts.en, name);
+    assert.ok(`kind.${name}` in creatorTexts.en, name);
     for (const key of Object.keys(fields)) assert.ok(`field.${key}` in creatorTexts.en, key);
   }
 });
@@ -368,17 +413,16 @@ test("items outside a smaller ground are reported, and can still be changed", ()
 });
 
 test("the drawn world stays the same object while only the pointer moves", () => {
-  const storage = { getItem: () => null, setItem: () => {}, removeItem: () => {} };
-  const session = new CreatorSession({ storage, title: "Mine", report: () => {}, changed: () => {} });
-  session.model.choose("box");
-  const { world, sketch } = session;
-  session.model.placing?.hover([0.3, 0.3], false);
-  session.model.changed();
-  assert.equal(session.world, world);
-  assert.notEqual(session.sketch, sketch);
-  session.model.placing?.put();
-  assert.notEqual(session.world, world);
-  clearTimeout(session.timer);
+  const { one } = session();
+  one.model.choose("box");
+  const { world, sketch } = one;
+  one.model.placing?.hover([0.3, 0.3], false);
+  one.model.changed();
+  assert.equal(one.world, world);
+  assert.notEqual(one.sketch, sketch);
+  one.model.placing?.put();
+  assert.notEqual(one.world, world);
+  clearTimeout(one.timer);
 });
 
 test("a notch of any mouse is one step, and touchpad distances are accumulated", () => {
@@ -413,25 +457,50 @@ test("a playground without ground gets one below all items", () => {
 });
 
 test("the saved state survives a reload, and a playground equal to its file counts as saved", () => {
-  /** @type {Map<string, string>} */ const kept = new Map();
-  const storage = {
-    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
-    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
-    removeItem: (/** @type {string} */ key) => void kept.delete(key),
-  };
-  const options = { storage, title: "Mine", report: () => {}, changed: () => {} };
-  const session = new CreatorSession(options);
-  const titled = (/** @type {CreatorSession} */ one, /** @type {string} */ title) =>
-    one.model.replacePlayground({ ...one.model.playground, title }, { word: "change.titled" });
-  titled(session, "Yours");
-  session.keep();
-  assert.equal(new CreatorSession(options).isUnsaved, true);
-  session.noteSaved();
-  assert.equal(new CreatorSession(options).isUnsaved, false);
-  titled(session, "Ours");
-  assert.equal(session.isUnsaved, true);
-  titled(session, "Yours");
-  assert.equal(session.isUnsaved, false);
-  session.keep();
-  assert.equal(new CreatorSession(options).isUnsaved, false);
+  const { one, again } = session();
+  titled(one, "Yours");
+  one.keep();
+  assert.equal(again().one.kept, "device");
+  one.noteSaved();
+  assert.equal(again().one.kept, "file");
+  titled(one, "Ours");
+  assert.equal(one.kept, "device");
+  titled(one, "Yours");
+  assert.equal(one.kept, "file");
+  one.keep();
+  assert.equal(again().one.kept, "file");
+});
+
+test("nothing snaps to a grid that is off", () => {
+  const { model, click, item } = prepared();
+  model.setGrid({ isOff: true });
+  model.choose("box");
+  click(0.313, 0.207);
+  assert.deepEqual([item("box_1")?.x_m, item("box_1")?.y_m], [0.313, 0.207]);
+  model.setGrid({ size: 0.1, isOff: false });
+  click(-0.313, 0.207);
+  assert.deepEqual([item("box_2")?.x_m, item("box_2")?.y_m], [-0.3, 0.2]);
+});
+
+test("a sentence says how a thing can be pushed", () => {
+  assert.equal(slidingWord({ mass_kg: null }), "field.movable.fixed");
+  assert.equal(slidingWord({ mass_kg: 0.08, friction: 0.25 }), "field.movable.light");
+  assert.equal(slidingWord({ mass_kg: 0.08, friction: 0.5 }), "field.movable.paper");
+  assert.equal(slidingWord({ mass_kg: 0.08, friction: 0.7 }), "field.movable.heavy");
+});
+
+test("the bar of the selected item is over it, else below it, and always inside the scene", () => {
+  const [bar, scene] = [{ width: 280, height: 50 }, { width: 600, height: 500 }];
+  /** @param {number} x @param {number} y */
+  const at = (x, y) => placeOver(bar, [{ x: x - 20, y: y - 30 }, { x: x + 20, y: y + 30 }], scene);
+  assert.deepEqual(at(300, 300), { x: 160, y: 208 });
+  assert.deepEqual(at(300, 100), { x: 160, y: 142 }); // the views are above
+  assert.deepEqual(at(20, 300), { x: 12, y: 208 });
+  assert.deepEqual(at(590, 300), { x: 308, y: 208 });
+  for (const y of [-100, 0, 250, 480, 700]) {
+    const place = at(300, y);
+    assert.ok(place.y >= 74 && place.y + bar.height <= scene.height, String(y));
+  }
+  const large = placeOver(bar, [{ x: 0, y: 0 }, { x: 600, y: 500 }], { width: 240, height: 100 });
+  assert.deepEqual(large, { x: 12, y: 74 });
 });

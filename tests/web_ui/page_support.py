@@ -120,11 +120,24 @@ def choose_in_file_menu(page: Any, verb: str) -> None:
 
 
 def build_playground(page: Any) -> None:
-    """Open the creator."""
+    """Open the creator, with a new playground unless something is being built."""
     open_tab(page, "playground")
     if not page.locator(".palette").is_visible():
-        page.click("[data-build]")
+        page.click("[data-new]")
     page.locator(".palette").wait_for()
+
+
+def go_on_building(page: Any, title: str) -> None:
+    """Open a playground of this device in the creator."""
+    open_tab(page, "playground")
+    page.get_by_role("button", name=f"Go on building {title}", exact=True).click()
+    page.locator(".palette").wait_for()
+
+
+def choose_playground(page: Any, name: str) -> None:
+    """Put a ready-made playground on the desk."""
+    open_tab(page, "playground")
+    page.click(f"[data-playground={name}]")
 
 
 def choose_robot(page: Any, name: str) -> None:

@@ -66,7 +66,9 @@ test("a shape of a plug-in is placed, moved, turned where it can be, edited, and
   model.nudge(1, 0);
   assert.equal(item("slalom_1")?.x_m, -0.35);
   assert.equal(model.edit({ gap_m: 0.5, color: "#00ff00" }), null);
-  assert.deepEqual(model.edit({ gap_m: 0 })?.values, { key: "gap_m", found: "0" });
+  const problem = model.edit({ gap_m: 0 });
+  const german = new Labels("de", translator("de", WORDS));
+  assert.equal(problem === null ? "" : german.text(problem), "Abstand muss von 0.1 bis 10000 cm sein.");
   const saved = JSON.parse(write(parse(write(model.playground))));
   assert.deepEqual(saved.shapes[1], {
     kind: "slalom",
@@ -124,7 +126,7 @@ test("names come from the declaration, from the page's texts, or from the key", 
   const german = new Labels("de", translator("de", WORDS));
   const french = new Labels("fr", translator("fr", WORDS));
   assert.equal(german.kind("slalom"), "Slalomstangen");
-  assert.equal(french.tool("slalom"), "Slalom posts");
+  assert.equal(french.help("slalom"), "Slalom posts");
   assert.equal(french.kind("river"), "Fleuve");
   assert.equal(german.kind("tunnel"), "Tunnel");
   assert.equal(german.field("slalom", "gap_m"), "Abstand");

@@ -17,7 +17,9 @@ from tests.web_ui.page_support import (
     TouchPoints,
     build_playground,
     choose_language,
+    go_on_building,
     open_editor,
+    open_menu,
     open_page,
     open_tab,
     wait_for_frame,
@@ -49,7 +51,17 @@ MOVES = """async (moves) => {
         if (move % 500 === 0) await new Promise((settle) => setTimeout(settle));
     }
 }"""
-CONTROLS = ".palette button, .creator-bar button, .creator-bar select, header button"
+CONTROLS = (
+    ".palette button, .creator-tools button, .creator-bar > * > button, #creator-try, #creator-more, header button"
+)
+OVER = """(bar, {x, y}) => {
+    const {left, right, bottom} = bar.getBoundingClientRect();
+    return left < x && x < right && bottom < y && y - bottom < 120;
+}"""
+IN_SIGHT = """(one) => {
+    const {left, top, right, bottom} = one.getBoundingClientRect();
+    return one.contains(document.elementFromPoint((left + right) / 2, (top + bottom) / 2));
+}"""
 OUT_OF_SIGHT = """(controls) => [...document.querySelectorAll(controls)]
     .filter((one) => one.checkVisibility()).filter((one) => {
         const {left, top, right, bottom} = one.getBoundingClientRect();
@@ -62,6 +74,19 @@ def open_creator(page, suite, *arguments):
     open_page(page, suite("--playground", "base", "--program", "none", *arguments))
     build_playground(page)
     wait_for_camera(page)
+
+
+def choose_more(page, verb):
+    """Choose an entry of the menu "More"."""
+    open_menu(page, "#creator-more")
+    page.click(f"#creator-menu [data-verb={verb}]")
+
+
+def open_details(page):
+    """Unfold the other values of the item."""
+    details = page.locator(".item-details")
+    if details.get_attribute("open") is None:
+        details.locator("summary").first.click()
 
 
 def wait_for_camera(page):
@@ -113,7 +138,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
     page.locator("[data-field=title]").fill("A way out")
     page.locator("[data-field=title]").press("Enter")
     with page.expect_download() as saving:
-        page.click("#creator-save")
+        choose_more(page, "save")
     assert saving.value.suggested_filename == "A_way_out.json"
     saved = tmp_path / "A_way_out.json"
     saving.value.save_as(saved)
@@ -122,9 +147,9 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
 
     page.reload()
     page.wait_for_function("window.thymio && window.thymio.connected")
-    build_playground(page)
+    go_on_building(page, "A way out")
     page.wait_for_function("window.thymio.built()?.playground.title === 'A way out'")
-    page.click("#creator-new")
+    choose_more(page, "new")
     wait_for_items(page, 2)
     page.set_input_files("#creator-file", str(saved))
     wait_for_items(page, 4)
@@ -152,7 +177,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
 def test_everything_is_built_by_keys_alone(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.locator("#tab-playground").press("Enter")
-    page.locator("[data-build]").press("Enter")
+    page.locator("[data-new]").press("Enter")
     page.locator("[data-tool=box]").press("Enter")
     assert page.evaluate("document.activeElement.id") == "view"
     for key in ("Shift+ArrowRight", "ArrowUp", ".", "Enter"):
@@ -179,7 +204,7 @@ def test_everything_is_built_by_keys_alone(suite, page):
     page.keyboard.press("n")
     page.keyboard.press("n")
     page.keyboard.press("Enter")
-    assert page.evaluate("document.activeElement.dataset.field") == "name"
+    assert page.evaluate("document.activeElement.dataset.field") == "size_x_m"
     width = page.locator(".item-form [data-field=size_x_m]")
     width.fill("12.5")
     width.press("Enter")
@@ -230,6 +255,7 @@ def test_items_are_dragged_turned_and_edited_as_numbers(suite, page):
     page.wait_for_function("window.thymio.built().playground.items[1].height_m === 0.005")
     page.locator("[data-field=movable]").check()
     page.wait_for_function("window.thymio.built().playground.items[1].mass_kg === 0.1")
+    open_details(page)
     name = page.locator(".item-form [data-field=name]")
     name.fill("z")
     name.press("Control+z")
@@ -244,6 +270,7 @@ def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(suite, pag
         page.keyboard.press(key)
     page.click(".item-list summary")
     page.click("[data-item=track_1]")
+    open_details(page)
     name = page.get_by_label("Name")
     name.fill("lane")
     page.keyboard.press("Tab")
@@ -266,7 +293,9 @@ def test_a_file_that_is_not_an_image_is_rejected_at_its_field(suite, page, tmp_p
     page.set_input_files("#creator-picture", str(good))
     page.wait_for_function("() => window.thymio.built().placing?.kind === 'picture'")
     page.set_input_files(".item-form input[data-field=image]", str(bad))
-    playwright.expect(page.locator(".item-form .problem:visible")).to_have_text("bad.png is not a readable image")
+    playwright.expect(page.locator(".item-form .problem:visible")).to_have_text(
+        "bad.png is not a picture that can be read"
+    )
 
 
 def test_mac_shortcuts_undo_redo_and_copy(suite, page):
@@ -358,7 +387,8 @@ def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, pa
     click(page, 0.3, 0.2)
     page.keyboard.press("Escape")
     page.keyboard.press("n")
-    playwright.expect(page.locator(".item-form [data-field=name]")).to_be_visible()
+    playwright.expect(page.locator(".item-form [data-field=size_x_m]")).to_be_visible()
+    open_details(page)
     page.locator(".item-list summary").click()
     assert page.evaluate(FINDINGS) == []
 
@@ -411,13 +441,13 @@ def test_an_image_is_placed_on_the_ground(suite, page, tmp_path):
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
 
 
-def test_the_unsaved_mark_belongs_to_the_creator_and_disappears_after_saving(suite, page):
+def test_the_head_says_where_the_playground_is_kept(suite, page):
     open_creator(page, suite)
-    mark = page.locator(".creator .unsaved")
-    playwright.expect(mark).to_be_hidden()
+    kept = page.locator(".creator .kept")
+    playwright.expect(kept).to_have_text("Nothing to save yet")
     page.locator("[data-field=title]").fill("Kept")
     page.locator("[data-field=title]").press("Enter")
-    playwright.expect(mark).to_be_visible()
+    playwright.expect(kept).to_have_text("Saved on this device")
     open_editor(page)
     page.focus(".cm-content")
     page.keyboard.insert_text("var a")
@@ -428,16 +458,108 @@ def test_the_unsaved_mark_belongs_to_the_creator_and_disappears_after_saving(sui
         "●",
     ]
     open_tab(page, "playground")
-    playwright.expect(mark).to_be_visible()
+    playwright.expect(kept).to_have_text("Saved on this device")
     with page.expect_download():
-        page.click("#creator-save")
-    playwright.expect(mark).to_be_hidden()
+        choose_more(page, "save")
+    playwright.expect(kept).to_have_text("Saved as a file")
     page.reload()
     page.wait_for_function("window.thymio && window.thymio.connected")
-    build_playground(page)
+    go_on_building(page, "Kept")
     page.wait_for_function("window.thymio.built()?.playground.title === 'Kept'")
-    wait_for_frame(page)
-    playwright.expect(mark).to_be_hidden()
+    playwright.expect(kept).to_have_text("Saved as a file")
+
+
+def test_the_bar_over_the_selected_item_turns_copies_and_removes_it(suite, page):
+    open_creator(page, suite)
+    bar = page.locator(".context-bar")
+    page.click("[data-tool=box]")
+    click(page, 0.3, 0.2)
+    wait_for_items(page, 3)
+    playwright.expect(bar).to_be_hidden()
+    page.keyboard.press("Escape")
+    click(page, 0.3, 0.2, 0.05)
+    playwright.expect(bar).to_be_visible()
+    assert bar.evaluate(OVER, page.evaluate("window.thymio.screenPosition(0.3, 0.2, 0.1)"))
+    bar.get_by_role("button", name="Turn").click()
+    page.wait_for_function("Math.abs(window.thymio.built().playground.items[1].yaw_rad - Math.PI / 12) < 0.001")
+    bar.get_by_role("button", name="Copy").click()
+    wait_for_items(page, 4)
+    assert built(page)["selected"] == "box_2"
+    bar.get_by_role("button", name="Remove").click()
+    wait_for_items(page, 3)
+    playwright.expect(bar).to_be_hidden()
+    assert page.evaluate("document.activeElement.id") == "view"
+
+
+def test_what_things_snap_to_is_chosen_in_the_bar_below(suite, page):
+    open_creator(page, suite)
+    playwright.expect(page.locator("#creator-snap")).to_have_text("Snap to 5 cm")
+    open_menu(page, "#creator-snap")
+    page.get_by_role("radio", name="Do not snap").check()
+    page.keyboard.press("Escape")
+    playwright.expect(page.locator("#creator-snap")).to_have_text("Do not snap")
+    page.click("[data-tool=box]")
+    click(page, 0.313, 0.207)
+    wait_for_items(page, 3)
+    assert items(page)["box_1"]["x_m"] == pytest.approx(0.313, abs=0.003)
+    assert items(page)["box_1"]["x_m"] != 0.3
+
+
+def test_what_can_be_pushed_is_said_in_a_sentence(suite, page):
+    open_creator(page, suite)
+    page.click("[data-tool=box]")
+    click(page, 0.3, 0.2)
+    page.keyboard.press("Escape")
+    click(page, 0.3, 0.2, 0.05)
+    movable = page.locator(".movable")
+    playwright.expect(movable).to_contain_text("It stays where it is.")
+    page.get_by_role("switch", name="Can be pushed").check()
+    playwright.expect(movable).to_contain_text("100 g, slides easily")
+    open_details(page)
+    for key, value in (("mass_kg", "80"), ("friction", "0.5")):
+        page.locator(f".item-form [data-field={key}]").fill(value)
+        page.locator(f".item-form [data-field={key}]").press("Enter")
+    playwright.expect(movable).to_contain_text("80 g, slides on paper")
+
+
+@pytest.mark.parametrize("size", [(390, 844), (1024, 768)])
+def test_all_tools_are_reached_by_touch(suite, browser, size):
+    page = browser.new_page(viewport={"width": size[0], "height": size[1]}, bypass_csp=True, has_touch=True)
+    page.set_default_timeout(DEADLINE_MS)
+    open_creator(page, suite)
+    groups = page.locator(".tool-group")
+    playwright.expect(groups.locator("h3")).to_have_text(["Ground", "Things", "Doors and robots"])
+    for tool in ("rectangle", "octagon", "track", "box", "cylinder", "wall", "u_figure", "door", "robot"):
+        button = page.locator(f"[data-tool={tool}]")
+        button.scroll_into_view_if_needed()
+        box = button.bounding_box()
+        assert min(box["width"], box["height"]) >= 44
+        button.tap()
+        page.wait_for_function("(tool) => window.thymio.built().placing?.kind === tool", arg=tool)
+        assert page.locator("#creator-try").evaluate(IN_SIGHT)
+    page.locator("[data-tool=select]").tap()
+    page.wait_for_function("window.thymio.built().placing === null")
+    page.locator("[data-tool=activation]").tap()
+    playwright.expect(page.locator("#live")).to_have_text("Add a door first. A plate needs one to open.")
+    with page.expect_file_chooser():
+        page.locator("[data-tool=picture]").tap()
+    page.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
+    page.close()
+
+
+def test_a_playground_with_a_door_is_built_in_twelve_clicks_by_names_only(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.get_by_role("tab", name="Playground").click()
+    page.get_by_role("button", name="New playground").click()
+    page.get_by_role("button", name="Door", exact=True).click()
+    wait_for_camera(page)
+    click(page, -0.2, 0.2)
+    page.get_by_role("button", name="Plate", exact=True).click()
+    click(page, 0.3, -0.2)
+    wait_for_items(page, 4)
+    page.get_by_role("button", name="Try it").click()  # the seventh click
+    page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
+    assert page.evaluate("window.thymio.state().objects.length") > 0
 
 
 def test_without_ground_the_creator_warns_and_offers_to_add_one(suite, page):
@@ -464,12 +586,12 @@ def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone
     click(page, -0.4, 0.3, 0.05)
     page.locator("[data-field=gap_m]").fill("50")
     page.locator("[data-field=gap_m]").press("Enter")
-    assert page.locator(".field", has=page.locator("[data-field=gap_m]")).locator("label").inner_text() == "Gap (cm)"
+    assert page.locator(".field", has=page.locator("[data-field=gap_m]")).locator("label").text_content() == "Gap (cm)"
     page.locator("[data-field=gap_m]").fill("0")
     page.locator("[data-field=gap_m]").press("Enter")
     page.locator("[data-field=gap_m][aria-invalid=true]").wait_for()
     with page.expect_download() as saving:
-        page.click("#creator-save")
+        choose_more(page, "save")
     saved = json.loads(saving.value.path().read_text())
     assert saved["shapes"][1] == {
         "kind": "slalom", "name": "slalom_1", "x_m": -0.4, "y_m": 0.3, "length_m": 1, "gap_m": 0.5,

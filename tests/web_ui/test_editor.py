@@ -212,7 +212,7 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path)
     playground = tmp_path / "mine.json"
     playground.write_text('{"format": 1}')
     drop_file(editor, playground, ".cm-content")
-    expect(editor, ".current .fault .headline").to_contain_text("mine.json")
+    expect(editor, ".message-at .headline").to_contain_text("mine.json")
     program = tmp_path / "dropped.aesl"
     program.write_text('<network><node nodeId="1" name="thymio-II">var other = 1</node></network>')
     drop_file(editor, program, ".cm-content")

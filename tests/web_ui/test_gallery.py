@@ -1,4 +1,4 @@
-"""The gallery of playgrounds in a real browser: thumbnails, a choice, and a rejected file that changes nothing."""
+"""The tab of playgrounds in a real browser: thumbnails, a choice, own ones, and rejected files that change nothing."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.conftest import DEADLINE_MS
-from tests.web_ui.page_support import MARKS, choose_language, open_page, open_tab
+from tests.web_ui.page_support import MARKS, choose_language, drop_file, go_on_building, open_page, open_tab
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros import resources
 
@@ -27,26 +27,30 @@ def open_gallery(page, suite, *arguments):
     open_page(page, suite("--playground", "base", "--program", "none", *arguments))
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
     open_tab(page, "playground")
-    page.click("#gallery-open")
 
 
 def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(suite, page):
     open_gallery(page, suite)
-    names = list(resources.playgrounds())
-    page.wait_for_function(
-        "(count) => [...document.querySelectorAll('.sample img:not([hidden])')]"
-        ".filter(({complete, naturalWidth}) => complete && naturalWidth > 0).length === count",
-        arg=len(names),
-        timeout=3 * DEADLINE_MS,  # each is a rendered scene
-    )
-    for name in names:
+    for name in resources.playgrounds():
         card = page.locator(f"[data-playground={name}]")
-        assert card.locator("img").evaluate(COLORS) > 8, name
+        card.scroll_into_view_if_needed()
+        picture = card.locator("img:not([hidden])")
+        picture.wait_for(timeout=3 * DEADLINE_MS)  # each is a rendered scene
+        picture.evaluate("(image) => image.decode()")
+        assert picture.evaluate(COLORS) > 8, name
     playwright.expect(page.locator("[data-playground=classroom] .count")).to_have_text("20 robots")
     playwright.expect(page.locator("[data-playground=base]")).to_have_attribute("aria-current", "true")
+    playwright.expect(page.locator(".current h2")).to_have_text("Base")
+    playwright.expect(page.locator(".current img")).to_be_visible()
     if AXE.exists():
         page.add_script_tag(path=str(AXE))
         assert page.evaluate(FINDINGS) == []
+
+
+def test_thumbnails_are_drawn_when_they_come_into_sight(suite, page):
+    open_gallery(page, suite)
+    page.locator("[data-playground] img:not([hidden])").first.wait_for()
+    assert page.locator(".gallery .sample").last.locator("img").is_hidden()
 
 
 def test_one_is_chosen_by_keys_in_another_language(suite, page):
@@ -54,34 +58,52 @@ def test_one_is_chosen_by_keys_in_another_language(suite, page):
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
     open_tab(page, "playground")
     choose_language(page, "de")
-    page.locator("#gallery-open").press("Enter")
     playwright.expect(page.locator("[data-playground=maze]")).to_contain_text("Labyrinth")
     page.locator("[data-playground=maze]").press("Enter")
     page.wait_for_function("window.thymio.state().simulator.playground === 'maze'")
-    playwright.expect(page.locator("dialog.gallery")).to_be_hidden()
+    playwright.expect(page.locator(".current h2")).to_have_text("Labyrinth")
+    playwright.expect(page.locator("[data-playground=maze]")).to_have_attribute("aria-current", "true")
 
 
-def test_escape_closes_the_gallery_and_stops_no_robot(suite, page):
-    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
-    page.wait_for_function("window.thymio.state().playgrounds.length > 3")
-    open_tab(page, "playground")
-    page.wait_for_function("window.thymio.state().program?.state === 'running'")
-    page.click("#gallery-open")
-    page.keyboard.press("Escape")
-    playwright.expect(page.locator("dialog.gallery")).to_be_hidden()
-    page.locator("#pause").click()
-    page.wait_for_function("window.thymio.state().simulator.paused")  # asked for after a stop would have been
-    assert page.evaluate("window.thymio.state().program.state") == "running"
+def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brought_back(suite, page):
+    open_gallery(page, suite)
+    own = page.locator("section.own")
+    playwright.expect(own).to_be_hidden()
+    for title in ("First", "Second"):
+        page.click("[data-new]")
+        page.locator("[data-field=title]").fill(title)
+        page.locator("[data-field=title]").press("Enter")
+        playwright.expect(page.locator(".kept")).to_have_text("Saved on this device")
+        page.click(".creator .leave")
+    page.reload()
+    page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.state().simulator !== null")
+    cards = own.locator(".sample strong")
+    playwright.expect(cards).to_have_text(["Second", "First"])
+    cards.nth(1).click()
+    page.wait_for_function("window.thymio.state().simulator.title === 'First'")
+    own.get_by_role("button", name="Remove First from this device").click()
+    playwright.expect(own.locator(".removed")).to_contain_text("First was removed.")
+    own.get_by_role("button", name="Bring it back").click()
+    playwright.expect(cards).to_have_text(["First", "Second"])
+    own.get_by_role("button", name="Remove Second from this device").click()
+    page.reload()
+    page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.state().simulator !== null")
+    playwright.expect(cards).to_have_text(["First"])
+    go_on_building(page, "First")
+    page.wait_for_function("window.thymio.built().playground.title === 'First'")
 
 
-def test_a_broken_file_is_rejected_with_location_found_and_expected_and_the_world_stays(suite, page, tmp_path):
+def test_a_broken_file_is_rejected_in_one_sentence_with_details_and_the_world_stays(suite, page, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text(json.dumps({"format": 1, "title": "Broken", "shapes": [{"kind": "box", "x_m": "far"}]}))
     open_gallery(page, suite)
-    page.set_input_files("#gallery-file", str(broken))
-    fault = page.locator("dialog.gallery div.fault")
+    page.set_input_files("#playground-file", str(broken))
+    fault = page.locator(".current > .fault")
     playwright.expect(fault).to_contain_text("broken.json")
-    playwright.expect(fault.locator("dd")).to_contain_text(["shapes[0].x_m", "'far'", "a number of m"])
+    playwright.expect(fault.locator(".reason")).to_have_text("Thing 1: Position x must be from -10000 to 10000 cm.")
+    technical = fault.locator(".technical p")
+    playwright.expect(technical).to_be_hidden()
+    playwright.expect(technical).to_contain_text("shapes[0].x_m: found 'far', expected a number of m")
     assert page.evaluate("window.thymio.state().simulator.playground") == "base"
 
 
@@ -89,12 +111,35 @@ def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page,
     letter = tmp_path / "letter.json"
     letter.write_text("hello")
     open_gallery(page, suite)
-    page.set_input_files("#gallery-file", str(letter))
-    fault = page.locator("dialog.gallery div.fault")
+    page.set_input_files("#playground-file", str(letter))
+    fault = page.locator(".current > .fault")
     playwright.expect(fault).to_contain_text("This file is not a playground.")
     playwright.expect(fault.get_by_text("Expecting value")).to_be_hidden()
     fault.locator("summary").click()
-    playwright.expect(fault.locator(".technical")).to_contain_text("line 1, column 1")
+    playwright.expect(fault.locator(".technical p")).to_be_visible()
+    playwright.expect(fault.locator(".technical p")).to_contain_text("line 1, column 1")
+
+
+def test_a_dropped_file_is_refused_where_it_was_dropped_in_the_language_of_the_page(suite, page, tmp_path):
+    broken = tmp_path / "kaputt.json"
+    shape = {"kind": "box", "name": "crate", "x_m": 0, "y_m": 0, "size_x_m": 0, "size_y_m": 1, "height_m": 1}
+    broken.write_text(json.dumps({"format": 1, "title": "x", "shapes": [shape | {"color": "#112233"}]}))
+    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+    page.wait_for_function("window.thymio.state().program?.state === 'running'")
+    choose_language(page, "de")
+    drop_file(page, broken, "#view")
+    message = page.locator(".message-at")
+    playwright.expect(message.locator(".reason")).to_have_text("Kiste „crate“: Länge muss von 0.1 bis 10000 cm sein.")
+    playwright.expect(message.locator(".headline")).to_contain_text("kaputt.json")
+    assert page.locator(".notice").count() == 0
+    if AXE.exists():
+        page.add_script_tag(path=str(AXE))
+        assert page.evaluate(FINDINGS) == []
+    page.keyboard.press("Escape")
+    playwright.expect(message).to_be_hidden()
+    page.locator("#pause").click()
+    page.wait_for_function("window.thymio.state().simulator.paused")  # asked for after a stop would have been
+    assert page.evaluate("window.thymio.state().program.state") == "running"
 
 
 def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(suite, page, tmp_path):
@@ -113,7 +158,7 @@ def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(suite, pag
         )
     )
     open_gallery(page, suite)
-    page.set_input_files("#gallery-file", str(foreign))
+    page.set_input_files("#playground-file", str(foreign))
     page.wait_for_function("window.thymio.state().simulator.title === 'Lone pillar'")
     page.wait_for_function("window.thymio.state().robot?.latest")
     page.wait_for_function("window.thymio.state().markers > 0")

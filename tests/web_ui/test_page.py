@@ -15,6 +15,7 @@ from tests.sim.images import BLACK, WHITE, png
 from tests.web_ui.page_support import (
     MARKS,
     build_playground,
+    choose_playground,
     drop_file,
     open_editor,
     open_hands,
@@ -191,30 +192,44 @@ def test_an_error_is_shown_at_its_position_and_the_previous_program_keeps_runnin
     playwright.expect(page.locator("#program-state")).to_have_text("Robot runs Follow the line")
 
 
-def test_a_rejection_is_shown_whatever_tab_is_open(suite, page, tmp_path):
+AT_CENTER_OF = """(message, selector) => {
+    const {left, top, width, height} = document.querySelector(selector).getBoundingClientRect();
+    const [x, y] = [left + width / 2, top + height / 2];
+    const box = message.getBoundingClientRect();
+    const away = [x - Math.max(box.left, Math.min(x, box.right)), y - Math.max(box.top, Math.min(y, box.bottom))];
+    return Math.hypot(...away) < 20;
+}"""
+
+
+def test_a_rejection_is_shown_where_the_file_was_dropped_or_chosen(suite, page, tmp_path):
     playground, program, unknown = tmp_path / "bad.json", tmp_path / "bad.aesl", tmp_path / "bad.dat"
     playground.write_text('{"format": 1}')
     program.write_text('<network>\n<node nodeId="1" name="thymio-II">var a = = 1</node></network>')
     unknown.write_text("")
     open_page(page, suite("--playground", "base", "--program", "none"))
     notices = page.locator(".notice:visible")
+    here = page.locator(".message-at:visible")
     open_editor(page)
     for file in (playground, unknown):
         drop_file(page, file, "#view")
-        playwright.expect(notices.filter(has_text=file.name)).to_have_count(1)
-        notices.get_by_role("button").click()
+        playwright.expect(here).to_contain_text(file.name)
+        assert here.evaluate(AT_CENTER_OF, "#view")
+        here.get_by_role("button").click()
+        playwright.expect(here).to_be_hidden()
     build_playground(page)
     drop_file(page, program, "#view")
     playwright.expect(notices.filter(has_text="bad.aesl")).to_have_count(1)
-    page.click(".creator .leave")
     drop_file(page, playground, "#view")
+    playwright.expect(here).to_contain_text("bad.json")
+    page.click(".creator .leave")
+    page.set_input_files("#playground-file", str(playground))
     playwright.expect(page.locator(".current .fault:visible")).to_contain_text("bad.json")
+    playwright.expect(here).to_be_hidden()
 
 
 def test_another_playground_can_be_chosen(suite, page):
     open_page(page, suite())
-    open_tab(page, "playground")
-    page.select_option("#playground-choice", "obstacle")
+    choose_playground(page, "obstacle")
     page.wait_for_function("window.thymio.state().simulator.playground === 'obstacle'")
 
 
@@ -234,7 +249,10 @@ def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejecte
     playwright.expect(page.locator("details.remarks")).to_contain_text("<feeder> skipped")
     page.set_input_files("#playground-file", str(broken))
     fault = page.locator("div.fault", has_text="broken.playground")
-    playwright.expect(fault.locator("dd")).to_contain_text(["line 2: <world> w", "'wide'", "a number"])
+    playwright.expect(fault.locator(".reason")).to_have_text("Line 2: One of its values must be a number.")
+    technical = fault.locator(".technical p")
+    playwright.expect(technical).to_be_hidden()
+    playwright.expect(technical).to_have_text("line 2: <world> w: found 'wide', expected a number")
     assert page.evaluate("window.thymio.state().simulator.playground") == "my maze.playground"
 
 

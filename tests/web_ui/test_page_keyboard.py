@@ -55,9 +55,9 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     page.keyboard.press("ArrowUp")
     expect(page, "#tab-playground").to_be_focused()
     page.keyboard.press("Enter")
-    expect(page, "#playground-choice option[value=base]").to_have_count(1)
-    go_to(page, "#playground-choice")
-    page.keyboard.type("Base")
+    expect(page, "[data-playground=base]").to_have_count(1)
+    go_to(page, "[data-playground=base]")
+    page.keyboard.press("Enter")
     page.wait_for_function(f"({STATE})().simulator.playground === 'base'")
 
     go_to(page, "#tab-playground", "Shift+Tab")

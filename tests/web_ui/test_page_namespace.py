@@ -10,11 +10,11 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.page_support import (
     MARKS,
+    choose_playground,
     drop_file,
     open_editor,
     open_hands,
     open_page,
-    open_tab,
     wait_for_position,
     wait_for_program,
     wait_for_service,
@@ -67,8 +67,7 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
     drop_file(page, broken, "#view")
     playwright.expect(page.locator("body")).to_contain_text("line 3", ignore_case=True, use_inner_text=True)
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "switch.aesl"
-    open_tab(page, "playground")
-    page.select_option("#playground-choice", "maze")
+    choose_playground(page, "maze")
     page.wait_for_function("() => window.thymio.state().simulator.playground === 'maze'")
     open_hands(page)
     page.select_option("[data-operate=pen]", "down")

@@ -11,6 +11,7 @@ from tests.web_ui.page_support import (
     MARKS,
     build_playground,
     choose_language,
+    choose_playground,
     open_editor,
     open_page,
     open_tab,
@@ -43,7 +44,7 @@ def test_the_page_reconnects_to_a_restarted_simulator_and_discards_old_state(sui
 
 LOCKED = {
     "program": ".pad button, .program-head [data-verb], #time button, #time select, .stop",
-    "playground": "#playground-choice, #gallery-open",
+    "playground": ".sample, #playground-change",
 }
 STIMULI = "#hands-sheet input, #hands-sheet button, #hands-sheet select"
 STATES = """(controls) => [...document.querySelectorAll(controls)]
@@ -119,7 +120,7 @@ def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(s
     page.keyboard.insert_text("var a = b")
     playwright.expect(verdict).to_contain_text("as soon as the robot is connected")
     open_tab(page, "playground")
-    page.click("[data-build]")
+    page.click("[data-new]")
     playwright.expect(page.locator(".notice")).to_contain_text("Reload the page")
     suite("--playground", "base", "--program", "none", ports=ports)
     playwright.expect(verdict).to_have_text("1 mistake, line 1")
@@ -139,7 +140,6 @@ def test_actions_in_one_browser_are_visible_in_one_that_connects_late(suite, pag
     other_page.wait_for_function("() => window.thymio.state().playgrounds.length > 3")
     other_page.locator("#pause").click()
     page.wait_for_function("() => window.thymio.state().simulator.paused === false")
-    open_tab(other_page, "playground")
-    other_page.select_option("#playground-choice", "obstacle")
+    choose_playground(other_page, "obstacle")
     page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
     other_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")

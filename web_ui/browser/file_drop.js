@@ -1,6 +1,8 @@
-// Reports files that are dropped anywhere on the page.
+// Reports files that are dropped anywhere on the page, and where.
 
-/** @param {HTMLElement} hint  shown while a file is dragged over the page @param {(file: File) => void} open */
+/** @typedef {import("./opened_file.js").Place} Place */
+
+/** @param {HTMLElement} hint  shown while a file is dragged over the page @param {(file: File, place: Place) => void} open */
 export function watchDrops(hint, open) {
   let depth = 0;
   /** @param {number} change */
@@ -16,6 +18,7 @@ export function watchDrops(hint, open) {
   window.addEventListener("drop", (event) => {
     event.preventDefault();
     over(-depth);
-    for (const file of event.dataTransfer?.files ?? []) open(file);
+    const place = { x: event.clientX, y: event.clientY };
+    for (const file of event.dataTransfer?.files ?? []) open(file, place);
   });
 }

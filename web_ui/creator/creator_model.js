@@ -7,7 +7,7 @@ import { History } from "./history.js";
 import { middleOf } from "./place.js";
 import { Placing } from "./placing.js";
 import { Selecting } from "./selecting.js";
-import { rounded } from "./snap.js";
+import { centimeters } from "./snap.js";
 
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/parts.js").Item} Item */
@@ -32,7 +32,7 @@ export class CreatorModel {
     this.report = report;
     this.onChange = onChange;
     /** @type {string | null} name of the selected item */ this.selected = null;
-    /** @type {import("./snap.js").Grid} */ this.grid = { size: 0.05, on: "lines" };
+    /** @type {import("./snap.js").Grid} */ this.grid = { size: 0.05, on: "lines", isOff: false };
     /** Whether pointer and wheel move the camera. */
     this.cameraOn = true;
     /** Size of one pixel on the ground, in meters. */
@@ -58,7 +58,7 @@ export class CreatorModel {
 
   /** The grid in effect; null while it is ignored. @param {boolean} free @returns {import("./snap.js").Grid | null} */
   gridFor(free) {
-    return free ? null : this.grid;
+    return free || this.grid.isOff ? null : this.grid;
   }
 
   /**
@@ -87,7 +87,7 @@ export class CreatorModel {
     this.selecting.cancel();
     this.placing = null;
     this.selected = name;
-    if (name !== null) this.report({ word: "status.selected", values: { name } });
+    if (this.item !== null) this.reportPlace(this.item);
     this.changed();
   }
 
@@ -160,7 +160,9 @@ export class CreatorModel {
   reportPlace(item, problem = null) {
     const [x, y] = middleOf(item);
     const degrees = Math.round(((item.yaw_rad ?? 0) * 180) / Math.PI);
-    this.report(problem ?? { word: "status.at", values: { x: centimeters(x), y: centimeters(y), degrees } });
+    this.report(
+      problem ?? { word: "status.at", values: { kind: item.kind, x: centimeters(x), y: centimeters(y), degrees } },
+    );
   }
 
   /**
@@ -223,9 +225,4 @@ export class CreatorModel {
   changed() {
     this.onChange();
   }
-}
-
-/** @param {number} meters */
-export function centimeters(meters) {
-  return rounded(meters * 100);
 }

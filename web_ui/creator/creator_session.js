@@ -1,8 +1,8 @@
-// An editing session of the creator: the model, the world drawn from it, and the draft that the browser stores.
-// It outlives the panels, which are rebuilt when the language changes.
+// An editing session of the creator: the model, the world drawn from it, and the drafts that the browser keeps. It
+// outlives the panels, which are rebuilt when the language changes.
 
 import { Markers } from "../playground/markers.js";
-import { parse, write } from "../playground/document.js";
+import { fileNameOf, write } from "../playground/document.js";
 import { Pictures } from "../playground/pictures.js";
 import { worldOf } from "../playground/world.js";
 import { CreatorModel } from "./creator_model.js";
@@ -12,34 +12,38 @@ import { sketchOf } from "./sketch.js";
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /** @typedef {import("../state/index.js").State} State */
-/** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
+/** @typedef {import("../playground_tab/drafts.js").Drafts} Drafts */
+/**
+ * Where the playground is kept: `fresh` nothing was changed yet, `device` this browser, `file` also a file, `none` it is
+ * too large for the browser.
+ *
+ * @typedef {"fresh" | "device" | "file" | "none"} Kept
+ */
 
-const DRAFT_KEY = "creator.draft";
-/** Whether the draft has been saved as a file. */
-const SAVED_KEY = "creator.draftSaved";
 const KEEP_AFTER_MS = 400;
 
 export class CreatorSession {
   /**
    * @param {object} options
-   * @param {KeyValueStore} options.storage
+   * @param {Drafts} options.drafts
    * @param {string} options.title      title of a new playground
    * @param {(phrase: Phrase) => void} options.report
    * @param {() => void} options.changed   requests a new frame
    */
-  constructor({ storage, title, report, changed }) {
-    this.storage = storage;
+  constructor({ drafts, title, report, changed }) {
+    this.drafts = drafts;
     this.onChange = changed;
-    const draft = this.#draft();
-    this.model = new CreatorModel({ playground: draft ?? newPlayground(title), report, changed: () => this.#changed() });
+    const first = this.#asDraft(newPlayground(title));
+    this.model = new CreatorModel({ playground: first, report, changed: () => this.#changed() });
     this.pictures = new Pictures(() => {
       this.drawn = null;
       this.#changed();
     });
     this.markers = new Markers((uri) => this.pictures.get(uri));
-    const isSaved = draft === null || storage.getItem(SAVED_KEY) === "true";
-    /** @type {Playground | null} as last saved */ this.saved = isSaved ? this.model.playground : null;
-    this.stored = this.model.playground;
+    /** @type {Map<string, Playground>} as files have them, by draft */ this.saved = new Map();
+    /** @type {WeakSet<Playground>} as they were opened: not kept before they are changed */ this.untouched = new WeakSet([first]);
+    /** @type {Playground} as the browser has it, or as it was opened */ this.stored = first;
+    this.isTooLarge = false;
     /** @type {{ of: Playground, as: Playground, same: boolean } | null} cache of the last comparison */ this.compared = null;
     this.timer = 0;
     /** @type {{ of: Playground["items"], dragged: string | undefined, world: State } | null} cache of the last drawn world */
@@ -47,15 +51,12 @@ export class CreatorSession {
     /** @type {import("./sketch.js").Sketch | null} */ this.sketched = null;
   }
 
-  /** Whether there are changes that no file contains. */
-  get isUnsaved() {
-    const { saved } = this;
+  /** @returns {Kept} */
+  get kept() {
     const { playground } = this.model;
-    if (saved === null || playground === saved) return saved === null;
-    if (this.compared?.of !== playground || this.compared.as !== saved) {
-      this.compared = { of: playground, as: saved, same: write(playground) === write(saved) };
-    }
-    return !this.compared.same;
+    if (this.#isInFile(playground)) return "file";
+    if (this.isTooLarge) return "none";
+    return this.untouched.has(playground) ? "fresh" : "device";
   }
 
   /** The playground as the scene draws it, without the item being dragged. */
@@ -80,50 +81,69 @@ export class CreatorSession {
     return write(this.model.playground);
   }
 
-  /** The file name: letters and digits of the title. */
   get fileName() {
-    const stem = this.model.playground.title
-      .normalize("NFKD")
-      .replace(/\p{M}/gu, "")
-      .replace(/[^\w]+/g, "_")
-      .replace(/^_+|_+$/g, "");
-    return `${stem.slice(0, 60) || "playground"}.json`;
+    return fileNameOf(this.model.playground.title);
   }
 
   noteSaved() {
-    this.saved = this.model.playground;
+    const { playground } = this.model;
+    this.saved.set(playground.draft ?? "", playground);
+    this.untouched.delete(playground);
     this.#store();
     this.#changed();
   }
 
   /**
-   * Open another playground; undo restores the previous one.
+   * Open another playground; undo restores the previous one. A draft is continued, anything else becomes a new draft as
+   * soon as it is changed.
    *
    * @param {Playground} playground
    * @param {Phrase} change
+   * @param {boolean} [inFile]   whether a file has it
    */
-  replacePlayground(playground, change) {
+  replacePlayground(playground, change, inFile = false) {
+    this.keep();
+    const next = this.#asDraft(playground);
+    if (inFile) this.saved.set(next.draft ?? "", next);
+    if (playground.draft === undefined) this.untouched.add(next);
     this.model.selected = null;
     this.model.placing = null;
-    this.model.replacePlayground(playground, change);
-    this.saved = playground;
-    this.#changed();
+    this.stored = next;
+    this.isTooLarge = false;
+    this.model.replacePlayground(next, change);
   }
 
-  /** Store the draft in the browser now. */
+  /** Keep the playground in the browser now. */
   keep() {
     clearTimeout(this.timer);
-    if (this.stored === this.model.playground) return;
-    this.#store();
+    if (this.stored !== this.model.playground) this.#store();
+  }
+
+  /** @param {Playground} playground @returns {Playground} */
+  #asDraft(playground) {
+    return playground.draft === undefined ? { ...playground, draft: this.drafts.newId() } : playground;
+  }
+
+  /** Whether a file has the same content. @param {Playground} playground */
+  #isInFile(playground) {
+    const other = this.saved.get(playground.draft ?? "");
+    if (other === undefined || playground === other) return playground === other;
+    if (this.compared?.of !== playground || this.compared.as !== other) {
+      this.compared = { of: playground, as: other, same: write(playground) === write(other) };
+    }
+    return this.compared.same;
   }
 
   #store() {
-    this.stored = this.model.playground;
+    const { playground } = this.model;
+    const { draft: id = "", title } = playground;
+    this.stored = playground;
+    this.isTooLarge = false;
+    if (this.untouched.has(playground) && !this.drafts.has(id)) return;
     try {
-      this.storage.setItem(DRAFT_KEY, this.text);
-      this.storage.setItem(SAVED_KEY, String(!this.isUnsaved));
+      this.drafts.keep({ id, title, inFile: this.#isInFile(playground), text: this.text });
     } catch {
-      this.storage.removeItem(DRAFT_KEY); // too large: no draft is better than an outdated one
+      this.isTooLarge = true;
       this.model.report({ word: "status.noDraft" });
     }
   }
@@ -135,14 +155,5 @@ export class CreatorSession {
       this.timer = Number(setTimeout(() => this.keep(), KEEP_AFTER_MS));
     }
     this.onChange();
-  }
-
-  /** @returns {Playground | null} */
-  #draft() {
-    try {
-      return parse(this.storage.getItem(DRAFT_KEY) ?? "");
-    } catch {
-      return null; // no draft, or one of another version
-    }
   }
 }

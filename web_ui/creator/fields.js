@@ -1,6 +1,7 @@
 // Form controls, one per kind of field. Each has an element and updates it when values change elsewhere.
 
 import { h, renew, setText } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 import { toDisplay, toFile, unitOf } from "./units.js";
 
 /** @typedef {import("../playground/declarations.js").DeclaredField} Field */
@@ -31,9 +32,10 @@ function labeled({ labels, kind = "", commit }, key, input, unit = "") {
   input.id = id;
   const problem = h("small", { class: "problem", id: `${id}-problem`, role: "alert", hidden: true });
   input.setAttribute("aria-describedby", problem.id);
-  const label = labels.field(kind, key);
-  const title = unit === "" ? label : `${label} (${unit})`;
-  const element = h("div", { class: "field" }, h("label", { for: id }, title), input, problem);
+  const label = h("label", { class: "cap", for: id }, labels.field(kind, key));
+  if (unit !== "") label.append(h("span", { class: "vh" }, ` (${unit})`));
+  const box = unit === "" ? input : h("span", { class: "with-unit" }, input, h("span", { class: "unit", "aria-hidden": "true" }, unit));
+  const element = h("div", { class: "field" }, label, box, problem);
   /** @param {string | null} text */
   const report = (text) => {
     problem.hidden = text === null;
@@ -52,7 +54,7 @@ function labeled({ labels, kind = "", commit }, key, input, unit = "") {
 }
 
 /** @param {Setting} setting @param {string} key @param {Field} field @returns {Control} */
-function numberControl(setting, key, field) {
+export function numberControl(setting, key, field) {
   const { unit, step } = unitOf(field.unit);
   const input = h("input", { type: "number", step: "any", inputmode: "decimal", "data-field": key });
   const { element, report, apply } = labeled(setting, key, input, unit);
@@ -171,14 +173,15 @@ function pointsControl({ labels, kind = "", commit }, key, field) {
       "button",
       {
         type: "button",
-        class: "plain",
+        class: "btn icon",
+        title: t("field.removePoint", { number: index + 1 }),
         "aria-label": t("field.removePoint", { number: index + 1 }),
         disabled: points.length <= (field.fewest ?? 0),
         onclick: () => apply(points.filter((_, at) => at !== index)),
       },
-      "×",
+      icon("close", { small: true }),
     );
-    return h("li", {}, coordinate(index, 0), coordinate(index, 1), remove);
+    return h("li", {}, h("span", { class: "num" }, String(index + 1)), coordinate(index, 0), coordinate(index, 1), remove);
   };
   return {
     element,
@@ -235,35 +238,6 @@ function groupControl(setting, key, field) {
       box.hidden = now === null;
       group = now;
       if (now !== null) for (const one of inner) one?.update({ ...now, color: now.color ?? values.color });
-    },
-  };
-}
-
-/** Fields that an object has while it is movable. */
-export const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
-
-/**
- * Edits whether an object is movable, and its mass.
- *
- * @param {Setting} setting
- * @param {import("../playground/rules.js").Fields} fields
- * @returns {Control}
- */
-export function loadControl(setting, fields) {
-  const input = h("input", { type: "checkbox", "data-field": "movable" });
-  const keys = LOAD_KEYS.filter((key) => key in fields);
-  const inner = keys.map((key) => numberControl(setting, key, fields[key]));
-  const box = h("div", { class: "fields inner" }, ...inner.map(({ element }) => element));
-  input.addEventListener("change", () => {
-    const fixed = Object.fromEntries(keys.map((key) => [key, fields[key].default]));
-    setting.commit(input.checked ? { mass_kg: 0.1 } : { ...fixed, mass_kg: null });
-  });
-  return {
-    element: h("div", { class: "group" }, h("label", { class: "check" }, input, setting.labels.t("field.movable")), box),
-    update(values) {
-      input.checked = (values.mass_kg ?? null) !== null;
-      box.hidden = !input.checked;
-      if (input.checked) for (const one of inner) one.update(values);
     },
   };
 }

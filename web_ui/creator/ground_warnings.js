@@ -6,13 +6,13 @@ import { withGround } from "./commands.js";
 
 /** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
 export function groundWarnings(t, model) {
-  const outside = h("p", { class: "warning", hidden: true });
+  const outside = h("p", { class: "note-box wait", hidden: true });
   const add = () => model.replacePlayground(withGround(model.playground), { word: "change.ground" });
   const missing = h(
     "div",
-    { class: "warning", role: "status", hidden: true },
-    h("p", {}, t("warning.noGround")),
-    h("button", { type: "button", "data-verb": "ground", onclick: add }, t("warning.addGround")),
+    { class: "note-box wait", role: "status", hidden: true },
+    h("p", { class: "grow" }, t("warning.noGround")),
+    h("button", { type: "button", class: "btn line", "data-verb": "ground", onclick: add }, t("warning.addGround")),
   );
   /** @type {import("../playground/document.js").Playground | null} */ let checked = null;
   return {

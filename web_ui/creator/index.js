@@ -1,49 +1,52 @@
-// The creator of playgrounds on the page: hints over the view, tools and form beside it, the bar below it. Each part has its own
-// module and acts on the session.
+// The creator of playgrounds on the page: hints and the bar of the selected item over the view, tools and form beside it,
+// a bar below it. Each part has its own module and acts on the session.
 
 import "./creator.css";
 
 import WORDS from "../i18n/creator.texts.js";
 import { translator } from "../i18n/index.js";
 import { h } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
 import { bar } from "./bar.js";
+import { newPlayground } from "./commands.js";
+import { contextBar } from "./context_bar.js";
 import { CreatorSession } from "./creator_session.js";
-import { filePanel } from "./file_panel.js";
 import { itemForm } from "./form.js";
 import { groundWarnings } from "./ground_warnings.js";
+import { head } from "./head.js";
 import { itemList } from "./item_list.js";
 import { watchCreatorKeys } from "./keys.js";
 import { Labels } from "./labels.js";
 import { palette } from "./palette.js";
 import { placingHint } from "./placing_hint.js";
+import { playgroundForm } from "./playground_form.js";
 import { watchCreatorPointer } from "./pointer.js";
 import { readPicture } from "./read_picture.js";
-import { sheetForm } from "./sheet.js";
+import { stageTools } from "./stage_tools.js";
 
-export { CreatorSession, WORDS };
+export { CreatorSession, newPlayground, WORDS };
 
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
+/** @typedef {import("../browser/opened_file.js").Place} Place */
 
 export class Creator {
   /**
    * @param {object} options
    * @param {CreatorSession} options.session
-   * @param {string} options.language
-   * @param {(file: import("../i18n/page_texts.js").TextFile) => import("../i18n/index.js").Translate} options.text   of the page
-   * @param {import("../scene/index.js").SceneView} options.scene
-   * @param {(text: string) => void} options.announce
+   * @param {import("../shell/context.js").Context} options.context
    * @param {() => void} options.tryIt
    * @param {() => void} options.close
    */
-  constructor({ session, language, text, scene, announce, tryIt, close }) {
+  constructor({ session, context, tryIt, close }) {
     const { model } = session;
+    const { scene, language } = context;
     const { canvas } = scene;
     const stage = /** @type {HTMLElement} */ (canvas.parentElement);
     const t = translator(language, WORDS);
     const labels = new Labels(language, t);
     this.model = model;
     this.scene = scene;
-    this.announce = announce;
+    this.announce = context.announce;
     this.labels = labels;
     const setting = {
       labels,
@@ -51,28 +54,32 @@ export class Creator {
       readPicture,
     };
     const report = this.report.bind(this);
-    this.files = filePanel({ session, labels, text, scene, report, announce, tryIt, close });
-    this.bar = bar(t, model);
+    this.head = head({ session, labels, context, report, tryIt, close });
+    this.bar = bar(labels, model);
     const form = itemForm(setting, model);
-    const sheet = sheetForm(setting, model);
+    const whole = playgroundForm(setting, model);
     const list = itemList(labels, model);
     const warnings = groundWarnings(t, model);
     const tools = palette({ labels, model, canvas });
     const hints = placingHint({ labels, model, canvas });
-    this.parts = [tools, hints, this.bar, warnings, form, sheet, list];
+    const over = contextBar({ labels, model, scene });
+    const views = stageTools({ labels, model, canvas });
+    this.parts = [tools, views, hints, over, this.bar, warnings, form, whole, list];
+    const caret = h("span", { class: "turns" }, icon("caretDown", { small: true }));
+    const summary = h("summary", {}, icon("keys", { small: true }), h("span", { class: "grow" }, t("keys.title")), caret);
     this.elements = {
-      stage: h("div", { class: "creator-stage" }, hints.element),
+      views: views.element,
+      stage: h("div", { class: "creator-stage" }, hints.element, over.element),
       side: h(
         "div",
         { class: "creator", role: "region", "aria-label": t("creator") },
-        this.files.head,
+        ...this.head.elements,
         tools.element,
-        ...this.files.elements,
         ...warnings.elements,
         form.element,
-        sheet.element,
+        whole.element,
         list.element,
-        h("p", { class: "keys" }, t("keys")),
+        h("details", { class: "creator-keys disc" }, summary, h("p", { class: "small muted" }, t("keys"))),
       ),
       footer: this.bar.element,
     };
@@ -80,7 +87,7 @@ export class Creator {
     this.removeKeys = watchCreatorKeys({
       stage,
       canvas,
-      around: [this.elements.side, this.bar.element],
+      around: [this.elements.side, this.bar.element, over.element, views.element],
       model,
       editFields: () => {
         form.render();
@@ -99,7 +106,7 @@ export class Creator {
   render(offline) {
     this.pointer.flush();
     this.scene.camera.controls.enabled = this.model.cameraOn;
-    this.files.render(offline);
+    this.head.render(offline);
     for (const part of this.parts) part.render();
   }
 
@@ -110,14 +117,14 @@ export class Creator {
     this.announce(text);
   }
 
-  /** Show the errors of a file; null clears them. @param {HTMLElement[] | null} fault */
-  refuse(fault) {
-    this.files.refuse(fault);
+  /** Show why the simulator rejected the playground; null clears it. @param {Node[] | null} reasons */
+  refuse(reasons) {
+    this.head.refuse(reasons);
   }
 
-  /** Open a playground file. @param {File} file */
-  open(file) {
-    this.files.open(file);
+  /** Open a playground file that was dropped. @param {File} file @param {Place} place */
+  open(file, place) {
+    void this.head.open(file, place);
   }
 
   destroy() {

@@ -1,40 +1,16 @@
-// The tool palette: select, or place an item.
+// The tools in named groups: each places a kind of item. Those of plug-ins have a group of their own.
 
 import { h, setAttribute } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { kindNamed, shapeKinds } from "../playground/kinds/index.js";
 import { readPicture } from "./read_picture.js";
 
-/** @type {Readonly<Record<string, import("../ui/icons.js").IconName>>} */
-const ICONS = {
-  select: "select",
-  rectangle: "rectangle",
-  octagon: "octagon",
-  picture: "image",
-  track: "track",
-  box: "box",
-  cylinder: "post",
-  wall: "wall",
-  u_figure: "uShape",
-  door: "door",
-  activation: "plate",
-  robot: "robot",
-};
-
-/** In display order; those of plug-ins come before the robot. */
-const TOOLS = [
-  "select",
-  "rectangle",
-  "octagon",
-  "picture",
-  "track",
-  "box",
-  "cylinder",
-  "wall",
-  "u_figure",
-  "door",
-  "activation",
-];
+/** The groups in display order, their tools, and the icon of each tool. */
+const GROUPS = /** @type {const} */ ({
+  ground: { rectangle: "rectangle", octagon: "octagon", picture: "image", track: "track" },
+  things: { box: "box", cylinder: "post", wall: "wall", u_figure: "uShape" },
+  doors: { door: "door", activation: "plate", robot: "robot" },
+});
 
 /**
  * @param {object} options
@@ -62,22 +38,31 @@ export function palette({ labels, model, canvas }) {
     model.choose(wanted.kind, { [wanted.key]: image });
     canvas.focus();
   });
-  const added = shapeKinds().flatMap(({ name }) => (TOOLS.includes(name) ? [] : [name]));
-  const buttons = [...TOOLS, ...added, "robot"].map((tool) => ({
-    tool,
-    button: h(
+  /** @type {{ tool: string, button: HTMLButtonElement }[]} */ const buttons = [];
+  /** @param {string} tool @param {import("../ui/icons.js").IconName} drawing */
+  const toolButton = (tool, drawing) => {
+    const button = h(
       "button",
-      {
-        type: "button",
-        class: "btn icon",
-        title: labels.tool(tool),
-        "aria-label": labels.tool(tool),
-        "data-tool": tool,
-        onclick: () => choose(tool),
-      },
-      icon(ICONS[tool] ?? "plugin"),
-    ),
-  }));
+      { type: "button", class: "build-tool", title: labels.help(tool), "data-tool": tool, onclick: () => choose(tool) },
+      icon(drawing),
+      h("span", {}, labels.kind(tool)),
+    );
+    buttons.push({ tool, button });
+    return button;
+  };
+  /** @param {string} name @param {readonly (readonly [string, import("../ui/icons.js").IconName])[]} tools */
+  const group = (name, tools) =>
+    h(
+      "section",
+      { class: "tool-group", role: "group", "aria-labelledby": `creator-group-${name}`, style: `--tools: ${tools.length}` },
+      h("h3", { class: "cap", id: `creator-group-${name}` }, t(`group.${name}`)),
+      h("div", { class: "tool-grid" }, ...tools.map(([tool, drawing]) => toolButton(tool, drawing))),
+    );
+  const groups = Object.entries(GROUPS).map(([name, tools]) => group(name, Object.entries(tools)));
+  const listed = buttons.map(({ tool }) => tool);
+  const added = shapeKinds().flatMap(({ name }) => (listed.includes(name) ? [] : [/** @type {const} */ ([name, "plugin"])]));
+  if (added.length > 0) groups.push(group("plugins", added));
+
   /** @param {string} tool */
   function choose(tool) {
     const fields = kindNamed(tool)?.fields ?? {};
@@ -86,20 +71,14 @@ export function palette({ labels, model, canvas }) {
       wanted = { kind: tool, key };
       return file.click();
     }
-    model.choose(tool === "select" ? null : tool);
+    model.choose(model.placing?.kind === tool ? null : tool); // a second click ends placing
     canvas.focus();
   }
-  const element = h(
-    "div",
-    { class: "palette", role: "toolbar", "aria-label": t("palette") },
-    ...buttons.map(({ button }) => button),
-    file,
-  );
+  const element = h("div", { class: "palette", role: "group", "aria-label": t("palette") }, ...groups, file);
   return {
     element,
     render() {
-      const now = model.placing?.kind ?? "select";
-      for (const { tool, button } of buttons) setAttribute(button, "aria-pressed", String(tool === now));
+      for (const { tool, button } of buttons) setAttribute(button, "aria-pressed", String(tool === model.placing?.kind));
     },
   };
 }

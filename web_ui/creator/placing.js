@@ -4,7 +4,7 @@ import { kindNamed } from "../playground/kinds/index.js";
 import { distance } from "../playground/geometry.js";
 import { added, freeName, groundOf } from "./commands.js";
 import { canTurn, changed, middleOf, movedTo, turned } from "./place.js";
-import { rounded, snapped } from "./snap.js";
+import { centimeters, rounded, snapped } from "./snap.js";
 
 /** @typedef {import("../playground/parts.js").Item} Item */
 /** @typedef {import("../playground/geometry.js").Point} Point */
@@ -30,7 +30,7 @@ export class Placing {
     const { playground } = model;
     const ground = groundOf(playground);
     /** @type {Point} current position */
-    this.place = snapped(ground === null ? [0, 0] : middleOf(ground), model.grid);
+    this.place = snapped(ground === null ? [0, 0] : middleOf(ground), model.gridFor(false));
     /** Tolerance for the same point, in meters. */
     this.same = SAME_M;
     /** @type {Point[]} points of the path so far */ this.points = [];
@@ -50,7 +50,7 @@ export class Placing {
   #makeRoom() {
     const [x, y] = this.place;
     const places = [0, 1, 2, 3].flatMap((far) =>
-      [1, -1].map((side) => snapped([x + side * far * ASIDE_M, y], this.model.grid)),
+      [1, -1].map((side) => snapped([x + side * far * ASIDE_M, y], this.model.gridFor(false))),
     );
     const free = places.find((place) => {
       this.place = place;
@@ -125,11 +125,13 @@ export class Placing {
   nudge(dx, dy) {
     this.same = SAME_M;
     this.place = snapped([this.place[0] + dx, this.place[1] + dy], null);
-    const { ghost } = this;
-    const at =
-      ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
-    this.model.reportPlace(at, ghost?.problem);
-    this.model.changed();
+    const { ghost, model } = this;
+    if (ghost !== null && !this.isPath) model.reportPlace(ghost.item, ghost.problem);
+    else {
+      const [x, y] = this.place.map(centimeters);
+      model.report(ghost?.problem ?? { word: "status.place", values: { kind: this.kind, x, y } });
+    }
+    model.changed();
   }
 
   /** @param {number} angle */

@@ -3,6 +3,7 @@
 
 import { h, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
+import { canTurn } from "./place.js";
 
 /** @typedef {import("./placing.js").Placing} Placing */
 
@@ -22,7 +23,7 @@ export function placingHint({ labels, model, canvas }) {
   const hint = h("p", { class: "note-box placing-hint" });
   const finish = h(
     "button",
-    { type: "button", class: "btn line finish", onclick: thenFocusView(() => model.placing?.finish()) },
+    { type: "button", class: "btn you finish", onclick: thenFocusView(() => model.placing?.finish()) },
     icon("check"),
     t("hint.finish"),
   );
@@ -31,7 +32,13 @@ export function placingHint({ labels, model, canvas }) {
     { type: "button", class: "btn line cancel", onclick: thenFocusView(() => model.cancel()) },
     t("hint.cancel"),
   );
-  const element = h("div", { class: "placing-hints" }, hint, finish, cancel);
+  const turn = h(
+    "button",
+    { type: "button", class: "btn line turn", title: t("action.turnLeft"), onclick: thenFocusView(() => model.turn(1)) },
+    icon("turn", { small: true }),
+    t("act.turn"),
+  );
+  const element = h("div", { class: "placing-hints" }, hint, finish, turn, cancel);
 
   const text = () => {
     const { placing } = model;
@@ -49,6 +56,7 @@ export function placingHint({ labels, model, canvas }) {
       hint.classList.toggle("invalid", (model.ghost?.problem ?? null) !== null);
       element.hidden = hint.textContent === "";
       finish.hidden = placing?.pathKey === undefined || placing.points.length < 2;
+      turn.hidden = placing === null || placing.isPath || !canTurn(placing.pattern);
       cancel.hidden = placing === null;
     },
   };

@@ -1,7 +1,7 @@
 // Grid snapping, and rounding of numbers for files. Pure.
 
 /** @typedef {import("../playground/geometry.js").Point} Point */
-/** @typedef {{ size: number, on: "lines" | "centers" }} Grid  size in meters */
+/** @typedef {{ size: number, on: "lines" | "centers", isOff?: boolean }} Grid  size in meters; isOff: nothing snaps to it */
 
 /** Available grid sizes in meters. */
 export const GRID_SIZES = [0.01, 0.02, 0.05, 0.1];
@@ -25,4 +25,9 @@ export function snapped([x, y], grid) {
 /** Round meters to micrometers so that files stay readable. @param {number} value */
 export function rounded(value) {
   return Math.round(value * MICRO) / MICRO + 0; // avoids -0
+}
+
+/** @param {number} meters */
+export function centimeters(meters) {
+  return rounded(meters * 100);
 }

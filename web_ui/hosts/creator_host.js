@@ -4,12 +4,14 @@
 import { localStore } from "../browser/local_storage.js";
 import { translator } from "../i18n/index.js";
 import { parse } from "../playground/document.js";
-import { faultView } from "../playground_tab/refusal.js";
+import { Fault } from "../playground/rules.js";
+import { Drafts } from "../playground_tab/drafts.js";
 import { CONNECTION } from "../state/index.js";
 import { disabledReason } from "../state/disabled_reason.js";
 
 /** @typedef {import("../creator/index.js").Creator} Creator */
 /** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
+/** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../shell/context.js").Context} Context */
 
 export class CreatorHost {
@@ -21,6 +23,8 @@ export class CreatorHost {
   constructor({ element, scene }) {
     this.element = element;
     this.scene = scene;
+    /** The playgrounds that were built on this device. */
+    this.drafts = new Drafts(localStore);
     this.isOpen = false;
     /** Whether the tab continues the session when it is shown again. */
     this.isSuspended = false;
@@ -54,27 +58,23 @@ export class CreatorHost {
   }
 
   /**
-   * Open the creator, continuing the session or with a new playground.
+   * Open the creator with a playground; without one, the session continues.
    *
-   * @param {import("../playground/document.js").Playground} [playground]
+   * @param {Playground} [playground]
+   * @param {{ word?: string, inFile?: boolean }} [how]   word: what happened, for undo; inFile: whether a file has it
    */
-  async open(playground) {
+  async open(playground, { word = "change.opened", inFile = false } = {}) {
+    const module = await this.#load();
     const { context } = this;
-    if (context === null) return;
-    this.module ??= await import("../creator/index.js").catch(() => null);
-    if (this.module === null) {
-      context.store.dispatch({ type: "notice", level: "error", text: context.text("page")("app.notLoaded"), cause: CONNECTION });
-      return;
-    }
-    const title = translator(context.language, this.module.WORDS)("new.title");
-    this.session ??= new this.module.CreatorSession({
-      storage: localStore,
-      title,
+    if (module === null || context === null) return;
+    this.session ??= new module.CreatorSession({
+      drafts: this.drafts,
+      title: this.#title(module),
       report: (phrase) => this.creator?.report(phrase),
       changed: () => this.scene().invalidate(),
     });
     if (playground !== undefined) {
-      this.session.replacePlayground(playground, { word: "change.opened", values: { name: playground.title } });
+      this.session.replacePlayground(playground, { word, values: { name: playground.title } }, inFile);
       this.scene().reframe();
     }
     this.isSuspended = false;
@@ -89,14 +89,42 @@ export class CreatorHost {
     this.scene().setView("home");
   }
 
-  /** Open a playground from text. Throws Fault if it is not in the format of this project. @param {string} text */
-  async openText(text) {
-    await this.open(parse(text));
+  /** Build a new playground. */
+  async openNew() {
+    const module = await this.#load();
+    if (module === null) return;
+    const isFirst = this.session === null; // it starts with a new one
+    await this.open(isFirst ? undefined : module.newPlayground(this.#title(module)), { word: "change.new" });
   }
 
-  /** Open a file that was dropped on the page. @param {File} file */
-  openFile(file) {
-    this.creator?.open(file);
+  /** Go on building a playground of this device. @param {import("../playground_tab/drafts.js").Draft} draft */
+  async openDraft({ id, inFile }) {
+    const { playground } = this.session?.model ?? {};
+    if (playground?.draft === id) return this.open();
+    await this.openText(this.drafts.read(id) ?? "", { draft: id, inFile });
+  }
+
+  /**
+   * Open a playground from text. Returns what is wrong if it is not in the format of this project, else null.
+   *
+   * @param {string} text
+   * @param {{ draft?: string, inFile?: boolean }} [how]   draft: the one that is continued
+   * @returns {Promise<Fault | null>}
+   */
+  async openText(text, { draft, inFile = false } = {}) {
+    try {
+      const playground = parse(text);
+      await this.open(draft === undefined ? playground : { ...playground, draft }, { inFile });
+      return null;
+    } catch (error) {
+      if (error instanceof Fault) return error;
+      throw error;
+    }
+  }
+
+  /** Open a file that was dropped on the page. @param {File} file @param {import("../browser/opened_file.js").Place} place */
+  openFile(file, place) {
+    this.creator?.open(file, place);
   }
 
   /** Call when a tab is opened. @param {boolean} visible  whether it is the tab of playgrounds */
@@ -143,20 +171,36 @@ export class CreatorHost {
 
   #keep = () => this.session?.keep();
 
+  /** The creator's module; null if the page's server is gone. */
+  async #load() {
+    const { context } = this;
+    this.module ??= await import("../creator/index.js").catch(() => null);
+    if (this.module === null && context !== null) {
+      const text = context.text("page")("app.notLoaded");
+      context.store.dispatch({ type: "notice", level: "error", text, cause: CONNECTION });
+    }
+    return this.module;
+  }
+
+  /** The title of a new playground. @param {typeof import("../creator/index.js")} module */
+  #title({ WORDS }) {
+    return translator(this.context?.language ?? "en", WORDS)("new.title");
+  }
+
   /** Load the playground into the simulator; if it is rejected, the creator stays open and shows the reason. */
   async #tryIt() {
     const { context, session, creator } = this;
     if (context === null || session === null || creator === null) return;
-    const { actions, store, text } = context;
-    const playgroundText = text("playground");
+    const { actions, store, text, language } = context;
     creator.refuse(null);
-    await actions.loadPlayground(session.fileName, new TextEncoder().encode(session.text));
+    session.keep();
+    const { fileName, text: content } = session;
+    await actions.loadPlayground(fileName, new TextEncoder().encode(content));
     const upload = store.state.uploads.playground;
-    if (upload?.phase === "accepted") this.close();
-    else {
-      const headline = playgroundText("playground.refused", { name: session.fileName });
-      creator.refuse(faultView(playgroundText, headline, upload?.fault ?? null));
-    }
+    if (upload?.phase === "accepted") return this.close();
+    const { refusalView, reasonOfMessage } = await import("../playground_tab/refusal.js");
+    const reason = upload?.fault ? reasonOfMessage(upload.fault, content) : null;
+    creator.refuse(refusalView(language, text("playground")("refused", { name: fileName }), reason));
   }
 
   #build() {
@@ -165,15 +209,13 @@ export class CreatorHost {
     this.creator?.destroy();
     this.creator = new module.Creator({
       session,
-      language: context.language,
-      text: context.text,
-      scene: this.scene(),
-      announce: context.announce,
+      context,
       tryIt: () => void this.#tryIt(),
       close: () => this.close(),
     });
-    const { stage, side, footer } = this.creator.elements;
+    const { stage, side, footer, views } = this.creator.elements;
     this.element("#scene").append(stage);
+    this.element('[data-slot="views"]').prepend(views);
     this.element("#panel-playground").append(side);
     this.element("#creator-bar").append(footer);
     this.#showBar(true);

@@ -236,26 +236,32 @@ export class Actions {
     return answer.ok ? answer.message : null;
   }
 
-  /** Load a chosen or dropped file according to its extension. @param {File} file */
-  async loadFile(file) {
+  /**
+   * Load a chosen or dropped file according to its extension.
+   *
+   * @param {File} file
+   * @param {(text: string) => void} [refuse]   shows why it is not even sent
+   */
+  async loadFile(file, refuse = (text) => this.#refuse(text)) {
+    const { name } = file;
     if (isProgram(file)) {
-      if (file.size > LARGEST_PROGRAM) return this.refuse("file.tooLarge", file);
+      if (file.size > LARGEST_PROGRAM) return refuse(this.t("file.tooLarge", { name }));
       const text = await textOf(file);
-      if (text === null) return this.refuse("file.notText", file);
+      if (text === null) return refuse(this.t("file.notText", { name }));
       await this.loadProgram(file.name, text);
     } else if (KINDS.playground.test(file.name)) {
-      if (file.size > LARGEST_PLAYGROUND) return this.refuse("file.tooLarge", file);
+      if (file.size > LARGEST_PLAYGROUND) return refuse(this.t("file.tooLarge", { name }));
       await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));
-    } else this.refuse("file.unknown", file);
+    } else refuse(this.t("file.unknown", { name }));
   }
 
   get #robots() {
     return Object.keys(this.store.state.robots);
   }
 
-  /** @param {string} key @param {File} file */
-  refuse(key, { name }) {
-    this.store.dispatch({ type: "notice", level: "error", text: this.t(key, { name }), cause: FILE });
+  /** @param {string} text */
+  #refuse(text) {
+    this.store.dispatch({ type: "notice", level: "error", text, cause: FILE });
   }
 
   /** @param {string} service @param {Record<string, any>} [request] */

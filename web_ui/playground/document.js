@@ -6,7 +6,10 @@ import { kindNamed, ROBOT } from "./kinds/index.js";
 import { check, describe, Fault } from "./rules.js";
 
 /** @typedef {import("./parts.js").Item} Item */
-/** @typedef {Readonly<{ title: string, description: string, translations: Readonly<Record<string, any>>, items: readonly Item[] }>} Playground */
+/**
+ * @typedef {Readonly<{ title: string, description: string, translations: Readonly<Record<string, any>>,
+ *   items: readonly Item[], draft?: string }>} Playground   draft: the name under which this device keeps it; not in files
+ */
 
 const { format: FORMAT, limits: LIMITS, titles: TITLES } = BUILT_IN;
 const LANGUAGE = new RegExp(`^(${BUILT_IN.language})$`);
@@ -58,6 +61,16 @@ export function write({ title, description, translations, items }) {
     `"robots": ${array(robots)}`,
   ];
   return `{\n  ${members.join(",\n  ")}\n}\n`;
+}
+
+/** The file name of a playground: letters and digits of its title. @param {string} title */
+export function fileNameOf(title) {
+  const stem = title
+    .normalize("NFKD")
+    .replace(/\p{M}/gu, "")
+    .replace(/[^\w]+/g, "_")
+    .replace(/^_+|_+$/g, "");
+  return `${stem.slice(0, 60) || "playground"}.json`;
 }
 
 /**

@@ -7,7 +7,7 @@ import { BUILT_IN } from "./declarations.js";
 /** @typedef {Readonly<Record<string, Field>>} Fields */
 /** @typedef {{ word: string, values?: Record<string, string | number> }} Phrase  a text key with the values to fill in */
 
-/** Text keys of the expectations of texts. */
+/** Text keys of the expectations of texts; the others do not fit for a reason that only a plug-in's English says. */
 const FORMATS = { line: "fault.line", name: "fault.name", color: "fault.shade" };
 
 /** @type {Map<string, RegExp | null>} */ const PATTERNS = new Map();
@@ -84,7 +84,7 @@ export function fits({ type, low = -Infinity, high = Infinity, pattern, longest 
 /** The expectation of a field, as a phrase. @param {Field} field @returns {Phrase} */
 export function expectation({ type, unit = "", low = 0, high = 0, format, meaning = "", longest = 0, fewest = 0, most = 0 }) {
   if (type === "number") return { word: "fault.number", values: { unit, low: short(low), high: short(high) } };
-  if (type === "text") return { word: format === undefined ? meaning : FORMATS[format], values: { longest } };
+  if (type === "text") return { word: format === undefined ? "fault.text" : FORMATS[format], values: { longest, ...(meaning && { meaning }) } };
   if (type === "points") return { word: "fault.points", values: { fewest, most } };
   return { word: `fault.${type}` };
 }

@@ -28,8 +28,9 @@ export function findProblem(others, item) {
     check({ ...kind.fields, name: ROBOT.fields.name }, values, "");
     partsOf(item);
   } catch (error) {
-    if (error instanceof Fault) return { word: "problem.value", values: { key: error.key, found: error.found } };
-    throw error;
+    if (!(error instanceof Fault)) throw error;
+    const { word, values } = error.expected;
+    return { word: "problem.value", values: { ...values, kind: item.kind, key: error.key, reason: word } };
   }
   const blocker = blockerOf(others, item);
   return blocker === null ? null : { word: "problem.blocked", values: { name: blocker } };

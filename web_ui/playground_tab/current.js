@@ -1,101 +1,95 @@
-// The current playground: choose a shipped playground or open a file; a rejected one changes nothing.
+// The current playground: what it is, a copy to edit, a new one, one from a file; and why a file was rejected.
 
 import { disabledReason } from "../state/disabled_reason.js";
 import { uploadCause } from "../state/index.js";
 import { buttonOf, fileButton, h, lock, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
-import { galleryDialog } from "./gallery.js";
-import { faultText, faultView } from "./refusal.js";
+import { translated } from "./gallery.js";
+import { RefusalBox } from "./refusal_box.js";
 
-/** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
+/** @typedef {import("../state/index.js").Upload} Upload */
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function currentPanel(context) {
-  const { text, language, actions, announce, creator, store, workspace } = context;
+  const { text, language, actions, creator, opened, scene, store, thumbnails } = context;
   const t = text("playground");
   const pageText = text("page");
-  const change = async () => {
-    const text = await actions.playgroundText();
-    try {
-      if (text !== null) await creator.openText(text);
-    } catch (error) {
-      store.dispatch({ type: "notice", level: "error", text: error instanceof Error ? error.message : String(error) });
-    }
-  };
-  const gallery = galleryDialog(context);
-  const select = h("select", { id: "playground-choice", class: "select", "aria-label": t("playground.choose") });
-  select.addEventListener("change", () => actions.loadPlayground(select.value));
+  const box = new RefusalBox(context);
+  const picture = h("img", { alt: "", width: 240, height: 160, hidden: true });
+  const title = h("h2");
   const description = h("p", { class: "description" });
   const summary = h("summary");
   const notes = h("ul");
   const remarks = h("details", { class: "remarks", hidden: true }, summary, notes);
-  const fault = h("div", { class: "fault", hidden: true });
-  const pictures = h(
-    "button",
-    { type: "button", class: "btn line", id: "gallery-open", title: t("gallery.help"), onclick: gallery.open },
-    icon("image"),
-    t("gallery.open"),
-  );
+  const edit = async () => {
+    const content = await actions.playgroundText();
+    if (content === null) return;
+    box.hide();
+    const fault = await creator.openText(content);
+    if (fault !== null) await box.showFault(t("refused.edit"), fault, content);
+  };
   const copy = h(
-    "button",
-    { type: "button", class: "btn you", id: "playground-change", "data-edit": "", title: t("playground.editHelp"), onclick: change },
-    icon("pen"),
-    t("playground.edit"),
-  );
-  const file = fileButton({
-    id: "playground-file",
-    label: t("playground.open"),
-    help: t("playground.openHelp"),
-    accept: ".json,.playground,.xml,.zip",
-    open: (chosen) => actions.loadFile(chosen),
-  });
-  const build = h(
     "button",
     {
       type: "button",
-      class: "btn line",
-      "data-build": "",
-      title: t("creator.help"),
-      onclick: () => void creator.open(),
+      class: "btn you",
+      id: "playground-change",
+      "data-edit": "",
+      title: t("edit.help"),
+      onclick: () => void edit(),
     },
-    icon("blocks"),
-    t("creator"),
+    icon("pen"),
+    t("edit"),
   );
-  const controls = [select, pictures, copy, buttonOf(file)];
+  const file = fileButton({
+    id: "playground-file",
+    label: t("open"),
+    help: t("open.help"),
+    accept: ".json,.playground,.xml,.zip",
+    open: (chosen) => {
+      opened.note(chosen);
+      box.hide();
+      void actions.loadFile(chosen);
+    },
+  });
+  const build = h(
+    "button",
+    { type: "button", class: "btn line", "data-new": "", title: t("new.help"), onclick: () => void creator.openNew() },
+    icon("blocks"),
+    t("new"),
+  );
   const element = h(
     "section",
-    { class: "current browse", "aria-label": t("playground") },
-    select,
-    h("div", { class: "row" }, copy, build, pictures, file),
-    description,
+    { class: "current browse", "aria-label": t("current") },
+    h("p", { class: "cap" }, t("current")),
+    h("div", { class: "current-head" }, h("span", { class: "frame" }, icon("playground"), picture), h("div", {}, title, description)),
     remarks,
-    fault,
-    gallery.element,
+    h("div", { class: "row" }, copy, build, file),
+    box.element,
   );
-  let listed = "";
+  let drawn = "";
   let noted = "";
-  /** @type {import("../state/index.js").Upload | null} */ let shown = null;
-  /** @param {import("../state/index.js").Upload | null} playground */
-  const showUpload = (playground) => {
-    shown = playground;
-    fault.hidden = playground?.phase !== "refused";
-    if (playground?.phase !== "refused") return;
-    const headline = t("playground.refused", { name: playground.name });
-    const close = h(
-      "button",
-      {
-        type: "button",
-        class: "btn icon",
-        "aria-label": pageText("notice.dismiss"),
-        onclick: () => store.dispatch({ type: "forget", what: "playground" }),
-      },
-      icon("close"),
-    );
-    fault.replaceChildren(close, ...faultView(t, headline, playground.fault));
-    const words = `${headline} ${faultText(t, playground.fault)}`;
-    announce(words);
-    if (creator.isOpen || workspace.tab === "playground") return; // they show it
-    store.dispatch({ type: "notice", level: "error", text: words, cause: uploadCause("playground") });
+  /** @type {Upload | null} */ let shown = null;
+
+  /** Show the thumbnail of a shipped playground. @param {string} name  empty: it is none of them */
+  const draw = async (name) => {
+    drawn = name;
+    const sample = name === "" ? null : await thumbnails.sample(name);
+    if (drawn !== name) return; // another one was loaded meanwhile
+    picture.hidden = sample === null;
+    if (sample !== null) picture.src = sample.picture;
+    scene.invalidate();
+  };
+  /** @param {Upload | null} upload */
+  const showUpload = (upload) => {
+    shown = upload;
+    if (upload?.phase === "refused") void box.showUpload(upload);
+    else box.hide();
+    if (upload?.phase === "accepted") opened.forget();
+  };
+  box.closed = () => {
+    store.dispatch({ type: "forget", what: "playground" });
+    store.dispatch({ type: "solved", cause: uploadCause("playground") });
   };
 
   return {
@@ -106,40 +100,22 @@ export function currentPanel(context) {
       if (playground !== shown) showUpload(playground);
     },
     render(state) {
-      const { playgrounds, simulator, uploads } = state;
       if (creator.isOpen) return;
-      gallery.render(state);
+      const { playgrounds, simulator } = state;
       const reason = disabledReason(state, pageText);
-      for (const control of controls) lock(control, reason);
-      const { playground } = uploads;
-      const own =
-        simulator !== null && !playgrounds.some(({ name }) => name === simulator.playground) ? simulator : null;
-      const list = JSON.stringify([playgrounds, own?.title]);
-      if (list !== listed) {
-        listed = list;
-        select.replaceChildren(
-          ...playgrounds.map((info) => h("option", { value: info.name }, translated(info, language).title)),
-        );
-        if (own !== null)
-          select.prepend(h("option", { value: own.playground }, t("playground.own", { title: own.title })));
-      }
-      const current = simulator?.playground ?? "";
-      if (document.activeElement !== select || playground?.phase !== "sending") select.value = current;
-      const chosen = playgrounds.find(({ name }) => name === current);
-      setText(description, chosen === undefined ? "" : translated(chosen, language).description);
-      const notesJson = JSON.stringify(simulator?.notes ?? []);
-      if (notesJson !== noted) {
-        noted = notesJson;
-        const texts = simulator?.notes ?? [];
-        setText(summary, t("playground.warnings", { count: texts.length }));
-        notes.replaceChildren(...texts.map((text) => h("li", {}, text)));
-        remarks.hidden = texts.length === 0;
-      }
+      for (const control of [copy, buttonOf(file)]) lock(control, reason);
+      const shipped = playgrounds.find(({ name }) => name === simulator?.playground);
+      const titles = shipped === undefined ? null : translated(shipped, language);
+      setText(title, titles?.title ?? simulator?.title ?? "");
+      setText(description, titles?.description ?? (simulator === null ? "" : t("current.file")));
+      if ((shipped?.name ?? "") !== drawn) void draw(shipped?.name ?? "");
+      const texts = simulator?.notes ?? [];
+      const notesJson = JSON.stringify(texts);
+      if (notesJson === noted) return;
+      noted = notesJson;
+      setText(summary, t("warnings", { count: texts.length }));
+      notes.replaceChildren(...texts.map((note) => h("li", { lang: "en" }, note)));
+      remarks.hidden = texts.length === 0;
     },
   };
-}
-
-/** Title and description in a language, else in English. @param {PlaygroundInfo} info @param {string} language */
-function translated(info, language) {
-  return info.translations[language] ?? info;
 }

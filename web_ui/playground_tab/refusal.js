@@ -1,73 +1,39 @@
-// Displays the reason of a rejection: headline, location, what was found, and what was expected.
+// Shows why a playground was rejected: one sentence that a pupil understands; the technical line behind "Details".
+// Loaded when it is needed: it has the names of all fields.
 
+import WORDS from "../i18n/creator.texts.js";
+import { Labels } from "../creator/labels.js";
+import { translator } from "../i18n/index.js";
 import { h } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
+import { sentenceOf } from "./reasons.js";
 
-/** @typedef {{ place: string, found: string, expected: string }} Refusal */
+export { reasonOfFault, reasonOfMessage } from "./reasons.js";
 
-/**
- * Split the text of a rejection into its parts; null if it has another form.
- *
- * @param {string} text
- * @returns {Refusal | null}
- */
-export function refusalOf(text) {
-  const match = /^(?:([\s\S]*?): )?found ([\s\S]*?), expected ([\s\S]*)$/.exec(text);
-  return match === null ? null : { place: match[1] ?? "", found: match[2], expected: match[3] };
-}
+/** @typedef {import("./reasons.js").Reason} Reason */
 
-/** Expectations that only a file of another kind violates. */
-const FOREIGN = /^(?:JSON\b.*|XML|UTF-8 text|an object|<aseba-playground>|a complete zip archive|a plain zip archive)$/s;
-
-/**
- * Whether a rejected file is of another kind, rather than a playground with an error.
- *
- * @param {Refusal | null} refusal
- */
-export function isForeign(refusal) {
-  if (refusal === null) return false;
-  const { place, expected } = refusal;
-  return place === "format" || (FOREIGN.test(expected) && /^(?:line \d+(?:, column \d+)?)?$/.test(place));
+/** A reason in one sentence. @param {string} language @param {Reason} reason */
+export function refusalText(language, reason) {
+  return sentenceOf(new Labels(language, translator(language, WORDS)), reason);
 }
 
 /**
- * A rejected playground in one sentence.
- *
- * @param {import("../i18n/index.js").Translate} t
- * @param {import("../state/index.js").Fault | null} fault
+ * @param {string} language
+ * @param {string} headline   what was not opened
+ * @param {Reason | null} reason
  */
-export function faultText(t, fault) {
-  if (fault === null) return "";
-  return isForeign(refusalOf(fault.text)) ? t("fault.notPlayground") : fault.text;
-}
-
-/**
- * A file of another kind: one plain sentence; the details can be expanded.
- *
- * @param {import("../i18n/index.js").Translate} t
- * @param {string} headline
- * @param {string} technical
- */
-export function foreignView(t, headline, technical) {
+export function refusalView(language, headline, reason) {
+  const head = h("p", { class: "headline" }, icon("warning"), headline);
+  if (reason === null) return [head];
+  const t = translator(language, WORDS);
   return [
-    h("p", { class: "headline" }, headline),
-    h("p", {}, t("fault.notPlayground")),
-    h("details", {}, h("summary", {}, t("fault.details")), h("p", { class: "technical" }, technical)),
+    head,
+    h("p", { class: "reason" }, refusalText(language, reason)),
+    h(
+      "details",
+      { class: "technical" },
+      h("summary", {}, t("fault.details")),
+      h("p", { lang: "en" }, reason.technical),
+    ),
   ];
-}
-
-/** @param {import("../i18n/index.js").Translate} t @param {string} headline @param {import("../state/index.js").Fault | null} fault */
-export function faultView(t, headline, fault) {
-  const head = h("p", { class: "headline" }, headline);
-  if (fault === null) return [head];
-  const at = fault.line === null ? "" : t("fault.at", { line: fault.line, column: fault.column ?? 1 });
-  const refusal = refusalOf(fault.text);
-  if (refusal === null) return [head, h("p", {}, [at, fault.text].filter(Boolean).join(": "))];
-  if (isForeign(refusal)) return foreignView(t, headline, [at, fault.text].filter(Boolean).join(": "));
-  const place = [at, refusal.place].filter(Boolean).join(", ");
-  const rows = [
-    ["fault.place", place || t("fault.file")],
-    ["fault.found", refusal.found],
-    ["fault.expected", refusal.expected],
-  ].map(([key, text]) => h("div", {}, h("dt", {}, t(key)), h("dd", {}, text)));
-  return [head, h("dl", {}, ...rows)];
 }

@@ -1,4 +1,4 @@
-// Thumbnails of the shipped playgrounds: loaded from the server on demand and drawn from the playground data.
+// Thumbnails of playgrounds, drawn from their data: those that are shipped are loaded from the server on demand.
 
 import { parse } from "../playground/document.js";
 import { Markers } from "../playground/markers.js";
@@ -23,18 +23,31 @@ export class ThumbnailCache {
   sample(name) {
     let sample = this.samples.get(name);
     if (sample === undefined) {
-      sample = this.#make(name).catch(() => null);
+      sample = this.#load(name).catch(() => null);
       this.samples.set(name, sample);
       sample.then((found) => found === null && this.samples.delete(name)); // retried next time
     }
     return sample;
   }
 
-  /** @param {string} name @returns {Promise<Sample>} */
-  async #make(name) {
+  /** A playground with its thumbnail; null if it cannot be read or drawn. @param {string} text */
+  async draw(text) {
+    try {
+      return await this.#make(parse(text));
+    } catch {
+      return null;
+    }
+  }
+
+  /** @param {string} name */
+  async #load(name) {
     const answer = await fetch(`playgrounds/${encodeURIComponent(name)}.json`);
     if (!answer.ok) throw new Error(answer.statusText);
-    const playground = parse(await answer.text());
+    return this.#make(parse(await answer.text()));
+  }
+
+  /** @param {Playground} playground @returns {Promise<Sample>} */
+  async #make(playground) {
     const images = playground.items.filter(({ kind }) => kind === "picture").map(({ image }) => image);
     await Promise.all(images.map((uri) => this.pictures.read(uri)));
     const drawn = await this.photograph(worldOf(playground.items, this.markers));

@@ -22,6 +22,8 @@
  * @property {import("../hosts/creator_host.js").CreatorHost} creator
  * @property {import("../hosts/tour_host.js").TourHost} tour
  * @property {import("../playground_tab/thumbnail_cache.js").ThumbnailCache} thumbnails   shipped playgrounds with their thumbnails
+ * @property {import("../browser/opened_file.js").OpenedFile} opened   the file that was opened last, and where it was dropped
+ * @property {import("../ui/message_at.js").MessageAt} messageAt   a message at a place of the window
  * @property {string} address   address of the simulator, for display
  * @property {(text: string) => void} announce   writes to the live region for screen readers
  */

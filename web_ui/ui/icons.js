@@ -3,6 +3,7 @@
 
 const DRAWINGS = /** @type {const} */ ({
   add: '<path d="M12 5v14M5 12h14"/>',
+  back: '<path d="m14.5 6-6 6 6 6"/>',
   backward: '<path class="f" d="M12 17 6.5 8.5h11z"/>',
   beams: '<path d="M4 9.5v5M8 12h3M8.5 8.5l2.5-2M8.5 15.5l2.5 2M14.5 12h6M14 7.5l5.5-3.5M14 16.5l5.5 3.5"/>',
   blocks:

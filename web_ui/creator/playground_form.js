@@ -1,4 +1,4 @@
-// The form of the playground as a whole: title, description, main ground.
+// The form of the playground as a whole: description and main ground. Its title is in the head.
 
 import { h } from "../ui/dom.js";
 import { grounded, groundOf, titled } from "./commands.js";
@@ -20,15 +20,15 @@ const rank = (kind) => (kind === "rectangle" ? 0 : 1);
  * @param {Omit<import("./fields.js").Setting, "commit">} setting
  * @param {import("./creator_model.js").CreatorModel} model
  */
-export function sheetForm(setting, model) {
+export function playgroundForm(setting, model) {
   const { t } = setting.labels;
   /** @param {Record<string, any>} values */
-  const title = (values) => {
-    if (!fits(BUILT_IN.titles.title, values.title ?? values.description ?? "")) return { word: "problem.line" };
+  const describe = (values) => {
+    if (!fits(BUILT_IN.titles.description, values.description)) return { word: "problem.line" };
     return model.replacePlayground(titled(model.playground, values), { word: "change.titled" });
   };
-  const titles = Object.entries(BUILT_IN.titles).map(([key, field]) => control({ ...setting, commit: title }, key, field));
-  const select = h("select", { id: "creator-ground", "data-field": "ground" });
+  const description = control({ ...setting, commit: describe }, "description", BUILT_IN.titles.description);
+  const select = h("select", { id: "creator-ground", class: "input", "data-field": "ground" });
   const grounds = shapeKinds().filter(({ group }) => group === "ground");
   const names = [...grounds.map(({ name }) => name).sort((one, other) => rank(one) - rank(other)), "none"];
   select.append(...names.map((name) => h("option", { value: name }, setting.labels.ground(name))));
@@ -38,9 +38,9 @@ export function sheetForm(setting, model) {
   const fields = h("div", { class: "fields" });
   const element = h(
     "section",
-    { class: "sheet" },
-    h("div", { class: "fields wide" }, ...titles.flatMap((one) => (one === null ? [] : [one.element]))),
-    h("div", { class: "field" }, h("label", { for: "creator-ground" }, t("ground")), select),
+    { class: "playground-form" },
+    ...(description === null ? [] : [description.element]),
+    h("div", { class: "field" }, h("label", { class: "cap", for: "creator-ground" }, t("ground")), select),
     fields,
   );
   /** @type {Control[]} */ let controls = [];
@@ -63,7 +63,7 @@ export function sheetForm(setting, model) {
     render() {
       element.hidden = model.placing !== null || model.item !== null;
       if (element.hidden) return;
-      for (const one of titles) one?.update(model.playground);
+      description?.update(model.playground);
       const ground = groundOf(model.playground);
       select.value = ground?.kind ?? "none";
       const kind = `${ground?.name} ${ground?.kind}`;

@@ -1,0 +1,66 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Drafts } from "../../web_ui/playground_tab/drafts.js";
+
+/** A browser's storage in memory. @param {Record<string, string>} [content] */
+function newStorage(content = {}) {
+  const kept = new Map(Object.entries(content));
+  return {
+    kept,
+    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
+    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
+    removeItem: (/** @type {string} */ key) => void kept.delete(key),
+  };
+}
+
+const DRAFT = { id: "a", title: "Mine", inFile: false, text: "{}" };
+
+test("the draft that was changed last comes first", () => {
+  const drafts = new Drafts(newStorage());
+  drafts.keep(DRAFT);
+  drafts.keep({ ...DRAFT, id: "b" });
+  drafts.keep({ ...DRAFT, title: "Ours" });
+  assert.deepEqual(drafts.list(), [
+    { id: "a", title: "Ours", inFile: false },
+    { id: "b", title: "Mine", inFile: false },
+  ]);
+  assert.equal(drafts.version, 3);
+});
+
+test("a removed draft leaves nothing", () => {
+  const storage = newStorage();
+  const drafts = new Drafts(storage);
+  drafts.keep(DRAFT);
+  drafts.remove("a");
+  assert.equal(storage.kept.size, 0);
+  assert.equal(drafts.read("a"), null);
+});
+
+test("a full storage keeps no outdated draft, and the others", () => {
+  const storage = newStorage();
+  const drafts = new Drafts(storage);
+  drafts.keep(DRAFT);
+  drafts.keep({ ...DRAFT, id: "b" });
+  const { setItem } = storage;
+  storage.setItem = (key, value) => {
+    if (value.length > 100) throw new Error("full");
+    setItem(key, value);
+  };
+  assert.throws(() => drafts.keep({ ...DRAFT, text: "x".repeat(200) }));
+  assert.deepEqual(drafts.list().map(({ id }) => id), ["b"]);
+});
+
+test("the draft of an earlier version is adopted", () => {
+  const storage = newStorage({ "creator.draft": '{"title": "Old"}', "creator.draftSaved": "true" });
+  const drafts = new Drafts(storage);
+  const [{ id, title, inFile }] = drafts.list();
+  assert.deepEqual([title, inFile, drafts.read(id)], ["Old", true, '{"title": "Old"}']);
+  assert.equal(storage.getItem("creator.draft"), null);
+});
+
+test("invalid content of the storage is ignored", () => {
+  for (const text of ["{", "3", '[{"id": 3}, null]']) {
+    assert.deepEqual(new Drafts(newStorage({ "creator.drafts": text, "creator.draft": "{" })).list(), []);
+  }
+});

@@ -1,0 +1,98 @@
+// The playgrounds that were built on this device. The browser keeps each until it is removed. No DOM.
+
+/** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
+/** @typedef {{ id: string, title: string, inFile: boolean }} Draft   inFile: whether a file has the same content */
+
+const INDEX_KEY = "creator.drafts";
+/** @param {string} id */
+const textKey = (id) => `creator.draft.${id}`;
+/** The only draft that earlier versions kept, and whether a file had it. */
+const FORMER_KEY = "creator.draft";
+const FORMER_SAVED_KEY = "creator.draftSaved";
+/** So many characters of a title are listed. */
+const LONGEST_TITLE = 200;
+
+export class Drafts {
+  /** @param {KeyValueStore} storage */
+  constructor(storage) {
+    this.storage = storage;
+    /** Number of changes, so that a list knows when it is outdated. */
+    this.version = 0;
+    this.#adoptFormer();
+  }
+
+  /** All drafts, the one that was changed last first. @returns {Draft[]} */
+  list() {
+    try {
+      const listed = JSON.parse(this.storage.getItem(INDEX_KEY) ?? "[]");
+      return Array.isArray(listed) ? listed.filter(isDraft) : [];
+    } catch {
+      return [];
+    }
+  }
+
+  /** A name that no draft has, not even of another window. */
+  newId() {
+    return Math.random().toString(36).slice(2, 12);
+  }
+
+  /** @param {string} id */
+  has(id) {
+    return this.list().some((one) => one.id === id);
+  }
+
+  /** The text of a draft; null: there is none. @param {string} id */
+  read(id) {
+    return this.storage.getItem(textKey(id));
+  }
+
+  /** Keep a draft. Throws when the storage is full; then it is gone: none is better than an outdated one. @param {Draft & { text: string }} draft */
+  keep({ id, title, inFile, text }) {
+    try {
+      this.storage.setItem(textKey(id), text);
+      this.#write([{ id, title: title.slice(0, LONGEST_TITLE), inFile }, ...this.#others(id)]);
+    } catch (error) {
+      this.remove(id);
+      throw error;
+    }
+  }
+
+  /** @param {string} id */
+  remove(id) {
+    this.storage.removeItem(textKey(id));
+    const others = this.#others(id);
+    if (others.length === 0) {
+      this.storage.removeItem(INDEX_KEY); // works in a full storage too
+      this.version += 1;
+    } else this.#write(others);
+  }
+
+  /** @param {string} id */
+  #others(id) {
+    return this.list().filter((one) => one.id !== id);
+  }
+
+  /** @param {Draft[]} drafts */
+  #write(drafts) {
+    this.storage.setItem(INDEX_KEY, JSON.stringify(drafts));
+    this.version += 1;
+  }
+
+  #adoptFormer() {
+    const text = this.storage.getItem(FORMER_KEY);
+    if (text === null) return;
+    const inFile = this.storage.getItem(FORMER_SAVED_KEY) === "true";
+    this.storage.removeItem(FORMER_KEY);
+    this.storage.removeItem(FORMER_SAVED_KEY);
+    try {
+      this.keep({ id: this.newId(), title: String(JSON.parse(text).title ?? ""), inFile, text });
+    } catch {
+      // It was no playground, or the storage is full.
+    }
+  }
+}
+
+/** @param {any} value @returns {value is Draft} */
+function isDraft(value) {
+  return typeof value?.id === "string" && typeof value.title === "string" && typeof value.inFile === "boolean";
+}
