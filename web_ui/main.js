@@ -9,7 +9,7 @@
 //   PageLanguage     language and texts
 //   Theme, MotionSetting    how the page looks and moves
 //   Workspace, Frame        the open tab, and the layout of the page
-//   PanelHost, ProgramHost, CreatorHost, TourHost    parts of the page
+//   PanelHost, ProgramHost, CreatorHost, TourHost, WelcomeHost    parts of the page
 
 import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
@@ -22,6 +22,7 @@ import { MUTED_KEY } from "./header/sound.js";
 import { CreatorHost } from "./hosts/creator_host.js";
 import { ProgramHost } from "./hosts/program_host.js";
 import { TourHost } from "./hosts/tour_host.js";
+import { WelcomeHost } from "./hosts/welcome_host.js";
 import { PageLanguage } from "./i18n/page_language.js";
 import { Actions, isProgram } from "./input/actions.js";
 import { watchKeyboard } from "./input/keyboard.js";
@@ -100,6 +101,7 @@ async function main() {
   const program = new ProgramHost({ slot: element("#panel-program"), client: () => client });
   const creator = new CreatorHost({ element, scene: () => scene });
   const tour = new TourHost();
+  const welcome = new WelcomeHost(element('[data-slot="welcome"]'));
   const panels = new PanelHost(element, workspace);
   const client = new Client({
     address,
@@ -138,6 +140,7 @@ async function main() {
     beforeDraw: () => {
       creator.render();
       tour.render();
+      welcome.render(store.state);
       panels.render(store.state);
     },
     press: ({ robot, button }, pressed) => {
@@ -175,13 +178,14 @@ async function main() {
       program,
       creator,
       tour,
+      welcome,
       thumbnails,
     };
     fillTexts(element, context);
     showTabs = fillTabs(element("#tabs"), context);
     showBar = fillBottomBar(element("#bar"), context);
     panels.build(context);
-    for (const host of [program, creator, tour]) host.setContext(context);
+    for (const host of [program, creator, tour, welcome]) host.setContext(context);
     if (scene.renderer === null) graphics.set("gone");
     else graphics.render();
     redraw();

@@ -8,8 +8,10 @@ const ROOT = new URL("../../web_ui/", import.meta.url);
 /** Lazily loaded parts: their sheet, and the files and folders that belong to them. */
 const PARTS = [
   { sheet: "editor/editor.css", own: ["editor/", "hosts/program_host.js"] },
+  { sheet: "class_tab/class_tab.css", own: ["class_tab/", "hosts/class_host.js"] },
   { sheet: "creator/creator.css", own: ["creator/", "hosts/creator_host.js"] },
   { sheet: "tour/tour.css", own: ["tour/", "hosts/tour_host.js"] },
+  { sheet: "welcome/welcome.css", own: ["welcome/", "hosts/welcome_host.js"] },
 ];
 
 /** Every script of the page. */

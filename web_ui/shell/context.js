@@ -21,6 +21,7 @@
  * @property {import("../hosts/program_host.js").ProgramHost} program
  * @property {import("../hosts/creator_host.js").CreatorHost} creator
  * @property {import("../hosts/tour_host.js").TourHost} tour
+ * @property {import("../hosts/welcome_host.js").WelcomeHost} welcome
  * @property {import("../playground_tab/thumbnail_cache.js").ThumbnailCache} thumbnails   shipped playgrounds with their thumbnails
  * @property {string} address   address of the simulator, for display
  * @property {(text: string) => void} announce   writes to the live region for screen readers
