@@ -5,8 +5,8 @@
     python web_ui/build.py --script NAME    run another script of package.json
 
 `make`, the build hook of the wheel and the tests use this file. It needs the standard library only, and is not
-installed. A build leaves a digest of its sources, including the texts of all languages and the documentation, beside the
-bundle. The next build is skipped until a source changes, even if the folder was copied to another place.
+installed. A build leaves a digest of its sources, including the texts of all languages and the documentation, beside
+the bundle. The next build is skipped until a source changes, even if the folder was copied to another place.
 """
 
 from __future__ import annotations

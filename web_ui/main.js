@@ -15,6 +15,7 @@ import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
 import { localStore, tabStore } from "./browser/local_storage.js";
 import { MotionSetting } from "./browser/motion_setting.js";
+import { robotNames } from "./browser/robot_names.js";
 import { exposeForTests } from "./browser/test_access.js";
 import { Theme } from "./browser/theme.js";
 import { visitOptions } from "./browser/visit_options.js";
@@ -148,7 +149,7 @@ async function main() {
       actions.press(robot, button, pressed);
     },
     dragController,
-    robotTitle: (name) => name || text("page")("app.robot"),
+    robotTitle: (name) => robotNames.of(name) || name || text("page")("app.robot"),
     contextLost: (trouble) => graphics.set(trouble),
   });
   const thumbnails = new ThumbnailCache((world) => scene.photograph(world));

@@ -95,7 +95,8 @@ export class WelcomeHost {
   render(state) {
     const { context } = this;
     if (context === null) return;
-    const showsStarts = this.isWanted && canStart(state, context.creator.isOpen);
+    // The tour shows what the starts would hide.
+    const showsStarts = this.isWanted && !context.tour.isOpen && canStart(state, context.creator.isOpen);
     const showsOffer = context.tour.isOffered && state.connection === "connected" && state.identified;
     if ((showsStarts || showsOffer) && this.module === null) {
       if (!this.isAsked) void this.#load(true).then(() => context.scene.invalidate());
