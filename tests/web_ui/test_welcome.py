@@ -72,7 +72,7 @@ def test_program_it_an_example_moves_and_its_text_is_open(first_visit):
     wait_for_program(page, "line_follower")
     page.wait_for_function(MOVES)
     playwright.expect(page.locator("#panel-program")).to_be_visible()
-    playwright.expect(page.locator(".cm-content")).to_contain_text("motor.left.target")
+    playwright.expect(page.locator(".cm-content")).to_contain_text("Follow a black line")
 
 
 def test_connect_ros_2_the_shown_speed_is_sent_once(first_visit):
