@@ -94,6 +94,7 @@ def test_no_sentence_is_left_in_english(language: str, file: str) -> None:
 # -- the page ----------------------------------------------------------------------------------------------------------
 
 PARTS = {
+    "class_tab": "class",
     "creator": "creator",
     "editor": "editor",
     "examples": "examples",
@@ -108,9 +109,16 @@ PARTS = {
     "stage": "stage",
     "state/program_status.js": "program",
     "tour": "tour",
+    "welcome": "welcome",
 }
 """Folders and modules of the page, and the file of texts that `t` means there; elsewhere it is page.json."""
-OTHER_FILES = {"exampleText": "examples", "pageText": "page", "playgroundText": "playground"}
+OTHER_FILES = {
+    "exampleText": "examples",
+    "keysText": "keys",
+    "pageText": "page",
+    "playgroundText": "playground",
+    "programText": "program",
+}
 """Names of the texts of other files."""
 
 
@@ -142,7 +150,7 @@ def test_every_text_that_the_page_names_exists() -> None:
     assert {(name, file, key) for name, file, key in uses if key not in texts(file)} == set()
 
 
-@pytest.mark.parametrize("file", sorted({"page", *PARTS.values()}))
+@pytest.mark.parametrize("file", sorted({"page", *PARTS.values(), *OTHER_FILES.values()}))
 def test_the_page_uses_every_text(file: str) -> None:
     """A key occurs as a string, or fits a template string such as `button.${name}`."""
     everything = "\n".join(source for _, source in sources())

@@ -5,8 +5,8 @@
     python web_ui/build.py --script NAME    run another script of package.json
 
 `make`, the build hook of the wheel and the tests use this file. It needs the standard library only, and is not
-installed. A build leaves a digest of its sources, including the texts of all languages, beside the bundle. The next
-build is skipped until a source changes, even if the folder was copied to another place.
+installed. A build leaves a digest of its sources, including the texts of all languages and the documentation, beside
+the bundle. The next build is skipped until a source changes, even if the folder was copied to another place.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def find_node() -> Node | None:
 def digest(page: Path) -> str:
     """Digest of names and contents of all sources of the bundle, as hexadecimal text."""
     total = hashlib.sha256()
-    for root, path in [*((page, path) for path in _sources(page)), *_language_files(page)]:
+    for root, path in [*((page, path) for path in _sources(page)), *_language_files(page), *_documentation(page)]:
         content = hashlib.sha256(path.read_bytes()).hexdigest()
         total.update(f"{path.relative_to(root).as_posix()} {content}\n".encode())
     return total.hexdigest()
@@ -153,6 +153,13 @@ def _language_files(page: Path) -> Iterator[tuple[Path, Path]]:
     """The folder of the languages, which lies beside the page, and each file in it."""
     root = page.parent / "aseba_vm" / "languages"
     yield from ((root, path) for path in sorted(root.glob("*/*.json")))
+
+
+def _documentation(page: Path) -> Iterator[tuple[Path, Path]]:
+    """The root of the sources, and each file of the documentation that ships with the page."""
+    root = page.parent
+    yield from ((root, path) for path in sorted((root / "docs").glob("*.md")))
+    yield from ((root, path) for path in (root / "playgrounds").glob("README.md"))
 
 
 def _is_supported(node: str) -> bool:

@@ -9,13 +9,14 @@
 //   PageLanguage     language and texts
 //   Theme, MotionSetting    how the page looks and moves
 //   Workspace, Frame        the open tab, and the layout of the page
-//   PanelHost, ProgramHost, CreatorHost, TourHost    parts of the page
+//   PanelHost, ProgramHost, CreatorHost, TourHost, WelcomeHost    parts of the page
 
 import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
 import { localStore, tabStore } from "./browser/local_storage.js";
 import { MotionSetting } from "./browser/motion_setting.js";
 import { OpenedFile } from "./browser/opened_file.js";
+import { robotNames } from "./browser/robot_names.js";
 import { exposeForTests } from "./browser/test_access.js";
 import { Theme } from "./browser/theme.js";
 import { visitOptions } from "./browser/visit_options.js";
@@ -23,6 +24,7 @@ import { MUTED_KEY } from "./header/sound.js";
 import { CreatorHost } from "./hosts/creator_host.js";
 import { ProgramHost } from "./hosts/program_host.js";
 import { TourHost } from "./hosts/tour_host.js";
+import { WelcomeHost } from "./hosts/welcome_host.js";
 import { PageLanguage } from "./i18n/page_language.js";
 import { Actions, isProgram } from "./input/actions.js";
 import { watchKeyboard } from "./input/keyboard.js";
@@ -105,6 +107,7 @@ async function main() {
   const program = new ProgramHost({ slot: element("#panel-program"), client: () => client });
   const creator = new CreatorHost({ element, scene: () => scene });
   const tour = new TourHost();
+  const welcome = new WelcomeHost(element('[data-slot="welcome"]'));
   const panels = new PanelHost(element, workspace);
   const client = new Client({
     address,
@@ -143,6 +146,7 @@ async function main() {
     beforeDraw: () => {
       creator.render();
       tour.render();
+      welcome.render(store.state);
       panels.render(store.state);
     },
     press: ({ robot, button }, pressed) => {
@@ -150,7 +154,7 @@ async function main() {
       actions.press(robot, button, pressed);
     },
     dragController,
-    robotTitle: (name) => name || text("page")("app.robot"),
+    robotTitle: (name) => robotNames.of(name) || name || text("page")("app.robot"),
     select: (robot) => store.dispatch({ type: "select", robot }),
     contextLost: (trouble) => graphics.set(trouble),
   });
@@ -187,6 +191,7 @@ async function main() {
       program,
       creator,
       tour,
+      welcome,
       thumbnails,
       opened,
       messageAt,
@@ -195,7 +200,7 @@ async function main() {
     showTabs = fillTabs(element("#tabs"), context);
     showBar = fillBottomBar(element("#bar"), context);
     panels.build(context);
-    for (const host of [program, creator, tour]) host.setContext(context);
+    for (const host of [program, creator, tour, welcome]) host.setContext(context);
     if (scene.renderer === null) graphics.set("gone");
     else graphics.render();
     redraw();

@@ -2,6 +2,8 @@
 
 import { defineConfig } from "vite";
 
+import { documentation } from "./documentation/pages.js";
+
 /**
  * Modules `*.texts.js` read files, which a browser cannot: they run here, and the page gets their values.
  *
@@ -16,9 +18,17 @@ const evaluatedTexts = {
   },
 };
 
+/** The pages of docs/ that ship with the page. @type {import("vite").Plugin} */
+const shippedDocumentation = {
+  name: "shipped-documentation",
+  generateBundle() {
+    for (const { fileName, source } of documentation()) this.emitFile({ type: "asset", fileName, source });
+  },
+};
+
 export default defineConfig({
   base: "./",
-  plugins: [evaluatedTexts],
+  plugins: [evaluatedTexts, shippedDocumentation],
   build: {
     outDir: "dist",
     emptyOutDir: true,

@@ -80,6 +80,14 @@ def open_tab(page: Any, name: str) -> None:
     page.locator(f"#panel-{name}").wait_for()
 
 
+def open_details(page: Any) -> None:
+    """Open the table with all values of the robot."""
+    open_tab(page, "robot")
+    if page.locator("#values").get_attribute("open") is None:
+        page.click("#values summary")
+    page.locator("#values table").wait_for()
+
+
 def open_menu(page: Any, button: str) -> None:
     """Open the menu or sheet of a button, unless it is open."""
     locator = page.locator(button)

@@ -9,6 +9,7 @@ import pytest
 from tests.web_ui.page_support import (
     MARKS,
     choose_language,
+    open_details,
     open_editor,
     open_hands,
     open_menu,
@@ -84,7 +85,7 @@ def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(suite, 
 def test_values_can_be_frozen_and_copied(suite, page):
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_page(page, suite("--playground", "base", "--program", "none"))
-    open_tab(page, "robot")
+    open_details(page)
     page.wait_for_function("() => window.thymio.state().robot.raw.battery !== undefined")
     for sensor in ("accelerometer", "temperature", "sound", "battery"):
         page.wait_for_function("(sensor) => window.thymio.state().robot.raw[sensor] !== undefined", arg=sensor)

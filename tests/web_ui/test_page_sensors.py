@@ -10,7 +10,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests import plugin_page
-from tests.web_ui.page_support import MARKS, open_page, open_tab
+from tests.web_ui.page_support import MARKS, choose_robot, open_details, open_page, open_tab
 
 pytestmark = MARKS
 
@@ -22,7 +22,7 @@ def test_the_sensor_of_a_plug_in_is_shown_with_its_changing_value(suite, page, t
     plugin_page.lay_out(tmp_path, plugin_page.files())
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", ""))))
     open_page(page, suite("--playground", "slalom_field", "--program", "none"))
-    open_tab(page, "robot")
+    open_details(page)
     row = page.get_by_role("row").filter(has=page.get_by_role("rowheader", name="heading", exact=True))
     values = row.get_by_role("cell")
     playwright.expect(page.get_by_role("rowheader", name="compass", exact=True)).to_be_visible()
@@ -34,16 +34,56 @@ def test_the_sensor_of_a_plug_in_is_shown_with_its_changing_value(suite, page, t
     playwright.expect(values.nth(0)).to_have_text(heading)
 
 
-def test_values_are_subscribed_to_while_the_panel_is_open(suite, page):
+def test_values_are_subscribed_to_while_the_tab_is_open(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     open_tab(page, "robot")
     page.wait_for_function(f"{MOTOR} !== undefined")
-    page.click("#values summary")
+    page.click("#work-fold")
     page.wait_for_function("() => !window.thymio.state().sensorsShown")
     before = page.evaluate(TIME)
     page.wait_for_function(f"(before) => {TIME} > before + 1e9", arg=before)
     page.evaluate("() => { window.words = window.thymio.state().robot.raw.motor; }")
     page.wait_for_function(f"(before) => {TIME} > before + 2e9", arg=before)
     assert page.evaluate(f"{MOTOR} === window.words"), "no message has arrived"
-    page.click("#values summary")
+    open_tab(page, "robot")
     page.wait_for_function(f"{MOTOR} !== window.words")
+
+
+def test_the_picture_shows_what_the_robot_notices_and_does(suite, page):
+    open_page(page, suite("--playground", "base", "--behaviour", "thesis_basic"))
+    open_tab(page, "robot")
+    picture = page.get_by_role("img", name="The robot from above")
+    playwright.expect(picture.locator(".proximity")).to_have_count(7)
+    speed = picture.locator(".motor .number")
+    playwright.expect(speed.nth(0)).to_have_text("0")
+    ground = page.locator(".ground-eye .num")
+    playwright.expect(ground).to_have_text([re.compile(r"^\d+$")] * 2)
+    playwright.expect(page.locator("[data-stat=tilt] b")).to_have_text(re.compile(r"^\d+ °$"))
+    playwright.expect(page.locator("[data-stat=warmth] b")).to_have_text(re.compile(r"^\d\d °C$"))
+    page.locator("[data-button=forward]").hover()
+    page.mouse.down()
+    playwright.expect(picture.locator("[data-button-mark=forward]")).to_have_attribute("data-pressed", "true")
+    page.mouse.up()
+    playwright.expect(picture.locator("[data-button-mark=forward]")).to_have_attribute("data-pressed", "false")
+    playwright.expect(speed.nth(1)).to_have_text(re.compile("^[1-9]"))
+    # It drives to the wall, whose distance fills the bar in the middle, and stops there.
+    playwright.expect(picture.locator("[data-index='2'] .number")).to_have_text(re.compile(r"^[1-9]\d{2,}$"))
+    playwright.expect(picture.locator("[data-index='2'] .fill")).to_have_attribute("d", re.compile("^M"))
+    playwright.expect(speed.nth(0)).to_have_text("0")
+
+
+def test_held_values_stay_until_another_robot_is_chosen(suite, page):
+    open_page(page, suite("--playground", "two_robots", "--behaviour", "explorer"))
+    open_tab(page, "robot")
+    number = page.locator(".motor .number").first
+    playwright.expect(number).to_have_text(re.compile("^-?[1-9]"))
+    hold = page.locator("[data-values=hold]")
+    hold.click()
+    playwright.expect(hold).to_have_text("Values are held")
+    before = page.locator(".picture svg").inner_html()
+    time = page.evaluate(TIME)
+    page.wait_for_function(f"(time) => {TIME} > time + 1e9", arg=time)
+    assert page.locator(".picture svg").inner_html() == before
+    names = page.evaluate("() => Object.keys(window.thymio.state().robots)")
+    choose_robot(page, names[1])
+    playwright.expect(hold).to_have_text("Hold values")

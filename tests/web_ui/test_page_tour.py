@@ -1,4 +1,4 @@
-"""The tour: shown once, closed permanently, reopened by a button, usable by keys, not blocking."""
+"""The tour: offered once, closed permanently, reopened by a button, usable by keys, not blocking."""
 
 from __future__ import annotations
 
@@ -34,9 +34,11 @@ def visit(page, address):
     page.wait_for_function(READY)
 
 
-def test_it_is_shown_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_button(first_visit):
+def test_it_is_offered_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_button(first_visit):
     page, address = first_visit
     visit(page, address)
+    page.get_by_role("button", name="Show me around").press("Enter")
+    playwright.expect(page.locator(".welcome-tour")).to_have_count(0)
     tour = page.get_by_role("dialog", name="Your robot’s world")
     playwright.expect(tour).to_contain_text("1 of 5")
     playwright.expect(page.locator(".tour .next")).to_be_focused()
@@ -55,8 +57,8 @@ def test_it_is_shown_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_bu
     page.wait_for_function("window.thymio.state().simulator.paused")  # asked for after a stop would have been
     assert page.evaluate("window.thymio.state().program.state") == "running"
     visit(page, address)
-    page.wait_for_function("() => window.thymio.frames() > 2")
-    playwright.expect(page.locator(".tour")).to_have_count(0)
+    page.locator(".welcome-starts").wait_for()  # which the tour hid, and which is loaded with the offer
+    playwright.expect(page.locator(".tour, .welcome-tour")).to_have_count(0)
     open_menu(page, "#help-open")
     page.click("[data-help=tour]")
     playwright.expect(page.locator(".tour")).to_contain_text("1 of 5")
@@ -64,9 +66,20 @@ def test_it_is_shown_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_bu
     playwright.expect(page.locator(".tour")).to_contain_text("Die Welt deines Roboters")
 
 
+def test_an_offer_that_is_declined_does_not_come_back(first_visit):
+    page, address = first_visit
+    visit(page, f"{address}?welcome=off")
+    page.get_by_role("button", name="Not now").click()
+    playwright.expect(page.locator(".welcome-tour")).to_have_count(0)
+    visit(page, f"{address}?welcome=on")
+    page.locator(".welcome-starts").wait_for()
+    playwright.expect(page.locator(".tour, .welcome-tour")).to_have_count(0)
+
+
 def test_it_does_not_block_the_page(first_visit):
     page, address = first_visit
-    visit(page, address)
+    visit(page, f"{address}?tour=on&welcome=off")
+    page.evaluate("() => document.querySelector('#tray[data-folded] #tray-unfold')?.click()")
     page.locator(".tour").wait_for()
     page.locator("[data-button=forward]").hover()
     page.mouse.down()
@@ -79,8 +92,8 @@ def test_it_does_not_block_the_page(first_visit):
 def test_the_address_disables_or_forces_it(first_visit):
     page, address = first_visit
     visit(page, f"{address}?tour=off")
-    page.wait_for_function("() => window.thymio.frames() > 2")
-    playwright.expect(page.locator(".tour")).to_have_count(0)
+    page.locator(".welcome-starts").wait_for()
+    playwright.expect(page.locator(".tour, .welcome-tour")).to_have_count(0)
     visit(page, f"{address}?tour=on")
     page.locator(".tour-close").click()
     visit(page, f"{address}?tour=on")
@@ -91,11 +104,12 @@ def test_it_can_be_closed_without_browser_storage(first_visit):
     page, address = first_visit
     page.add_init_script(NO_STORAGE)
     visit(page, address)
+    page.click("[data-tour=yes]")
     page.locator(".tour-close").click()
     page.reload()
     page.wait_for_function(READY)
-    page.wait_for_function("() => window.thymio.frames() > 2")
-    playwright.expect(page.locator(".tour")).to_have_count(0)
+    page.locator(".welcome-starts").wait_for()
+    playwright.expect(page.locator(".tour, .welcome-tour")).to_have_count(0)
 
 
 @pytest.mark.parametrize("size", [(1280, 650), (820, 1180), (360, 640)])
@@ -103,7 +117,7 @@ def test_it_is_visible_and_accessible_on_every_screen_in_every_language(first_vi
     page, address = first_visit
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.emulate_media(reduced_motion="reduce")
-    visit(page, address)
+    visit(page, f"{address}?tour=on")
     page.locator(".tour").wait_for()
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)

@@ -4,23 +4,24 @@ import { test } from "node:test";
 import tourTexts from "../../web_ui/i18n/tour.texts.js";
 import { placed } from "../../web_ui/tour/place.js";
 import { STEPS } from "../../web_ui/tour/steps.js";
-import { shouldStart } from "../../web_ui/hosts/tour_host.js";
+import { tourOf } from "../../web_ui/hosts/tour_host.js";
 
 /** @param {string | null} kept */
 const storage = (kept) => ({ getItem: () => kept });
 
-test("the tour starts at a first visit, and never again once it was closed", () => {
-  assert.equal(shouldStart({ search: "", storage: storage(null), entry: null }), true);
-  assert.equal(shouldStart({ search: "?token=abc", storage: storage("closed"), entry: null }), false);
-  assert.equal(shouldStart({ search: "", storage: storage(null), entry: { tour: "closed" } }), false); // nothing can be stored
+test("the tour is offered at a first visit, and never again once it was closed", () => {
+  assert.equal(tourOf({ search: "", storage: storage(null), entry: null }), "offered");
+  assert.equal(tourOf({ search: "?token=abc", storage: storage("closed"), entry: null }), "closed");
+  assert.equal(tourOf({ search: "", storage: storage(null), entry: { tour: "closed" } }), "closed"); // nothing can be stored
 });
 
 test("the address overrides the stored choice", () => {
-  assert.equal(shouldStart({ search: "?token=abc&tour=off", storage: storage(null), entry: null }), false);
-  assert.equal(shouldStart({ search: "?tour=on", storage: storage("closed"), entry: { tour: "closed" } }), true);
+  assert.equal(tourOf({ search: "?token=abc&tour=off", storage: storage(null), entry: null }), "closed");
+  assert.equal(tourOf({ search: "?tour=on", storage: storage("closed"), entry: { tour: "closed" } }), "open");
 });
 
 test("every step of the tour has its texts", () => {
+  assert.equal(STEPS.length, 5);
   for (const { name } of STEPS) assert.ok(name in tourTexts.en && `${name}.text` in tourTexts.en, name);
 });
 

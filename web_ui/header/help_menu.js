@@ -4,8 +4,11 @@ import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
 
+/** The documentation that ships with the page (web_ui/vite.config.js). */
+const DOCUMENTATION = "./docs/index.html";
+
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
-export function helpMenuPanel({ text, tour }) {
+export function helpMenuPanel({ text, tour, welcome }) {
   const t = text("page");
   const button = h(
     "button",
@@ -16,9 +19,17 @@ export function helpMenuPanel({ text, tour }) {
     id: "help-menu",
     button,
     label: t("help"),
-    entries: () => [
+    entries: () => /** @type {import("../ui/menu.js").Entry[]} */ ([
       { label: t("help.tour"), icon: "idea", attributes: { "data-help": "tour" }, act: () => void tour.open() },
-    ],
+      { label: t("help.start"), icon: "robot", attributes: { "data-help": "start" }, act: () => welcome.open() },
+      { label: t("help.keys"), icon: "keys", attributes: { "data-help": "keys" }, act: () => void welcome.openKeys() },
+      {
+        label: t("help.docs"),
+        icon: "file",
+        attributes: { "data-help": "docs", title: t("help.offline") },
+        act: () => void window.open(DOCUMENTATION, "_blank", "noopener"),
+      },
+    ]),
   });
   return { slot: "header", element };
 }

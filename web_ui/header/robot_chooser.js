@@ -1,5 +1,6 @@
 // The choice of the robot: the one whose values are shown and that the user acts on, or all robots for actions.
 
+import { robotNames } from "../browser/robot_names.js";
 import { robotColor } from "../state/robot_colors.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
@@ -22,7 +23,7 @@ export function robotChooserPanel({ text, store, announce }) {
   );
 
   /** @param {string} robot */
-  const titleOf = (robot) => robot || t("app.robot");
+  const titleOf = (robot) => robotNames.of(robot) || robot || t("app.robot");
   const entries = () => {
     const { robots, selected, toAll } = store.state;
     const names = Object.keys(robots);

@@ -1,4 +1,5 @@
-// Integrates the tour into the page: shown at the first visit, never again after it was closed, and on request.
+// Integrates the tour into the page: offered at the first visit, never again after it was closed or declined, and opened on
+// request.
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { visitOptions } from "../browser/visit_options.js";
@@ -11,23 +12,27 @@ const KEY = "tour";
 const CLOSED = "closed";
 
 /**
- * Whether the tour starts by itself. In the address, `tour=off` prevents it (kiosks, tests), and `tour=on` starts it
- * even if it was closed before.
+ * Whether a visit begins with the tour: "open", "offered" by a card, or "closed", as it is after it was closed or declined.
+ * In the address, `tour=off` prevents it (kiosks, tests), and `tour=on` opens it even if it was closed before.
  *
  * @param {object} visit
  * @param {string} visit.search             query part of the address
  * @param {Pick<import("../browser/local_storage.js").KeyValueStore, "getItem">} visit.storage
  * @param {unknown} visit.entry             history state of this visit; available even without storage
+ * @returns {"open" | "offered" | "closed"}
  */
-export function shouldStart({ search, storage, entry }) {
+export function tourOf({ search, storage, entry }) {
   const { tour } = visitOptions(search);
-  if (tour !== null) return tour;
-  return storage.getItem(KEY) !== CLOSED && /** @type {any} */ (entry)?.[KEY] !== CLOSED;
+  if (tour !== null) return tour ? "open" : "closed";
+  const isClosed = storage.getItem(KEY) === CLOSED || /** @type {any} */ (entry)?.[KEY] === CLOSED;
+  return isClosed ? "closed" : "offered";
 }
 
 export class TourHost {
   constructor() {
     this.step = 0;
+    /** Whether a card offers the tour. */
+    this.isOffered = false;
     /** @type {Tour | null} */ this.tour = null;
     /** @type {typeof import("../tour/index.js") | null} */ this.module = null;
     /** @type {Context | null} */ this.context = null;
@@ -46,11 +51,14 @@ export class TourHost {
 
   /** Call once, when the page is ready. */
   start() {
-    if (shouldStart({ search: location.search, storage: localStore, entry: history.state })) void this.open();
+    const begin = tourOf({ search: location.search, storage: localStore, entry: history.state });
+    this.isOffered = begin === "offered";
+    if (begin === "open") void this.open();
   }
 
   async open() {
     if (this.isOpen) return;
+    this.isOffered = false;
     const { activeElement } = document;
     this.module ??= await import("../tour/index.js").catch(() => null);
     if (this.module === null) {
@@ -63,12 +71,18 @@ export class TourHost {
     this.#build();
   }
 
-  /** Close the tour permanently: only the button in the header opens it again. */
+  /** Never offer the tour again: only the button in the header opens it. */
+  decline() {
+    this.isOffered = false;
+    trySetItem(localStore, KEY, CLOSED);
+    history.replaceState({ ...history.state, [KEY]: CLOSED }, "");
+  }
+
+  /** Close the tour permanently. */
   close() {
     this.tour?.destroy();
     this.tour = null;
-    trySetItem(localStore, KEY, CLOSED);
-    history.replaceState({ ...history.state, [KEY]: CLOSED }, "");
+    this.decline();
     const place = this.previousFocus instanceof HTMLElement && this.previousFocus !== document.body ? this.previousFocus : null;
     (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#help-open")))?.focus();
   }

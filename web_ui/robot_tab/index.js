@@ -1,6 +1,6 @@
 // The panels of the tab "Robot". To add one: a file, and a line here.
 
-import { valuesPanel } from "./values_table.js";
+import { robotPanel } from "./robot_panel.js";
 
 /** @type {import("../shell/context.js").CreatePanel[]} */
-export const ROBOT_TAB = [valuesPanel];
+export const ROBOT_TAB = [robotPanel];

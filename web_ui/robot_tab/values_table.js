@@ -1,5 +1,6 @@
-// The sensor values as a table: SI values and Thymio's integers side by side.
+// The text form of the picture: every value in a table, SI units and Thymio's integers side by side.
 
+import { copyText } from "../browser/clipboard.js";
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
@@ -9,78 +10,56 @@ import { asText, groupsOf, joined } from "./sensor_rows.js";
 
 /** How long the button shows that the values were copied. */
 const COPIED_MS = 2000;
-/** Storage key: whether the table is folded. */
-const FOLDED_KEY = "robot.values";
+/** Storage key: whether the table is open. */
+const OPEN_KEY = "robot.values";
+const OPEN = "open";
 
-/** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
-export function valuesPanel({ text, language, store, workspace, announce }) {
+/** @param {Pick<import("../shell/context.js").Context, "text" | "language" | "announce" | "scene">} context */
+export function valuesTable({ text, language, announce, scene }) {
   const t = text("robot");
   const table = new SensorTable(t);
-  let frozen = false;
-  const freeze = h(
-    "button",
-    { type: "button", class: "btn line", "aria-pressed": "false", "data-values": "hold" },
-    t("sensors.freeze"),
-  );
-  freeze.addEventListener("click", () => {
-    frozen = !frozen;
-    setAttribute(freeze, "aria-pressed", String(frozen));
-    if (!frozen) show(store.state.robots[store.state.selected]);
-  });
-  const copy = h("button", { type: "button", class: "btn line", "data-values": "copy" }, t("sensors.copy"));
+  /** @type {Robot | null} */ let shown = null;
+  const word = h("span", {}, t("numbers.copy"));
+  const copy = h("button", { type: "button", class: "btn slim", "data-values": "copy" }, icon("copy", { small: true }), word);
   copy.addEventListener("click", async () => {
-    if (shown === undefined) return;
-    const done = await copyText(asText(table.groups, shown));
-    announce(t(done ? "sensors.copied" : "sensors.notCopied"));
-    setText(copy, t(done ? "sensors.copied" : "sensors.notCopied"));
-    setTimeout(() => setText(copy, t("sensors.copy")), COPIED_MS);
+    if (shown === null) return;
+    const result = t((await copyText(asText(table.groups, shown))) ? "numbers.copied" : "numbers.notCopied");
+    announce(result);
+    setText(word, result);
+    setTimeout(() => setText(word, t("numbers.copy")), COPIED_MS);
   });
-  const waiting = h("small", { class: "waiting muted", hidden: true }, t("sensors.waiting"));
+  const count = h("span", { class: "small muted count" });
   const element = h(
     "details",
-    { class: "disc", id: "values", open: localStore.getItem(FOLDED_KEY) !== "closed" },
+    { class: "disc", id: "values", open: localStore.getItem(OPEN_KEY) === OPEN },
     h(
       "summary",
       {},
       icon("list", { small: true }),
-      h("span", {}, t("sensors")),
+      h("span", { class: "grow" }, t("numbers")),
+      count,
       h("span", { class: "turns" }, icon("caretDown", { small: true })),
     ),
-    h("div", { class: "row" }, freeze, copy),
-    waiting,
+    copy,
     table.element,
   );
-  // Values that no other part of the page needs are subscribed to while they are visible.
-  const reportShown = () => {
-    const shown = element.open && workspace.tab === "robot";
-    if (store.state.sensorsShown !== shown) store.dispatch({ type: "showSensors", shown });
-  };
   element.addEventListener("toggle", () => {
-    trySetItem(localStore, FOLDED_KEY, element.open ? "open" : "closed");
-    reportShown();
+    trySetItem(localStore, OPEN_KEY, element.open ? OPEN : "closed");
+    if (shown !== null && element.open) table.show(shown);
+    scene.invalidate();
   });
-  /** @type {Robot | undefined} */ let shown;
-  /** @type {readonly import("../state/index.js").SensorInfo[] | undefined} */ let declared;
-  /** @param {Robot | undefined} robot */
-  const show = (robot) => {
-    if (robot === undefined) return;
-    shown = robot;
-    table.show(robot);
-  };
+  /** @type {readonly import("../state/index.js").SensorInfo[] | null} */ let declared = null;
   return {
-    slot: "robot",
     element,
-    watch: reportShown,
-    render({ robots, selected, simulator, sensors }) {
-      const robot = robots[selected];
-      waiting.hidden = !simulator?.paused || robot === undefined || Object.keys(robot.raw).length > 0;
+    /** @param {Robot} robot @param {readonly import("../state/index.js").SensorInfo[]} sensors */
+    show(robot, sensors) {
       if (sensors !== declared) {
         declared = sensors;
         table.setGroups(groupsOf(t, language, sensors));
-        if (shown !== undefined) table.show(shown);
+        setText(count, t("numbers.count", { count: table.cells.length }));
       }
-      if (frozen || robot === shown || !element.open) return;
-      show(robot);
+      shown = robot;
+      if (element.open) table.show(robot);
     },
   };
 }
@@ -129,27 +108,4 @@ function cellsOf(row) {
   const raw = h("span", {});
   const bar = h("td", { class: "raw" }, raw);
   return { row, element: h("tr", {}, h("th", { scope: "row" }, row.label), value, bar), value, raw, bar };
-}
-
-/**
- * Copy text to the clipboard. Pages that are not from this machine have no clipboard API, so a selection is used
- * there.
- *
- * @param {string} text
- */
-async function copyText(text) {
-  if (navigator.clipboard !== undefined) {
-    const written = await navigator.clipboard.writeText(text).then(
-      () => true,
-      () => false,
-    );
-    if (written) return true;
-  }
-  const field = h("textarea", { class: "vh", "aria-hidden": "true" });
-  field.value = text;
-  document.body.append(field);
-  field.select();
-  const done = document.execCommand("copy");
-  field.remove();
-  return done;
 }

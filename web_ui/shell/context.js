@@ -21,6 +21,7 @@
  * @property {import("../hosts/program_host.js").ProgramHost} program
  * @property {import("../hosts/creator_host.js").CreatorHost} creator
  * @property {import("../hosts/tour_host.js").TourHost} tour
+ * @property {import("../hosts/welcome_host.js").WelcomeHost} welcome
  * @property {import("../playground_tab/thumbnail_cache.js").ThumbnailCache} thumbnails   shipped playgrounds with their thumbnails
  * @property {import("../browser/opened_file.js").OpenedFile} opened   the file that was opened last, and where it was dropped
  * @property {import("../ui/message_at.js").MessageAt} messageAt   a message at a place of the window

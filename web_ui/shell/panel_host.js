@@ -1,6 +1,7 @@
 // Puts the panels into the page: all of them are created again when the language changes.
 
 import { HEADER } from "../header/index.js";
+import { classPanel } from "../hosts/class_host.js";
 import { PLAYGROUND_TAB } from "../playground_tab/index.js";
 import { PROGRAM_TAB } from "../program_tab/index.js";
 import { ROBOT_TAB } from "../robot_tab/index.js";
@@ -10,7 +11,7 @@ import { TABS } from "./workspace.js";
 /** @typedef {import("./context.js").Panel} Panel */
 
 /** All panels; within a slot they are in the order of the focus. */
-const PANELS = [...HEADER, ...ROBOT_TAB, ...PROGRAM_TAB, ...PLAYGROUND_TAB, ...STAGE];
+const PANELS = [...HEADER, ...ROBOT_TAB, ...PROGRAM_TAB, ...PLAYGROUND_TAB, classPanel, ...STAGE];
 
 export class PanelHost {
   /**

@@ -4,8 +4,8 @@
 
 export const STEPS = /** @type {readonly Step[]} */ ([
   { name: "scene", targets: ["#view", "#work"] },
-  { name: "buttons", targets: ["#pad", "#tray-unfold"] },
-  { name: "move", targets: ['[data-view="move"]'] },
+  { name: "hands", targets: ["#tray", "#tray-unfold", "#bar-drive"] },
+  { name: "robot", targets: ["#tab-robot", "#bar-robot"] },
   { name: "program", targets: ["#tab-program", "#bar-program"] },
-  { name: "playgrounds", targets: ["#gallery-open", "#tab-playground", "#bar-playground"] },
+  { name: "playground", targets: ["#tab-playground", "#bar-playground"] },
 ]);

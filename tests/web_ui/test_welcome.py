@@ -1,0 +1,194 @@
+"""The first visit: three starts, each one click from a moving robot; shown until one is chosen, and on request."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.processes import wait_for_port
+from tests.web_ui.page_support import MARKS, choose_language, open_menu, open_tab, wait_for_frame
+from tests.web_ui.test_page_access import AXE, FINDINGS
+from tests.web_ui.test_page_recovery import NO_STORAGE
+
+pytestmark = MARKS
+
+READY = "window.thymio && window.thymio.connected && window.thymio.partPosition('robot')"
+SPEED = "() => Object.values(window.thymio.state().robot.wheelSpeeds)"
+MOVES = f"() => ({SPEED})().every((speed) => speed > 0.5)"
+RESTS = f"() => ({SPEED})().every((speed) => Math.abs(speed) < 0.01)"
+STARTS = ".welcome-starts"
+IN_SIGHT = """() => [...document.querySelectorAll(".welcome-start, .welcome-watch, .welcome-tour")].every((element) => {
+    const {left, top, right, bottom} = element.getBoundingClientRect();
+    return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
+})"""
+
+
+def wait_for_program(page, name):
+    """Wait until the robot runs the built-in program."""
+    page.wait_for_function(
+        "(name) => { const {program} = window.thymio.state();"
+        " return program?.state === 'running' && program.name.split('.')[0] === name; }",
+        arg=name,
+    )
+
+
+def visit(page, address, query="tour=off"):
+    page.goto(f"{address}?{query}")
+    page.wait_for_function(READY)
+
+
+@pytest.fixture
+def first_visit(suite, page):
+    """The page at a first visit: the robot waits in the ring of line. Also its address."""
+    address = suite("--playground", "line", "--program", "welcome")
+    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    visit(page, address)
+    page.locator(STARTS).wait_for()
+    wait_for_program(page, "welcome")
+    return page, address
+
+
+def test_drive_it_one_click_and_the_arrow_keys_drive(first_visit):
+    page, _ = first_visit
+    page.wait_for_function(RESTS)
+    page.get_by_role("button", name="Drive with the arrows").click()
+    wait_for_program(page, "thesis_basic")
+    playwright.expect(page.locator(STARTS)).to_have_count(0)
+    playwright.expect(page.locator("#view")).to_be_focused()
+    playwright.expect(page.locator("#pad")).to_be_attached()
+    page.keyboard.down("ArrowUp")
+    page.wait_for_function("() => window.thymio.state().robot.buttons.forward")
+    page.keyboard.up("ArrowUp")
+    page.wait_for_function(MOVES)
+
+
+def test_program_it_an_example_moves_and_its_text_is_open(first_visit):
+    page, _ = first_visit
+    page.locator("[data-start=program]").click()
+    page.get_by_role("menuitem", name=re.compile("^(Line follower|Follow the line)")).click()
+    wait_for_program(page, "line_follower")
+    page.wait_for_function(MOVES)
+    playwright.expect(page.locator("#panel-program")).to_be_visible()
+    playwright.expect(page.locator(".cm-content")).to_contain_text("Follow a black line")
+
+
+def test_connect_ros_2_the_shown_speed_is_sent_once(first_visit):
+    page, _ = first_visit
+    playwright.expect(page.locator("[data-start=ros]").locator("xpath=ancestor::li")).to_contain_text("/cmd_vel")
+    page.locator("[data-start=ros]").click()
+    sheet = page.get_by_role("dialog", name="Connect ROS 2")
+    command = "ros2 topic pub --rate 10 --times 20 /cmd_vel geometry_msgs/msg/Twist"
+    playwright.expect(sheet).to_contain_text(command)
+    for topic in ("/odom", "/imu", "/ground/{left, right}", "/led/circle"):
+        playwright.expect(sheet).to_contain_text(topic)
+    sheet.get_by_role("button", name="Send this speed once").click()
+    page.wait_for_function(MOVES)
+    page.wait_for_function(RESTS)  # after two seconds
+    link = sheet.get_by_role("link", name="All topics and services")
+    answer = page.request.get(f"{page.url.split('?')[0]}{link.get_attribute('href')}")
+    assert answer.ok
+    assert "cmd_vel" in answer.text()
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    sheet.get_by_role("button", name="Copy the command").click()
+    page.wait_for_function("async (command) => (await navigator.clipboard.readText()).startsWith(command)", arg=command)
+    page.keyboard.press("Escape")
+    playwright.expect(sheet).to_have_count(0)
+    playwright.expect(page.locator(STARTS)).to_have_count(0)
+    assert page.evaluate("window.thymio.state().program.state") == "running"  # Escape has stopped nothing
+
+
+def test_who_only_watches_sees_it_follow_the_line(first_visit):
+    page, _ = first_visit
+    page.locator("#pause").click()
+    page.wait_for_function("() => window.thymio.state().simulator.paused")
+    page.get_by_role("button", name="Just watch it follow the line").click()
+    wait_for_program(page, "line_follower")
+    page.wait_for_function(MOVES)
+
+
+def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(first_visit):
+    page, address = first_visit
+    page.keyboard.press("Escape")
+    playwright.expect(page.locator(STARTS)).to_have_count(0)
+    visit(page, address)
+    wait_for_frame(page)
+    playwright.expect(page.locator(STARTS)).to_have_count(0)
+    open_menu(page, "#help-open")
+    page.get_by_role("menuitem", name="Show the three ways to start").click()
+    page.locator(STARTS).wait_for()
+    open_tab(page, "robot")  # something else was chosen
+    playwright.expect(page.locator(STARTS)).to_have_count(0)
+
+
+def test_without_browser_storage_a_choice_lasts_in_this_visit(first_visit):
+    page, address = first_visit
+    page.add_init_script(NO_STORAGE)
+    visit(page, address)
+    page.locator(STARTS).wait_for()
+    page.keyboard.press("Escape")
+    page.reload()
+    page.wait_for_function(READY)
+    wait_for_frame(page)
+    playwright.expect(page.locator(STARTS)).to_have_count(0)
+
+
+def test_the_greeting_is_over_the_robot_and_in_every_language(first_visit):
+    page, _ = first_visit
+    hello = page.locator(".welcome-hello")
+    for language, text in (("de", "Hallo, ich bin Thymio."), ("fr", "Bonjour"), ("it", "Ciao"), ("en", "Hello")):
+        choose_language(page, language)
+        playwright.expect(hello).to_contain_text(text)
+    page.wait_for_function(
+        """() => {
+            const {left, right, bottom} = document.querySelector(".welcome-hello").getBoundingClientRect();
+            const robot = window.thymio.partPosition("robot");
+            return left < robot.x && robot.x < right && bottom < robot.y + 30;
+        }"""
+    )
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1024, 768), (390, 844), (640, 400)])
+def test_everything_is_in_sight_and_accessible_on_every_screen(first_visit, size):
+    page, address = first_visit
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.emulate_media(reduced_motion="reduce")
+    visit(page, address, "welcome=on")
+    page.locator(STARTS).wait_for()
+    for language in ("de", "fr", "it", "en"):
+        choose_language(page, language)
+        page.locator(STARTS).wait_for()
+        page.wait_for_function(IN_SIGHT)
+    if AXE.exists():
+        page.add_script_tag(path=str(AXE))
+        assert page.evaluate(FINDINGS) == []
+
+
+def test_the_keys_are_listed_in_a_dialog_that_escape_closes(first_visit):
+    page, address = first_visit
+    visit(page, address, "tour=off&welcome=off")
+    open_menu(page, "#help-open")
+    page.get_by_role("menuitem", name="Keys").click()
+    dialog = page.get_by_role("dialog", name="Keys")
+    playwright.expect(dialog).to_contain_text("press the robot’s buttons")
+    if AXE.exists():
+        page.add_script_tag(path=str(AXE))
+        assert page.evaluate(FINDINGS) == []
+    page.keyboard.press("Escape")
+    playwright.expect(dialog).to_have_count(0)
+    assert page.evaluate("window.thymio.state().program.state") == "running"
+
+
+def test_the_documentation_ships_with_the_page(first_visit):
+    page, _ = first_visit
+    open_menu(page, "#help-open")
+    with page.context.expect_page() as opened:
+        page.get_by_role("menuitem", name="Documentation").click()
+    documents = opened.value
+    documents.get_by_role("link", name="The web page").click()
+    playwright.expect(documents.get_by_role("heading", name="The web page", level=1)).to_be_visible()
+    if AXE.exists():
+        documents.add_script_tag(content=AXE.read_text(encoding="utf-8"))
+        assert documents.evaluate(FINDINGS) == []
