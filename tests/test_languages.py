@@ -94,6 +94,7 @@ def test_no_sentence_is_left_in_english(language: str, file: str) -> None:
 # -- the page ----------------------------------------------------------------------------------------------------------
 
 PARTS = {
+    "blockly": "blockly",
     "class_tab": "class",
     "creator": "creator",
     "editor": "editor",
