@@ -5,6 +5,7 @@ import { BLOCKS } from "../../web_ui/blockly/blocks/index.js";
 import { definitions } from "../../web_ui/blockly/definitions.js";
 import { generate } from "../../web_ui/blockly/generator.js";
 import { readLimits } from "../../web_ui/blockly/limits.js";
+import { injectOptions } from "../../web_ui/blockly/options.js";
 import { allBlocks } from "../../web_ui/blockly/state.js";
 import { theme } from "../../web_ui/blockly/themes.js";
 import { CATEGORIES, newBlock, offered, subroutineFlyout, subroutineNames, toolbox, variableFlyout } from "../../web_ui/blockly/toolbox.js";
@@ -143,6 +144,12 @@ test("a wrong teacher's file hides nothing and says why", () => {
   assert.deepEqual(keys("null"), ["format"]);
   assert.deepEqual(keys('{"format": 2, "hide": []}'), ["format"]);
   assert.deepEqual(keys('{"format": 1, "hide": ["nothing"]}'), ["unknown"]);
+});
+
+test("an editor takes nothing from other hosts, and blocks snap to the grid", () => {
+  const options = injectOptions("scratch", { t, media: "media/" });
+  assert.deepEqual([options.media, options.sounds, options.renderer, options.grid.snap], ["media/", false, "zelos", true]);
+  assert.equal(options.toolbox.contents.length, CATEGORIES.scratch.length);
 });
 
 test("every style of a block has a color in both looks", () => {

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { newAesl, readAesl } from "../../web_ui/editor/aesl.js";
+import { difference } from "../../web_ui/blockly/compare.js";
 import { newFile, readFile, writeFile } from "../../web_ui/blockly/file.js";
 import { generate } from "../../web_ui/blockly/generator.js";
 import { emptyState, sameWorkspace } from "../../web_ui/blockly/state.js";
@@ -182,4 +183,29 @@ test("an error of a file leaves the file and its program as they are", () => {
   const file = readFile(text);
   assert.deepEqual([file.text, file.code], [text, "call sound.system(-1)\n\n\n"]);
   assert.equal(file.problems[0].severity, "error");
+});
+
+test("a damaged file is read or refused, and never changed by that", () => {
+  const text = aesl(xml(golden("subroutines.xml").replace(/<\/?xml[^>]*>/g, "")));
+  assert.deepEqual(readFile(text).problems, []);
+  for (let at = 0; at < text.length; at += 3) {
+    const damaged = [text.slice(0, at) + text.slice(at + 5), text.slice(0, at) + '"<' + text.slice(at), text.slice(0, at)];
+    for (const each of damaged) {
+      const file = readFile(each);
+      if (file.problems.length === 0) assert.equal(writeFile(file, file.state), each);
+    }
+  }
+});
+
+test("a stored program is compared with that of the blocks", () => {
+  const current = generate(stateOf(xml(SHADOWS))).code;
+  assert.equal(difference(readFile(aesl(xml(SHADOWS), current))), null);
+  const spaced = current.replaceAll("\n", "\r\n\r\n\t").replace(" = ", "=").replace(/$/, "# end");
+  assert.equal(difference(readFile(aesl(xml(SHADOWS), spaced))), null);
+  assert.deepEqual(difference(readFile(aesl(xml(SHADOWS), current.replace("= 7", "= 8")))), {
+    line: 3,
+    stored: "mic.threshold=8",
+    generated: "mic.threshold=7",
+  });
+  assert.deepEqual(difference(readFile(aesl(xml(SHADOWS), `${current}a = 1`)))?.generated, "");
 });

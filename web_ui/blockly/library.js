@@ -5,8 +5,14 @@ import "blockly/blocks";
 import { registerFieldColour } from "@blockly/field-colour";
 
 import { definitions } from "./definitions.js";
+import { injectOptions } from "./options.js";
+import { allBlocks } from "./state.js";
+import { theme } from "./themes.js";
+import { NEW_VARIABLE, subroutineFlyout, subroutineNames, variableFlyout } from "./toolbox.js";
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
+/** @typedef {import("./toolbox.js").Look} Look */
+/** @typedef {import("./state.js").WorkspaceState} WorkspaceState */
 
 /** Blockly's own texts by language: each is a file of its own. @type {Record<string, () => Promise<Record<string, unknown>>>} */
 const MESSAGES = {
@@ -29,6 +35,45 @@ export async function defineBlocks(language, t) {
   const all = definitions(t);
   for (const { type } of all) delete Blockly.Blocks[type];
   Blockly.common.defineBlocks(Blockly.common.createBlockDefinitionsFromJsonArray(all));
+}
+
+/**
+ * Show an editor of blocks in an element. Blocks must be defined.
+ *
+ * @param {HTMLElement} element
+ * @param {Look} look
+ * @param {{ t: Translate, media: string, hidden?: ReadonlySet<string>, readOnly?: boolean }} options  see options.js
+ * @returns {Blockly.WorkspaceSvg}
+ */
+export function openWorkspace(element, look, { t, media, hidden = new Set(), readOnly = false }) {
+  const { base, ...colors } = theme(look);
+  const parent = base === "zelos" ? Blockly.Themes.Zelos : Blockly.Themes.Classic;
+  const options = injectOptions(look, { t, media, hidden, readOnly });
+  const workspace = Blockly.inject(element, { ...options, theme: Blockly.Theme.defineTheme(colors.name, { ...colors, base: parent }) });
+  workspace.registerToolboxCategoryCallback("variables", () => {
+    const variables = workspace.getVariableMap().getAllVariables();
+    return variableFlyout(
+      variables.map((variable) => ({ name: variable.getName(), id: variable.getId() })),
+      look,
+      t,
+      hidden,
+    );
+  });
+  workspace.registerToolboxCategoryCallback("subroutines", () =>
+    subroutineFlyout(subroutineNames(allBlocks(saveState(workspace))), hidden),
+  );
+  workspace.registerButtonCallback(NEW_VARIABLE, () => Blockly.Variables.createVariableButtonHandler(workspace));
+  return workspace;
+}
+
+/** Replace what is in a workspace. @param {Blockly.WorkspaceSvg} workspace @param {WorkspaceState} state */
+export function loadState(workspace, state) {
+  Blockly.serialization.workspaces.load(/** @type {Record<string, any>} */ (state), workspace);
+}
+
+/** What is in a workspace. @param {Blockly.Workspace} workspace @returns {WorkspaceState} */
+export function saveState(workspace) {
+  return Blockly.serialization.workspaces.save(workspace);
 }
 
 export { Blockly };

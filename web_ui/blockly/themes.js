@@ -1,24 +1,20 @@
-// Colors of blocks and categories in both looks. Hues are those of the existing Blockly page, colors those that pupils
-// know from Scratch, dark enough for white text.
+// Colors of blocks and categories in both looks: of the hues of the existing Blockly page, and like those that pupils know
+// from Scratch. All are dark enough for white text (contrast of at least 4.5).
 
 /** @typedef {import("./toolbox.js").Look} Look */
 
-/** Style → hue of Blockly. @type {Record<string, number>} */
-const HUES = {
-  event: 10,
-  actuator: 60,
-  led: 160,
-  sensor: 230,
-  sensor_check: 210,
-  logic: 210,
-  loop: 120,
-  math: 230,
-  variable: 330,
-  procedure: 290,
-};
-
-/** Style → color. @type {Record<string, string>} */
+/** Style → color of the existing page's hues: 10, 60, 160, 230, 210, 210, 120, 230, 330, 290. @type {Record<string, string>} */
 const COLORS = {
+  event: "#a66153",
+  actuator: "#78783c",
+  led: "#407f6a",
+  sensor: "#5361a6",
+  sensor_check: "#4f779e",
+  logic: "#4f779e",
+  loop: "#418241",
+  math: "#5361a6",
+  variable: "#a6537c",
+  procedure: "#9853a6",
   motion: "#3373cc",
   looks: "#774dcb",
   sound: "#9b3d9b",
@@ -47,20 +43,30 @@ const HATS = ["event", "scratch_event", "procedure"];
  */
 export function theme(look) {
   const isScratch = look === "scratch";
-  const colors = { ...HUES, ...COLORS, ...(isScratch ? AS_SCRATCH : {}) };
-  const entries = Object.entries(colors).map(([name, color]) => /** @type {const} */ ([name, String(color)]));
+  const colors = Object.entries({ ...COLORS, ...(isScratch ? AS_SCRATCH : {}) });
   return {
     name: `thymio-${look}`,
     base: isScratch ? "zelos" : "classic",
     blockStyles: Object.fromEntries(
-      entries.map(([name, colourPrimary]) => [
+      colors.map(([name, colourPrimary]) => [
         `${name}_blocks`,
-        { colourPrimary, ...(isScratch && HATS.includes(name) ? { hat: "cap" } : {}) },
+        {
+          colourPrimary,
+          colourSecondary: darker(colourPrimary, 0.88),
+          colourTertiary: darker(colourPrimary, 0.72),
+          ...(isScratch && HATS.includes(name) ? { hat: "cap" } : {}),
+        },
       ]),
     ),
-    categoryStyles: Object.fromEntries(entries.map(([name, colour]) => [`${name}_category`, { colour }])),
+    categoryStyles: Object.fromEntries(colors.map(([name, colour]) => [`${name}_category`, { colour }])),
     startHats: false,
   };
+}
+
+/** @param {string} color @param {number} factor */
+function darker(color, factor) {
+  const parts = [1, 3, 5].map((at) => Math.round(parseInt(color.slice(at, at + 2), 16) * factor));
+  return `#${parts.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
 }
 
 /** Renderer of a look. @type {Record<Look, string>} */

@@ -1,0 +1,101 @@
+// Command: prints the Aseba text that is generated for the blocks of a file.
+
+import { readFileSync, realpathSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+
+import { LANGUAGES, translator } from "../i18n/index.js";
+import texts from "../i18n/blockly.texts.js";
+import { importSb3 } from "../scratch/import_sb3.js";
+import { difference } from "./compare.js";
+import { readFile } from "./file.js";
+import { generate } from "./generator.js";
+import { fileProblemText, problemText, scratchText } from "./messages.js";
+
+/** @typedef {{ output: string, errors: string, exit: 0 | 1 | 2 }} Answer */
+/** @typedef {{ path: string | null, compare: boolean, language: string }} Options */
+/** @typedef {import("./state.js").WorkspaceState} WorkspaceState */
+/** @typedef {import("../i18n/index.js").Translate} Translate */
+
+const USAGE = `usage: node web_ui/blockly/cli.js [--compare] [--lang CODE] FILE
+
+Print the Aseba text that is generated for the blocks of an .aesl or XML file, or of a Scratch 3 project (.sb3);
+'-' is the standard input.
+
+options:
+  --compare    instead, print the first line in which the text of an .aesl file differs from the generated one
+  --lang CODE  language of messages: ${Object.keys(LANGUAGES).join(", ")}; default: en
+
+exit codes: 0 printed, 1 the blocks have an error, 2 wrong usage, or a file that cannot be read as blocks
+`;
+/** The first bytes of a ZIP archive. */
+const ZIP = "PK";
+
+/**
+ * @param {string[]} command  arguments
+ * @param {(path: string) => Uint8Array} [read]
+ * @returns {Promise<Answer>}
+ */
+export async function run(command, read = (path) => readFileSync(path === "-" ? 0 : path)) {
+  const options = parseArguments(command);
+  if (options === null) return { output: "", errors: USAGE, exit: 2 };
+  const { path, compare, language } = options;
+  if (path === null) return { output: USAGE, errors: "", exit: 0 };
+  const t = translator(language, texts);
+  try {
+    const bytes = read(path);
+    const isArchive = new TextDecoder("latin1").decode(bytes.subarray(0, 2)) === ZIP;
+    return isArchive ? await project(path, bytes, t) : program(path, new TextDecoder().decode(bytes), compare, t);
+  } catch (error) {
+    if (error instanceof Error && "code" in error) return { output: "", errors: `${path}: ${error.message}\n`, exit: 2 };
+    throw error;
+  }
+}
+
+/** @param {string} path @param {string} text @param {boolean} compare @param {Translate} t @returns {Answer} */
+function program(path, text, compare, t) {
+  const file = readFile(text);
+  const errors = file.problems.map((problem) => `${path}:${problem.line}:${problem.column}: ${fileProblemText(problem, t)}\n`);
+  if (errors.length > 0) return { output: "", errors: errors.join(""), exit: 2 };
+  if (!file.hasWorkspace) return { output: "", errors: `${path}: ${t("file.noWorkspace")}\n`, exit: 2 };
+  if (!compare) return generated(path, file.state, t);
+  const found = difference(file);
+  return { output: found === null ? "" : `${found.line}: ${found.stored} | ${found.generated}\n`, errors: "", exit: 0 };
+}
+
+/** @param {string} path @param {Uint8Array} bytes @param {Translate} t @returns {Promise<Answer>} */
+async function project(path, bytes, t) {
+  const { state, error, leftOut } = await importSb3(bytes);
+  if (error !== null) return { output: "", errors: `${path}: ${scratchText(error, t)}\n`, exit: 2 };
+  const answer = generated(path, state, t);
+  return { ...answer, errors: leftOut.map((each) => `${path}: ${scratchText(each, t)}\n`).join("") + answer.errors };
+}
+
+/** @param {string} path @param {WorkspaceState} state @param {Translate} t @returns {Answer} */
+function generated(path, state, t) {
+  const { code, problems } = generate(state);
+  const errors = problems.map((problem) => `${path}: ${problemText(problem, t)}\n`).join("");
+  return { output: code, errors, exit: problems.some(({ severity }) => severity === "error") ? 1 : 0 };
+}
+
+/** @param {string[]} command  @returns {Options | null} */
+function parseArguments(command) {
+  const rest = [...command];
+  const options = { compare: false, language: "en" };
+  /** @type {string[]} */ const paths = [];
+  while (rest.length > 0) {
+    const word = /** @type {string} */ (rest.shift());
+    if (word === "-h" || word === "--help") return { path: null, ...options };
+    if (word === "--compare") options.compare = true;
+    else if (word === "--lang") options.language = rest.shift() ?? "";
+    else if (word.startsWith("-") && word !== "-") return null;
+    else paths.push(word);
+  }
+  return paths.length === 1 && options.language in LANGUAGES ? { path: paths[0], ...options } : null;
+}
+
+if (process.argv[1] !== undefined && import.meta.url === pathToFileURL(realpathSync(process.argv[1])).href) {
+  const { output, errors, exit } = await run(process.argv.slice(2));
+  process.stdout.write(output);
+  process.stderr.write(errors);
+  process.exitCode = exit;
+}

@@ -1,0 +1,31 @@
+// What `Blockly.inject` gets, apart from the theme.
+
+import { RENDERERS } from "./themes.js";
+import { toolbox } from "./toolbox.js";
+
+/** @typedef {import("./toolbox.js").Look} Look */
+/** @typedef {import("../i18n/index.js").Translate} Translate */
+
+/** Blocks snap to a grid of this many pixels, as on the existing page. */
+const GRID_PX = 25;
+
+/**
+ * @param {Look} look
+ * @param {{ t: Translate, media: string, hidden?: ReadonlySet<string>, readOnly?: boolean }} options  `media` is the folder of
+ *   Blockly's pictures: without one, Blockly would load them from another host
+ */
+export function injectOptions(look, { t, media, hidden = new Set(), readOnly = false }) {
+  return {
+    toolbox: toolbox(look, t, hidden),
+    renderer: RENDERERS[look],
+    media,
+    readOnly,
+    grid: { spacing: GRID_PX, length: 3, snap: true },
+    zoom: { controls: true, wheel: true, minScale: 0.25, maxScale: 4 },
+    collapse: true,
+    comments: true,
+    disable: true,
+    sounds: false,
+    trashcan: false, // blocks are dragged back to the toolbox
+  };
+}
