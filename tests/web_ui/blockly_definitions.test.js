@@ -8,7 +8,15 @@ import { readLimits } from "../../web_ui/blockly/limits.js";
 import { injectOptions } from "../../web_ui/blockly/options.js";
 import { allBlocks } from "../../web_ui/blockly/state.js";
 import { theme } from "../../web_ui/blockly/themes.js";
-import { CATEGORIES, newBlock, offered, subroutineFlyout, subroutineNames, toolbox, variableFlyout } from "../../web_ui/blockly/toolbox.js";
+import {
+  CATEGORIES,
+  newBlock,
+  offered,
+  subroutineFlyout,
+  subroutineNames,
+  toolbox,
+  variableFlyout,
+} from "../../web_ui/blockly/toolbox.js";
 import texts from "../../web_ui/i18n/blockly.texts.js";
 import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
 import { Blockly } from "./blockly_dom.js";
@@ -18,7 +26,8 @@ const t = translator("en", texts);
 const LOOKS = /** @type {const} */ (["blockly", "scratch"]);
 
 const ColorField = class extends Blockly.FieldTextInput {};
-ColorField.fromJson = (/** @type {{ colour: string }} */ { colour }) => Reflect.construct(ColorField, [colour]);
+ColorField.fromJson = (/** @type {Record<string, string>} */ options) =>
+  Reflect.construct(ColorField, [Object.values(options).find((value) => value.startsWith("#"))]);
 Blockly.fieldRegistry.register("field_colour", ColorField);
 
 /** @param {string} language */
@@ -28,7 +37,11 @@ function define(language) {
   Blockly.common.defineBlocks(Blockly.common.createBlockDefinitionsFromJsonArray(all));
 }
 
-/** The state that Blockly has after it has loaded one. @param {import("../../web_ui/blockly/state.js").WorkspaceState} state */
+/**
+ * The state that Blockly has after it has loaded one.
+ *
+ * @param {import("../../web_ui/blockly/state.js").WorkspaceState} state
+ */
 function throughBlockly(state) {
   const workspace = new Blockly.Workspace();
   Blockly.serialization.workspaces.load(state, workspace);
@@ -148,7 +161,10 @@ test("a wrong teacher's file hides nothing and says why", () => {
 
 test("an editor takes nothing from other hosts, and blocks snap to the grid", () => {
   const options = injectOptions("scratch", { t, media: "media/" });
-  assert.deepEqual([options.media, options.sounds, options.renderer, options.grid.snap], ["media/", false, "zelos", true]);
+  assert.deepEqual(
+    [options.media, options.sounds, options.renderer, options.grid.snap],
+    ["media/", false, "zelos", true],
+  );
   assert.equal(options.toolbox.contents.length, CATEGORIES.scratch.length);
 });
 

@@ -62,7 +62,8 @@ test("a workspace is read with and without namespace, with shadows and both voca
 });
 
 test("prefixes and the tags of the oldest files are read", () => {
-  const old = '<b:xml xmlns:b="x"><b:block type="thymio_event_timer"><b:title name="EVENT">timer1</b:title></b:block></b:xml>';
+  const old =
+    '<b:xml xmlns:b="x"><b:block type="thymio_event_timer"><b:title name="EVENT">timer1</b:title></b:block></b:xml>';
   assert.equal(generate(stateOf(old)).code, "onevent timer1\n");
 });
 
@@ -71,11 +72,19 @@ test("ids and the list of variables of new Blockly are read", () => {
     <block type="variables_set" id="q" x="1" y="2"><field name="VAR" id="k1">a b</field></block></xml>`;
   const state = stateOf(text);
   assert.deepEqual(state.variables, [{ id: "k1", name: "a b" }]);
-  assert.deepEqual(state.blocks?.blocks, [{ type: "variables_set", id: "q", fields: { VAR: { id: "k1" } }, x: 1, y: 2 }]);
+  assert.deepEqual(state.blocks?.blocks, [
+    { type: "variables_set", id: "q", fields: { VAR: { id: "k1" } }, x: 1, y: 2 },
+  ]);
 });
 
 test("nothing changes in a file if nothing has changed", () => {
-  const texts = [aesl(xml(SHADOWS)), aesl(xml(SHADOWS, XHTML)).replaceAll("\n", "\r\n"), xml(SHADOWS), newAesl("a = 1"), aesl("<xml/>")];
+  const texts = [
+    aesl(xml(SHADOWS)),
+    aesl(xml(SHADOWS, XHTML)).replaceAll("\n", "\r\n"),
+    xml(SHADOWS),
+    newAesl("a = 1"),
+    aesl("<xml/>"),
+  ];
   for (const text of texts) {
     const file = readFile(text);
     assert.equal(writeFile(file, structuredClone(file.state)), text);
@@ -101,7 +110,12 @@ test("only the workspace and the code are replaced", () => {
 test("a file without a workspace gets one, and other plug-ins stay", () => {
   const state = stateOf(xml(SHADOWS));
   const other = "<toolsPlugins><Other/></toolsPlugins>";
-  for (const node of ['<node name="a"/>', '<node name="a">x = 1</node>', `<node name="a">x = 1${other}</node>`, '<node name="a">x = 1<toolsPlugins/></node>']) {
+  for (const node of [
+    '<node name="a"/>',
+    '<node name="a">x = 1</node>',
+    `<node name="a">x = 1${other}</node>`,
+    '<node name="a">x = 1<toolsPlugins/></node>',
+  ]) {
     const file = readFile(`<network>${node}</network>`);
     assert.equal(file.hasWorkspace, false);
     const written = writeFile(file, state);
@@ -123,7 +137,12 @@ test("the workspace is that of the first node that has one", () => {
   const second = aesl(xml(SHADOWS)).replace("<!--node thymio-II-->", '<node name="first">b = 2</node>');
   const file = readFile(second);
   assert.equal(file.node, 1);
-  assert.equal(readAesl(writeFile(file, file.state, "c = 3")).nodes.map(({ code }) => code).join(), "b = 2,c = 3");
+  assert.equal(
+    readAesl(writeFile(file, file.state, "c = 3"))
+      .nodes.map(({ code }) => code)
+      .join(),
+    "b = 2,c = 3",
+  );
 });
 
 test("a new file has the code and the workspace", () => {
@@ -154,7 +173,9 @@ test("flags, comments, data and comments of the workspace are kept", () => {
 });
 
 test("an if without a count of its branches gets it from its inputs", () => {
-  const text = xml('<block type="controls_if"><statement name="DO1"><block type="thymio_sound_stop"/></statement><statement name="ELSE"></statement></block>');
+  const text = xml(
+    '<block type="controls_if"><statement name="DO1"><block type="thymio_sound_stop"/></statement><statement name="ELSE"></statement></block>',
+  );
   assert.deepEqual(stateOf(text).blocks?.blocks[0].extraState, { elseIfCount: 1, hasElse: true });
 });
 
@@ -162,20 +183,41 @@ test("what the editor does not have is an error with its place", () => {
   assert.deepEqual(problemsOf("<network"), ["notXml 1:1"]);
   assert.deepEqual(problemsOf(""), ["notXml 1:1"]);
   assert.deepEqual(problemsOf(xml('<block type="text_print"></block>')), ["unknownBlock 2:1"]);
-  assert.deepEqual(problemsOf(xml('<block type="thymio_led_off">\n <field name="LED">leds.none</field></block>')), ["unknownOption 3:2"]);
-  assert.deepEqual(problemsOf(xml('<block type="math_number"><field name="NUM">many</field></block>')), ["notANumber 2:27"]);
-  assert.deepEqual(problemsOf(xml('<block type="thymio_led"><field name="COLOR">red</field></block>')), ["notAColor 2:26"]);
-  assert.deepEqual(problemsOf(xml('<block type="thymio_led"><field name="HUE">1</field></block>')), ["unknownField 2:26"]);
+  assert.deepEqual(problemsOf(xml('<block type="thymio_led_off">\n <field name="LED">leds.none</field></block>')), [
+    "unknownOption 3:2",
+  ]);
+  assert.deepEqual(problemsOf(xml('<block type="math_number"><field name="NUM">many</field></block>')), [
+    "notANumber 2:27",
+  ]);
+  assert.deepEqual(problemsOf(xml('<block type="thymio_led"><field name="COLOR">red</field></block>')), [
+    "notAColor 2:26",
+  ]);
+  assert.deepEqual(problemsOf(xml('<block type="thymio_led"><field name="HUE">1</field></block>')), [
+    "unknownField 2:26",
+  ]);
   assert.deepEqual(problemsOf(xml('<block type="thymio_led"><value name="X"></value></block>')), ["unknownInput 2:26"]);
   const inSocket = (/** @type {string} */ tag, /** @type {string} */ type) =>
-    problemsOf(xml(`<block type="controls_if">\n<${tag}><block type="${type}"/></${tag.split(" ")[0]}></block>`)).map((each) => each.split(" ")[0]);
+    problemsOf(xml(`<block type="controls_if">\n<${tag}><block type="${type}"/></${tag.split(" ")[0]}></block>`)).map(
+      (each) => each.split(" ")[0],
+    );
   assert.deepEqual(inSocket('value name="IF1"', "math_number"), ["wrongPlace"]);
   assert.deepEqual(inSocket('value name="IF1"', "thymio_variable_get"), []);
   assert.deepEqual(inSocket('statement name="DO0"', "logic_boolean"), ["wrongPlace"]);
   assert.deepEqual(inSocket('statement name="ELSE"', "thymio_event_shock"), ["wrongPlace"]);
   assert.deepEqual(inSocket("next", "math_number"), ["wrongPlace"]);
   assert.deepEqual(problemsOf(xml("<circle/>")), ["unknownElement 2:1"]);
-  assert.deepEqual(problemsOf(xml('<block type="procedures_defnoreturn"><mutation><arg name="x"/></mutation></block>')), ["parameters 2:38"]);
+  assert.deepEqual(
+    problemsOf(xml('<block type="procedures_defnoreturn"><mutation><arg name="x"/></mutation></block>')),
+    ["parameters 2:38"],
+  );
+});
+
+test("a long program is read, and one that is nested too deeply is refused", () => {
+  const start = '<block type="thymio_sound_stop"><next>';
+  const nested = (/** @type {number} */ count) =>
+    xml(`${start.repeat(count)}<block type="thymio_sound_stop"/>${"</next></block>".repeat(count)}`);
+  assert.equal(generate(stateOf(nested(500))).code.split("\n").length, 502);
+  assert.deepEqual(problemsOf(nested(50_000)), ["tooDeep 1:1"]);
 });
 
 test("an error of a file leaves the file and its program as they are", () => {
@@ -189,7 +231,11 @@ test("a damaged file is read or refused, and never changed by that", () => {
   const text = aesl(xml(golden("subroutines.xml").replace(/<\/?xml[^>]*>/g, "")));
   assert.deepEqual(readFile(text).problems, []);
   for (let at = 0; at < text.length; at += 3) {
-    const damaged = [text.slice(0, at) + text.slice(at + 5), text.slice(0, at) + '"<' + text.slice(at), text.slice(0, at)];
+    const damaged = [
+      text.slice(0, at) + text.slice(at + 5),
+      text.slice(0, at) + '"<' + text.slice(at),
+      text.slice(0, at),
+    ];
     for (const each of damaged) {
       const file = readFile(each);
       if (file.problems.length === 0) assert.equal(writeFile(file, file.state), each);

@@ -20,7 +20,9 @@ for (const name of PROGRAMS) {
 }
 
 test("every block is in a golden program", () => {
-  const used = new Set(PROGRAMS.flatMap((name) => [...allBlocks(stateOf(golden(`${name}.xml`)))].map(({ type }) => type)));
+  const used = new Set(
+    PROGRAMS.flatMap((name) => [...allBlocks(stateOf(golden(`${name}.xml`)))].map(({ type }) => type)),
+  );
   assert.deepEqual(
     [...BLOCKS.keys()].filter((type) => !used.has(type)),
     [],
@@ -30,11 +32,13 @@ test("every block is in a golden program", () => {
 test("every option of every block gives a program of its own", () => {
   for (const spec of BLOCKS.values()) {
     for (const { kind, name, options = [] } of spec.args) {
-      if (kind !== "choice" || spec.shape === "hat" || spec.step !== undefined || spec.type === "math_arithmetic") continue;
+      if (kind !== "choice" || spec.shape === "hat" || spec.step !== undefined || spec.type === "math_arithmetic")
+        continue;
       const codes = options.map(([, value]) => {
         const block = newBlock(spec.type);
         block.fields = { ...block.fields, [name]: value };
-        if (spec.shape === "Number") return program({ type: "variables_set", fields: { VAR: "x" }, inputs: { VALUE: { block } } }).code;
+        if (spec.shape === "Number")
+          return program({ type: "variables_set", fields: { VAR: "x" }, inputs: { VALUE: { block } } }).code;
         return program(spec.shape === "Boolean" ? { type: "thymio_when", inputs: { WHEN: { block } } } : block).code;
       });
       assert.equal(codes.includes(""), false, spec.type);
@@ -51,7 +55,11 @@ test("hats of one event become one handler in the order of the workspace", () =>
     y,
     inputs: { HANDLER: { block: { type: "thymio_actuator_mic", inputs: { VALUE: { shadow: number(value) } } } } },
   });
-  const { code } = program(hat(300, "thymio_event_shock", 3), hat(100, "thymio_event_shock", 1), hat(200, "thymio_event_timer", 2));
+  const { code } = program(
+    hat(300, "thymio_event_shock", 3),
+    hat(100, "thymio_event_shock", 1),
+    hat(200, "thymio_event_timer", 2),
+  );
   assert.equal(
     code,
     "onevent tap\n\tmic.threshold = 1\n\n\tmic.threshold = 3\n\nonevent timer0\n\tmic.threshold = 2\n",
@@ -80,6 +88,13 @@ test("each line has the id of its block, and a block all lines inside", () => {
   assert.equal(linesOfBlock(generated, state, "missing"), null);
 });
 
+test("a field that is missing or has no valid option is that of a new block", () => {
+  for (const fields of [undefined, { SOUND: "99" }]) {
+    assert.equal(program({ type: "thymio_sound_system", fields }).code, "call sound.system(0)\n");
+  }
+  assert.equal(program({ type: "thymio_motors_start", fields: { COMMAND: "constructor" } }).code.split("\n").length, 3);
+});
+
 test("a disabled block is left out, what is below it stays", () => {
   const disabled = { ...STOP, disabledReasons: ["MANUALLY_DISABLED"] };
   assert.equal(program(stack(disabled, { type: "thymio_sound_stop" })).code, "call sound.system(-1)\n");
@@ -91,7 +106,15 @@ test("an empty workspace is an empty program", () => {
 });
 
 test("names become ones that Aseba accepts", () => {
-  const names = { "my speed": "my_speed", "2nd": "_2nd", ".a": "a", "ça": "ça", "x+y": "x_y", "": "unnamed", "a.b": "a.b" };
+  const names = {
+    "my speed": "my_speed",
+    "2nd": "_2nd",
+    ".a": "a",
+    ça: "ça",
+    "x+y": "x_y",
+    "": "unnamed",
+    "a.b": "a.b",
+  };
   for (const [name, allowed] of Object.entries(names)) assert.equal(allowedName(name), allowed);
 });
 
@@ -126,9 +149,13 @@ test("what cannot work is a problem with its block", () => {
     "error numberRange",
   ]);
   const near = { type: "thymio_compare", fields: { OP: "LT" }, inputs: { A: { block: sensor } } };
-  assert.deepEqual(problemsOf({ type: "controls_whileUntil", inputs: { BOOL: { block: near } } }), ["warning loopOnSensor"]);
+  assert.deepEqual(problemsOf({ type: "controls_whileUntil", inputs: { BOOL: { block: near } } }), [
+    "warning loopOnSensor",
+  ]);
   const wait = { type: "control_wait" };
-  assert.deepEqual(problemsOf({ type: "thymio_event_shock", inputs: { HANDLER: { block: wait } } }), ["error needsScript"]);
+  assert.deepEqual(problemsOf({ type: "thymio_event_shock", inputs: { HANDLER: { block: wait } } }), [
+    "error needsScript",
+  ]);
   const timer = { type: "thymio_event_timer", inputs: { HANDLER: { block: STOP } } };
   assert.deepEqual(problemsOf(timer, stack({ type: "event_whenflagclicked" }, wait)), ["error timerInUse"]);
 });

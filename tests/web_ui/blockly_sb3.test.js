@@ -50,7 +50,12 @@ const project = (blocks, variables = {}) => ({
 });
 
 /** @param {string} menu @param {string | number} value */
-const menu = (menu, value) => ({ opcode: `thymio_menu_${menu}`, fields: { [menu]: [value, null] }, shadow: true, inputs: {} });
+const menu = (menu, value) => ({
+  opcode: `thymio_menu_${menu}`,
+  fields: { [menu]: [value, null] },
+  shadow: true,
+  inputs: {},
+});
 const FLAG = { opcode: "event_whenflagclicked", topLevel: true, next: "a", inputs: {}, fields: {}, x: 5, y: 6 };
 
 /** @param {Record<string, any>} blocks @param {Record<string, any>} [variables] */
@@ -92,7 +97,12 @@ test("menus hold text, numbers, nothing, or a block", () => {
   const withMenu = (input, others) =>
     imported({
       hat: { ...FLAG },
-      a: { opcode: "data_setvariableto", next: null, inputs: { VALUE: [3, "p", [10, "0"]] }, fields: { VARIABLE: ["v", "id"] } },
+      a: {
+        opcode: "data_setvariableto",
+        next: null,
+        inputs: { VALUE: [3, "p", [10, "0"]] },
+        fields: { VARIABLE: ["v", "id"] },
+      },
       p: { opcode: "thymio_proximity", inputs: { N: input }, fields: {} },
       ...others,
     });
@@ -114,7 +124,12 @@ test("conditions, loops, operators and variables are imported", () => {
     {
       hat: { ...FLAG },
       a: { opcode: "control_forever", next: null, inputs: { SUBSTACK: [2, "if"] }, fields: {} },
-      if: { opcode: "control_if_else", next: "c", inputs: { CONDITION: [2, "or"], SUBSTACK: [2, "b"], SUBSTACK2: [2, "s"] }, fields: {} },
+      if: {
+        opcode: "control_if_else",
+        next: "c",
+        inputs: { CONDITION: [2, "or"], SUBSTACK: [2, "b"], SUBSTACK2: [2, "s"] },
+        fields: {},
+      },
       or: { opcode: "operator_or", inputs: { OPERAND1: [2, "gt"], OPERAND2: [2, "not"] }, fields: {} },
       gt: { opcode: "operator_gt", inputs: { OPERAND1: [3, "g", [10, ""]], OPERAND2: [1, [10, "300"]] }, fields: {} },
       g: { opcode: "thymio_ground", inputs: { N: [1, "m"] }, fields: {} },
@@ -122,7 +137,12 @@ test("conditions, loops, operators and variables are imported", () => {
       not: { opcode: "operator_not", inputs: {}, fields: {} },
       b: { opcode: "thymio_moveWithTime", next: null, inputs: { N: [1, [4, "50"]], S: [1, [4, "0.5"]] }, fields: {} },
       s: { opcode: "thymio_stopMotors", next: null, inputs: {}, fields: {} },
-      c: { opcode: "data_changevariableby", next: null, inputs: { VALUE: [3, [12, "step", "id3"], [4, "1"]] }, fields: { VARIABLE: ["rounds", "id2"] } },
+      c: {
+        opcode: "data_changevariableby",
+        next: null,
+        inputs: { VALUE: [3, [12, "step", "id3"], [4, "1"]] },
+        fields: { VARIABLE: ["rounds", "id2"] },
+      },
     },
     { id2: ["rounds", 0], id3: ["step", 2], id4: ["unused", 5] },
   );
@@ -141,7 +161,13 @@ test("what the robot cannot do is listed with how often it occurs", () => {
     c: { opcode: "thymio_move", next: "d", inputs: { N: [1, [4, "far"]] }, fields: {} },
     d: { opcode: "thymio_move", next: "e", inputs: { N: [1, [4, "10.5"]] }, fields: {} },
     e: { opcode: "thymio_distance", next: null, inputs: {}, fields: {} },
-    key: { opcode: "event_whenkeypressed", topLevel: true, next: null, inputs: {}, fields: { KEY_OPTION: ["space", null] } },
+    key: {
+      opcode: "event_whenkeypressed",
+      topLevel: true,
+      next: null,
+      inputs: {},
+      fields: { KEY_OPTION: ["space", null] },
+    },
     loose: { opcode: "thymio_stopMotors", topLevel: true, next: null, inputs: {}, fields: {} },
     alone: [12, "v", "id", 10, 20],
   });
@@ -157,13 +183,22 @@ test("what the robot cannot do is listed with how often it occurs", () => {
 });
 
 test("messages start other scripts, also of other sprites", () => {
-  const two = project({ hat: { ...FLAG }, a: { opcode: "event_broadcast", next: null, inputs: { BROADCAST_INPUT: [1, [11, "go", "id"]] }, fields: {} } });
+  const two = project({
+    hat: { ...FLAG },
+    a: { opcode: "event_broadcast", next: null, inputs: { BROADCAST_INPUT: [1, [11, "go", "id"]] }, fields: {} },
+  });
   two.targets.push({
     isStage: false,
     name: "Second",
     variables: {},
     blocks: {
-      hat: { opcode: "event_whenbroadcastreceived", topLevel: true, next: "a", inputs: {}, fields: { BROADCAST_OPTION: ["go", "id"] } },
+      hat: {
+        opcode: "event_whenbroadcastreceived",
+        topLevel: true,
+        next: "a",
+        inputs: {},
+        fields: { BROADCAST_OPTION: ["go", "id"] },
+      },
       a: { opcode: "control_wait", next: null, inputs: { DURATION: [1, [5, "1"]] }, fields: {} },
     },
   });
@@ -173,8 +208,62 @@ test("messages start other scripts, also of other sprites", () => {
   assert.match(generate(state).code, /^script = 1$/m);
 });
 
+test("variables of two sprites with one name stay two", () => {
+  /** @param {string} id @param {string} value */
+  const sets = (id, value) => ({
+    hat: { ...FLAG },
+    a: {
+      opcode: "data_setvariableto",
+      next: null,
+      inputs: { VALUE: [1, [10, value]] },
+      fields: { VARIABLE: ["Speed", id] },
+    },
+  });
+  const two = project(sets("one", "1"));
+  two.targets.push({ isStage: false, name: "Second", variables: {}, blocks: sets("two", "2") });
+  assert.match(generate(importProject(two).state).code, /Speed = 1\nSpeed_2 = 2\n$/);
+});
+
+test("a block inside itself is left out", () => {
+  const { leftOut } = imported({
+    hat: { ...FLAG },
+    a: { opcode: "control_forever", next: null, inputs: { SUBSTACK: [2, "a"] }, fields: {} },
+  });
+  assert.deepEqual(leftOut, []);
+});
+
+test("a division is imported, and its fractions are listed", () => {
+  const { code, leftOut } = imported({
+    hat: { ...FLAG },
+    a: { opcode: "thymio_move", next: null, inputs: { N: [3, "d", [4, "50"]] }, fields: {} },
+    d: { opcode: "operator_divide", inputs: { NUM1: [1, [4, "7"]], NUM2: [1, [4, "2"]] }, fields: {} },
+  });
+  assert.match(code, /move\.left = 7 \/ 2/);
+  assert.deepEqual(leftOut, [{ key: "leftOutDivision", values: { count: 1 } }]);
+});
+
+test("a project with wrong parts is read without an internal error", () => {
+  const text = JSON.stringify(project(DRIVE, { id: ["v", 1] }));
+  const values = ["null", "5", '"x"', "[]", "{}", "[1]", "[null]", "true"];
+  for (const match of text.matchAll(/(?<=[:,[])("[^"]*"|\d+|null|true|\[[^[\]]*\]|\{[^{}]*\})/g)) {
+    for (const value of values) {
+      const changed = text.slice(0, match.index) + value + text.slice(match.index + match[0].length);
+      let data;
+      try {
+        data = JSON.parse(changed);
+      } catch {
+        continue; // the name of an entry
+      }
+      generate(importProject(data).state);
+    }
+  }
+});
+
 test("a circle of blocks in a damaged project ends", () => {
-  const { code } = imported({ hat: { ...FLAG }, a: { opcode: "thymio_stopMotors", next: "a", inputs: {}, fields: {} } });
+  const { code } = imported({
+    hat: { ...FLAG },
+    a: { opcode: "thymio_stopMotors", next: "a", inputs: {}, fields: {} },
+  });
   assert.equal(code.match(/motor.left/g)?.length, 1);
 });
 

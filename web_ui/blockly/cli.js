@@ -46,7 +46,8 @@ export async function run(command, read = (path) => readFileSync(path === "-" ? 
     const isArchive = new TextDecoder("latin1").decode(bytes.subarray(0, 2)) === ZIP;
     return isArchive ? await project(path, bytes, t) : program(path, new TextDecoder().decode(bytes), compare, t);
   } catch (error) {
-    if (error instanceof Error && "code" in error) return { output: "", errors: `${path}: ${error.message}\n`, exit: 2 };
+    if (error instanceof Error && "code" in error)
+      return { output: "", errors: `${path}: ${error.message}\n`, exit: 2 };
     throw error;
   }
 }
@@ -54,7 +55,9 @@ export async function run(command, read = (path) => readFileSync(path === "-" ? 
 /** @param {string} path @param {string} text @param {boolean} compare @param {Translate} t @returns {Answer} */
 function program(path, text, compare, t) {
   const file = readFile(text);
-  const errors = file.problems.map((problem) => `${path}:${problem.line}:${problem.column}: ${fileProblemText(problem, t)}\n`);
+  const errors = file.problems.map(
+    (problem) => `${path}:${problem.line}:${problem.column}: ${fileProblemText(problem, t)}\n`,
+  );
   if (errors.length > 0) return { output: "", errors: errors.join(""), exit: 2 };
   if (!file.hasWorkspace) return { output: "", errors: `${path}: ${t("file.noWorkspace")}\n`, exit: 2 };
   if (!compare) return generated(path, file.state, t);

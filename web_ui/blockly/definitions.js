@@ -33,7 +33,13 @@ export function definition(spec, t) {
   const first = spec.args.filter(isNamed);
   const numbers = Object.fromEntries(first.map(({ name }, index) => [name, `%${index + 1}`]));
   /** @type {Definition} */
-  const result = { type, style, message0: t(key, numbers), args0: first.map((arg) => argument(arg, t)), inputsInline: true };
+  const result = {
+    type,
+    style,
+    message0: t(key, numbers),
+    args0: first.map((arg) => argument(arg, t)),
+    inputsInline: true,
+  };
   spec.args
     .filter((arg) => !isNamed(arg))
     .forEach((arg, index) => {
@@ -63,7 +69,7 @@ function argument({ kind, name, set, options = [], initial, least, check }, t) {
     case "text":
       return { type: "field_input", name, text: initial };
     case "color":
-      return { type: "field_colour", name, colour: initial };
+      return { type: "field_colour", name, colour: initial }; // codespell:ignore colour
     case "body":
       return { type: "input_statement", name };
     case "value":

@@ -43,9 +43,15 @@ export function readFile(text) {
     if (file.kind === "aesl") file.code = readAesl(text).nodes[node].code;
     return { ...file, node, hasWorkspace: true, ...readWorkspace(text, xml) };
   } catch (error) {
-    if (!(error instanceof AeslError)) throw error;
-    const { line, column, message } = error;
-    return { ...file, problems: [{ severity: "error", key: "notXml", values: { message }, line, column }] };
+    if (error instanceof AeslError) {
+      const { line, column, message } = error;
+      return { ...file, problems: [{ severity: "error", key: "notXml", values: { message }, line, column }] };
+    }
+    // thousands of elements inside each other
+    if (error instanceof RangeError) {
+      return { ...file, problems: [{ severity: "error", key: "tooDeep", values: {}, line: 1, column: 1 }] };
+    }
+    throw error;
   }
 }
 
@@ -66,7 +72,10 @@ export function newFile(state, code) {
   return writeFile(readFile(newAesl(code)), state);
 }
 
-/** @param {Element} root @returns {{ xml: Element, node: number } | null} the first workspace and the index of its node */
+/**
+ * @param {Element} root
+ * @returns {{ xml: Element, node: number } | null} the first workspace and the index of its node
+ */
 function find(root) {
   if (root.name === "xml") return { xml: root, node: 0 };
   for (const [node, element] of childrenOf(root, "node").entries()) {
@@ -110,7 +119,12 @@ function withNewWorkspace(text, node, state, newline) {
   return `${text.slice(0, node.from)}${open}${all}</node>${text.slice(node.to)}`;
 }
 
-/** Without the workspace, and without the list of plug-ins if nothing else is in it. @param {string} text @param {Element} node */
+/**
+ * Without the workspace, and without the list of plug-ins if nothing else is in it.
+ *
+ * @param {string} text
+ * @param {Element} node
+ */
 function withoutWorkspace(text, node) {
   const [plugins] = childrenOf(node, PLUGINS);
   const [plugin] = childrenOf(plugins, PLUGIN);
@@ -118,8 +132,12 @@ function withoutWorkspace(text, node) {
   return text.slice(0, from) + text.slice(to);
 }
 
-/** The blanks in front of a position, if nothing else is before it in its line. @param {string} text @param {number} at */
+/**
+ * The blanks in front of a position, if nothing else is before it in its line.
+ *
+ * @param {string} text
+ * @param {number} at
+ */
 function indentAt(text, at) {
   return /(?:^|[\r\n])([ \t]*)$/.exec(text.slice(0, at))?.[1] ?? "";
 }
-

@@ -111,8 +111,10 @@ export class Generator {
 
   /** The value of a field, else that of a new block. @param {BlockState} block @param {string} name */
   field(block, name) {
-    const value = block.fields?.[name] ?? this.spec(block)?.args.find((arg) => arg.name === name)?.initial;
-    return String(value ?? "");
+    const arg = this.spec(block)?.args.find((each) => each.name === name);
+    const value = String(block.fields?.[name] ?? arg?.initial ?? "");
+    const isValid = arg?.options === undefined || arg.options.some(([, option]) => option === value);
+    return isValid ? value : String(arg?.initial);
   }
 
   /** The integer part of a field. @param {BlockState} block @param {string} name */
@@ -131,7 +133,13 @@ export class Generator {
     return inner === undefined || this.spec(inner)?.shape === "Number";
   }
 
-  /** What is plugged in, as a number; 0 if it is none. @param {BlockState} block @param {string} input @returns {Value} */
+  /**
+   * What is plugged in, as a number; 0 if it is none.
+   *
+   * @param {BlockState} block
+   * @param {string} input
+   * @returns {Value}
+   */
   numberValue(block, input) {
     const value = this.#value(plugged(block, input));
     return value?.type === "Number" ? value : ZERO;
@@ -142,7 +150,12 @@ export class Generator {
     return operand(this.numberValue(block, input), outer);
   }
 
-  /** The number in an input if it is written there, fractions included; null for anything else. @param {BlockState} block @param {string} input */
+  /**
+   * The number in an input if it is written there, fractions included; null for anything else.
+   *
+   * @param {BlockState} block
+   * @param {string} input
+   */
   constant(block, input) {
     const inner = plugged(block, input);
     return inner?.type === "math_number" ? Number(this.field(inner, "NUM")) || 0 : null;

@@ -1,4 +1,5 @@
-// Blockly itself, in one place. This module loads only when an editor of blocks opens: `import("./blockly/library.js")`.
+// Blockly itself, in one place. This module loads only when an editor of blocks opens:
+// `import("./blockly/library.js")`.
 
 import * as Blockly from "blockly/core";
 import "blockly/blocks";
@@ -14,7 +15,11 @@ import { NEW_VARIABLE, subroutineFlyout, subroutineNames, variableFlyout } from 
 /** @typedef {import("./toolbox.js").Look} Look */
 /** @typedef {import("./state.js").WorkspaceState} WorkspaceState */
 
-/** Blockly's own texts by language: each is a file of its own. @type {Record<string, () => Promise<Record<string, unknown>>>} */
+/**
+ * Blockly's own texts by language: each is a file of its own.
+ *
+ * @type {Record<string, () => Promise<Record<string, unknown>>>}
+ */
 const MESSAGES = {
   en: () => import("blockly/msg/en"),
   de: () => import("blockly/msg/de"),
@@ -42,14 +47,17 @@ export async function defineBlocks(language, t) {
  *
  * @param {HTMLElement} element
  * @param {Look} look
- * @param {{ t: Translate, media: string, hidden?: ReadonlySet<string>, readOnly?: boolean }} options  see options.js
+ * @param {import("./options.js").EditorOptions} options
  * @returns {Blockly.WorkspaceSvg}
  */
 export function openWorkspace(element, look, { t, media, hidden = new Set(), readOnly = false }) {
   const { base, ...colors } = theme(look);
   const parent = base === "zelos" ? Blockly.Themes.Zelos : Blockly.Themes.Classic;
   const options = injectOptions(look, { t, media, hidden, readOnly });
-  const workspace = Blockly.inject(element, { ...options, theme: Blockly.Theme.defineTheme(colors.name, { ...colors, base: parent }) });
+  const workspace = Blockly.inject(element, {
+    ...options,
+    theme: Blockly.Theme.defineTheme(colors.name, { ...colors, base: parent }),
+  });
   workspace.registerToolboxCategoryCallback("variables", () => {
     const variables = workspace.getVariableMap().getAllVariables();
     return variableFlyout(

@@ -18,10 +18,16 @@ export function readLimits(text) {
   try {
     file = JSON.parse(text);
   } catch (error) {
-    return { hidden: new Set(), problems: [{ key: "notJson", values: { message: String(/** @type {Error} */ (error).message) } }] };
+    return {
+      hidden: new Set(),
+      problems: [{ key: "notJson", values: { message: String(/** @type {Error} */ (error).message) } }],
+    };
   }
   if (file?.format !== FORMAT || !Array.isArray(file.hide)) {
-    return { hidden: new Set(), problems: [{ key: "format", values: { found: JSON.stringify(file?.format ?? null) } }] };
+    return {
+      hidden: new Set(),
+      problems: [{ key: "format", values: { found: JSON.stringify(file?.format ?? null) } }],
+    };
   }
   const known = new Set([...offered("blockly"), ...offered("scratch")]);
   const names = file.hide.map(String);

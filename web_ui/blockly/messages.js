@@ -9,7 +9,12 @@ export const problemText = ({ key, values }, t) => t(`problem.${key}`, values);
 /** A problem of a file, without its place. @param {Message} problem @param {Translate} t */
 export const fileProblemText = ({ key, values }, t) => t(`file.${key}`, values);
 
-/** Why a Scratch project cannot be imported, or what was left out of it. @param {Message} message @param {Translate} t */
+/**
+ * Why a Scratch project cannot be imported, or what was left out of it.
+ *
+ * @param {Message} message
+ * @param {Translate} t
+ */
 export const scratchText = ({ key, values }, t) => t(`scratch.${key}`, values);
 
 /** A problem of a teacher's file. @param {Message} problem @param {Translate} t */

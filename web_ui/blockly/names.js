@@ -1,7 +1,8 @@
 // Names of variables and subroutines in Aseba: any name of a workspace becomes one that the compiler accepts.
 
 const KEYWORDS =
-  "when emit _emit for in step while do if then else elseif end var const call sub callsub onevent abs return or and not";
+  "when emit _emit for in step while do if then else elseif end " +
+  "var const call sub callsub onevent abs return or and not";
 const ROBOT = "event button buttons prox motor acc temperature rc5 mic timer math sound leds sd";
 
 /** Words that the language or the robot uses. */
@@ -18,7 +19,9 @@ export function allowedName(name) {
   return /^[0-9]/.test(allowed) ? `_${allowed}` : allowed;
 }
 
-/** Gives each name of a workspace one name in the program; names that differ only in case are the same, as in Blockly. */
+/**
+ * Gives each name of a workspace one name in the program; names that differ only in case are the same, as in Blockly.
+ */
 export class Names {
   /** @param {Iterable<string>} [reserved]  further names that the program cannot use */
   constructor(reserved = []) {

@@ -10,10 +10,14 @@ import { toolbox } from "./toolbox.js";
 const GRID_PX = 25;
 
 /**
- * @param {Look} look
- * @param {{ t: Translate, media: string, hidden?: ReadonlySet<string>, readOnly?: boolean }} options  `media` is the folder of
- *   Blockly's pictures: without one, Blockly would load them from another host
+ * @typedef {object} EditorOptions
+ * @property {Translate} t  of blockly.json
+ * @property {string} media  address of the folder of Blockly's pictures, which it would load from another host else
+ * @property {ReadonlySet<string>} [hidden]  by a teacher's file, see limits.js
+ * @property {boolean} [readOnly]
  */
+
+/** @param {Look} look @param {EditorOptions} options */
 export function injectOptions(look, { t, media, hidden = new Set(), readOnly = false }) {
   return {
     toolbox: toolbox(look, t, hidden),

@@ -1,5 +1,5 @@
-// Reads the workspace XML of old and new Blockly. Nothing is skipped silently: what the editor cannot show is a problem,
-// and a file with an error is not opened for editing, so that nothing of it can get lost.
+// Reads the workspace XML of old and new Blockly. Nothing is skipped silently: what the editor cannot show is a
+// problem, and a file with an error is not opened for editing, so that nothing of it can get lost.
 
 import { BLOCKS } from "./blocks/index.js";
 import { CALL, DEFINITIONS } from "./blocks/variables.js";
@@ -19,7 +19,11 @@ import { childrenOf, lineAndColumn } from "./xml_tree.js";
  * @property {number} column  from 1
  */
 
-/** Attribute of a block → whether the state has it if it is "true", or if it is "false". @type {Record<string, boolean>} */
+/**
+ * Attribute of a block → whether the state has it if it is "true", or if it is "false".
+ *
+ * @type {Record<string, boolean>}
+ */
 const FLAGS = { collapsed: true, deletable: false, movable: false, editable: false };
 const DISABLED = "MANUALLY_DISABLED";
 
@@ -70,7 +74,11 @@ class Reader {
   constructor(text) {
     this.text = text;
     /** @type {FileProblem[]} */ this.problems = [];
-    /** Lower-case name → variable: names that differ only in case are the same. @type {Map<string, import("./state.js").Variable>} */
+    /**
+     * Lower-case name → variable: names that differ only in case are the same.
+     *
+     * @type {Map<string, import("./state.js").Variable>}
+     */
     this.variables = new Map();
     /** @type {Set<string>} */ this.ids = new Set();
   }
@@ -162,7 +170,13 @@ class Reader {
     return socket;
   }
 
-  /** Whether a block fits where it is: Blockly would refuse the whole workspace. @param {Element} element @param {string} type @param {Arg} arg */
+  /**
+   * Whether a block fits where it is: Blockly would refuse the whole workspace.
+   *
+   * @param {Element} element
+   * @param {string} type
+   * @param {Arg} arg
+   */
   #checkPlace(element, type, { kind, check }) {
     const spec = BLOCKS.get(type);
     if (spec === undefined) return;
@@ -197,7 +211,8 @@ class Reader {
       if (text.trim() !== "" && Number.isFinite(number)) return number;
       this.report(element, "notANumber", { field: name, found: text });
     }
-    if (kind === "color" && !/^#[0-9a-f]{6}$/i.test(text)) this.report(element, "notAColor", { field: name, found: text });
+    if (kind === "color" && !/^#[0-9a-f]{6}$/i.test(text))
+      this.report(element, "notAColor", { field: name, found: text });
     return text;
   }
 
@@ -224,7 +239,12 @@ class Reader {
     }
   }
 
-  /** An "if" whose branches are not counted in its mutation gets the count. @param {Element} element @param {BlockState} block */
+  /**
+   * An "if" whose branches are not counted in its mutation gets the count.
+   *
+   * @param {Element} element
+   * @param {BlockState} block
+   */
   #checkBranches(element, block) {
     if (block.type !== "controls_if") return;
     const names = Object.keys(block.inputs ?? {});

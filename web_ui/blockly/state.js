@@ -44,7 +44,12 @@ export function isEmpty(state) {
   return (state.blocks?.blocks ?? []).length === 0 && (state.workspaceComments ?? []).length === 0;
 }
 
-/** The block that counts in an input: the plugged one, else the shadow. @param {BlockState} block @param {string} input */
+/**
+ * The block that counts in an input: the plugged one, else the shadow.
+ *
+ * @param {BlockState} block
+ * @param {string} input
+ */
 export function plugged(block, input) {
   const socket = block.inputs?.[input];
   return socket?.block ?? socket?.shadow;
@@ -107,7 +112,8 @@ export function variableName(state, field) {
 }
 
 /**
- * Whether two workspaces are the same program with the same layout: ids do not matter, nor variables that no block uses.
+ * Whether two workspaces are the same program with the same layout: ids do not matter, nor do variables that no block
+ * uses.
  *
  * @param {WorkspaceState} a
  * @param {WorkspaceState} b

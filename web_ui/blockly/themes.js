@@ -1,9 +1,13 @@
-// Colors of blocks and categories in both looks: of the hues of the existing Blockly page, and like those that pupils know
-// from Scratch. All are dark enough for white text (contrast of at least 4.5).
+// Colors of blocks and categories in both looks: of the hues of the existing Blockly page, and like those that pupils
+// know from Scratch. All are dark enough for white text (contrast of at least 4.5).
 
 /** @typedef {import("./toolbox.js").Look} Look */
 
-/** Style → color of the existing page's hues: 10, 60, 160, 230, 210, 210, 120, 230, 330, 290. @type {Record<string, string>} */
+/**
+ * Style → color of the existing page's hues: 10, 60, 160, 230, 210, 210, 120, 230, 330, 290.
+ *
+ * @type {Record<string, string>}
+ */
 const COLORS = {
   event: "#a66153",
   actuator: "#78783c",
@@ -58,7 +62,9 @@ export function theme(look) {
         },
       ]),
     ),
-    categoryStyles: Object.fromEntries(colors.map(([name, colour]) => [`${name}_category`, { colour }])),
+    categoryStyles: Object.fromEntries(
+      colors.map(([name, color]) => [`${name}_category`, { colour: color }]), // codespell:ignore colour
+    ),
     startHats: false,
   };
 }

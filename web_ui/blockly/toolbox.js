@@ -95,7 +95,11 @@ export const CATEGORIES = {
         ...["control_repeat_until", "control_stop"],
       ],
     },
-    { name: "sensing", style: "sensing_category", types: thymio("valButton", "proximity", "ground", "micIntensity", "motor") },
+    {
+      name: "sensing",
+      style: "sensing_category",
+      types: thymio("valButton", "proximity", "ground", "micIntensity", "motor"),
+    },
     {
       name: "operators",
       style: "operator_category",
@@ -120,7 +124,9 @@ export function toolbox(look, t, hidden = new Set()) {
     const shown = inside.filter((type) => !hidden.has(type));
     if (hidden.has(`category:${name}`) || shown.length === 0) return [];
     const category = { kind: "category", toolboxitemid: name, name: t(`category.${name}`), categorystyle: style };
-    return [custom ? { ...category, custom: name } : { ...category, contents: shown.map((type) => item(newBlock(type))) }];
+    return [
+      custom ? { ...category, custom: name } : { ...category, contents: shown.map((type) => item(newBlock(type))) },
+    ];
   });
   return { kind: "categoryToolbox", contents };
 }
@@ -176,7 +182,8 @@ export function newBlock(type, variable) {
   /** @type {Record<string, any>} */ const fields = {};
   /** @type {Record<string, Socket>} */ const inputs = {};
   for (const { kind, name, initial, shadow } of BLOCKS.get(type)?.args ?? []) {
-    if (kind === "variable") fields[name] = variable === undefined ? { name: initial } : { id: variable.id, name: variable.name };
+    if (kind === "variable")
+      fields[name] = variable === undefined ? { name: initial } : { id: variable.id, name: variable.name };
     else if (kind !== "value" && kind !== "body" && type !== CALL) fields[name] = initial;
     if (shadow !== undefined) inputs[name] = { shadow: { type: "math_number", fields: { NUM: shadow } } };
   }

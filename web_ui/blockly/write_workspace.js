@@ -23,7 +23,9 @@ export function writeWorkspace(state, { root = ROOT, indent = "", newline = "\n"
     return `${INDENT}<comment${attributes}>${escaped(text)}</comment>`;
   });
   const blocks = topBlocks(state).flatMap((block) => new Writer(state).block("block", block, true).map(inward));
-  return [root, ...comments, ...blocks, "</xml>"].map((line, index) => (index === 0 ? line : indent + line)).join(newline);
+  return [root, ...comments, ...blocks, "</xml>"]
+    .map((line, index) => (index === 0 ? line : indent + line))
+    .join(newline);
 }
 
 /** @param {string} line */

@@ -1,4 +1,5 @@
-// Elements of an XML text with their positions. Names are without prefix: files have the workspace with and without namespace.
+// Elements of an XML text with their positions. Names are without prefix: files have the workspace with and without
+// namespace.
 
 import { attributesOf, decoded, scan } from "../editor/xml.js";
 

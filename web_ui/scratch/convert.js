@@ -1,5 +1,6 @@
-// Converts the blocks of a Scratch project. Inputs of project.json are [how, block or primitive, shadow]; a menu is a shadow
-// block with one field; a primitive is [kind, value]. Operators and variables become blocks that Blockly programs have.
+// Converts the blocks of a Scratch project. Inputs of project.json are [how, block or primitive, shadow]; a menu is a
+// shadow block with one field; a primitive is [kind, value]. Operators and variables become blocks that Blockly
+// programs have.
 
 import { BLOCKS } from "../blockly/blocks/index.js";
 import { numbered, OPERATORS } from "./operators.js";
@@ -9,7 +10,17 @@ import { numbered, OPERATORS } from "./operators.js";
 /** @typedef {import("../blockly/state.js").WorkspaceState} WorkspaceState */
 /** @typedef {import("../blockly/blocks/spec.js").Arg} Arg */
 /** @typedef {import("./import_sb3.js").LeftOut} LeftOut */
-/** @typedef {{ opcode: string, inputs?: Record<string, any[]>, fields?: Record<string, any[]>, next?: string | null, parent?: string | null, topLevel?: boolean, shadow?: boolean, x?: number, y?: number }} ScratchBlock */
+/**
+ * @typedef {object} ScratchBlock
+ * @property {string} opcode
+ * @property {Record<string, any[]>} [inputs]
+ * @property {Record<string, any[]>} [fields]
+ * @property {string | null} [next]
+ * @property {boolean} [topLevel]
+ * @property {boolean} [shadow]
+ * @property {number} [x]
+ * @property {number} [y]
+ */
 
 /** Kinds of primitives. */
 const VARIABLE = 12;
@@ -20,24 +31,32 @@ const SPRITE_GAP = 600;
 
 export class Converter {
   constructor() {
-    /** @type {BlockState[]} */ this.tops = [];
-    /** @type {Map<string, { id: string, name: string }>} */ this.variables = new Map();
-    /** Key and values as JSON → how often. @type {Map<string, { entry: LeftOut, count: number }>} */ this.missing = new Map();
-    /** First values of the variables of the project. @type {Map<string, unknown>} */ this.initial = new Map();
-    /** Those of the sprite that is read. @type {Record<string, ScratchBlock>} */ this.blocks = {};
+    /** @type {BlockState[]} */
+    this.tops = [];
+    /** Id in the project, else the name → variable. @type {Map<string, { id: string, name: string }>} */
+    this.variables = new Map();
+    /** Key and values as JSON → how often. @type {Map<string, { entry: LeftOut, count: number }>} */
+    this.missing = new Map();
+    /** Id → name and first value of the variables of the project. @type {Map<string, any[]>} */
+    this.initial = new Map();
+    /** The blocks of the sprite that is read. @type {Record<string, ScratchBlock>} */
+    this.blocks = {};
+    /** Ids of the blocks that are being converted. @type {Set<string>} */
+    this.open = new Set();
+    /** In front of the ids of its blocks: sprites may use the same ones. */
     this.prefix = "";
     this.sprites = 0;
   }
 
   /** All scripts of a sprite or of the stage. @param {any} target */
   add(target) {
-    const blocks = target?.blocks ?? {};
-    /** A variable alone on the workspace is an array. */
-    this.blocks = Object.fromEntries(Object.entries(blocks).filter(([, block]) => !Array.isArray(block)));
+    this.blocks = blocksOf(target);
     this.prefix = this.sprites === 0 ? "" : `${this.sprites}.`;
     const tops = Object.entries(this.blocks).filter(([, block]) => block.topLevel && !block.shadow);
     for (const [id, block] of tops) this.#top(id, block);
-    for (const [name, value] of Object.values(target?.variables ?? {})) this.initial.set(String(name), value);
+    for (const [id, variable] of Object.entries(recordOf(target?.variables))) {
+      if (Array.isArray(variable)) this.initial.set(id, variable);
+    }
     if (tops.length > 0) this.sprites += 1;
   }
 
@@ -49,12 +68,15 @@ export class Converter {
   /** @returns {LeftOut[]} */
   leftOut() {
     // the robot starts with 0 in every variable
-    for (const [name, value] of this.initial) {
-      const isUsed = this.variables.has(name.toLowerCase());
-      if (isUsed && Number(value) !== 0) this.leaveOut("leftOutInitial", { name, text: String(value) });
+    for (const [id, [, value]] of this.initial) {
+      const { name } = this.variables.get(id) ?? {};
+      if (name !== undefined && Number(value) !== 0) this.leaveOut("leftOutInitial", { name, text: String(value) });
     }
     this.initial.clear();
-    return [...this.missing.values()].map(({ entry: { key, values }, count }) => ({ key, values: { ...values, count } }));
+    return [...this.missing.values()].map(({ entry: { key, values }, count }) => ({
+      key,
+      values: { ...values, count },
+    }));
   }
 
   /** @param {string} key @param {Record<string, string | number>} [values] */
@@ -75,10 +97,16 @@ export class Converter {
       return;
     }
     const [top] = this.chain(id);
-    if (top !== undefined) this.tops.push({ ...top, x: Math.round(block.x ?? 0) + this.sprites * SPRITE_GAP, y: Math.round(block.y ?? 0) });
+    if (top !== undefined)
+      this.tops.push({ ...top, x: Math.round(block.x ?? 0) + this.sprites * SPRITE_GAP, y: Math.round(block.y ?? 0) });
   }
 
-  /** A block and those below it as one stack; none or one. @param {string | null | undefined} id @returns {BlockState[]} */
+  /**
+   * A block and those below it as one stack; none or one.
+   *
+   * @param {string | null | undefined} id
+   * @returns {BlockState[]}
+   */
   chain(id) {
     /** @type {BlockState[]} */ const stack = [];
     const seen = new Set();
@@ -97,14 +125,22 @@ export class Converter {
   /** @param {string} id @param {ScratchBlock} scratch @returns {BlockState | null} */
   #block(id, scratch) {
     const { opcode } = scratch;
-    const operator = OPERATORS[opcode];
+    if (this.open.has(id)) return null; // a damaged project: a block inside itself
+    this.open.add(id);
+    const operator = Object.hasOwn(OPERATORS, opcode) ? OPERATORS[opcode] : undefined;
     const block = operator !== undefined ? operator(this, scratch) : this.#ownBlock(scratch);
+    this.open.delete(id);
     if (block === null) this.leaveOut("leftOutBlock", { opcode });
     else block.id = `${this.prefix}${id}`;
     return block;
   }
 
-  /** A block that the Scratch look has under the same name. @param {ScratchBlock} scratch @returns {BlockState | null} */
+  /**
+   * A block that the Scratch look has under the same name.
+   *
+   * @param {ScratchBlock} scratch
+   * @returns {BlockState | null}
+   */
   #ownBlock({ opcode, inputs = {}, fields = {} }) {
     const spec = BLOCKS.get(opcode);
     if (spec === undefined || spec.builtIn) return null;
@@ -114,8 +150,10 @@ export class Converter {
     const values = Object.keys(inputs).filter((name) => !menus.includes(name));
     for (const arg of spec.args) {
       const { kind, name } = arg;
-      if (kind === "choice") (block.fields ??= {})[name] = this.#choice(opcode, arg, take(menus, name), { inputs, fields });
-      else if (kind === "variable") (block.fields ??= {})[name] = this.variable(fields[name] ?? Object.values(fields)[0]);
+      if (kind === "choice")
+        (block.fields ??= {})[name] = this.#choice(opcode, arg, take(menus, name), { inputs, fields });
+      else if (kind === "variable")
+        (block.fields ??= {})[name] = this.variable(fields[name] ?? Object.values(fields)[0]);
       else if (kind === "text") (block.fields ??= {})[name] = this.#message({ inputs, fields });
       else if (kind === "body") this.#plug(block, name, { block: this.chain(inputs[name]?.[1])[0] });
       else this.#plug(block, name, this.socket(inputs[take(values, name) ?? ""], arg));
@@ -172,7 +210,12 @@ export class Converter {
   }
 
   /** The option of a menu or field; the first one for an empty or unknown value. */
-  /** @param {string} opcode @param {Arg} arg @param {string | undefined} input @param {{ inputs: Record<string, any[]>, fields: Record<string, any[]> }} scratch */
+  /**
+   * @param {string} opcode
+   * @param {Arg} arg
+   * @param {string | undefined} input
+   * @param {{ inputs: Record<string, any[]>, fields: Record<string, any[]> }} scratch
+   */
   #choice(opcode, { name, options = [] }, input, { inputs, fields }) {
     const given = input === undefined ? String(fields[name]?.[0] ?? "") : this.#menu(inputs[input]);
     const initial = options[0][1];
@@ -184,7 +227,11 @@ export class Converter {
     return initial;
   }
 
-  /** The name of a message: of a field, or of a primitive. @param {{ inputs: Record<string, any[]>, fields: Record<string, any[]> }} scratch */
+  /**
+   * The name of a message: of a field, or of a primitive.
+   *
+   * @param {{ inputs: Record<string, any[]>, fields: Record<string, any[]> }} scratch
+   */
   #message({ inputs, fields }) {
     const field = Object.values(fields)[0]?.[0];
     const primitive = Object.values(inputs)[0]?.[1];
@@ -193,11 +240,17 @@ export class Converter {
 
   /** A field that names a variable. @param {any[] | undefined} field  its name and id */
   variable(field) {
-    const name = String(field?.[0] ?? "");
-    const key = name.toLowerCase();
-    const known = this.variables.get(key) ?? { id: `v${this.variables.size + 1}`, name };
-    this.variables.set(key, known);
-    return { id: known.id };
+    const wanted = String(field?.[0] ?? "");
+    const key = String(field?.[1] ?? wanted);
+    const known = this.variables.get(key);
+    if (known !== undefined) return { id: known.id };
+    // sprites may have variables of the same name, and names in Blockly do not differ in case only
+    const names = new Set([...this.variables.values()].map(({ name }) => name.toLowerCase()));
+    let name = wanted;
+    for (let number = 2; names.has(name.toLowerCase()); number++) name = `${wanted} ${number}`;
+    const variable = { id: `v${this.variables.size + 1}`, name };
+    this.variables.set(key, variable);
+    return { id: variable.id };
   }
 }
 
@@ -205,4 +258,41 @@ export class Converter {
 function take(names, wanted) {
   const index = Math.max(0, names.indexOf(wanted));
   return names.splice(index, 1).at(0);
+}
+
+/** @param {any} value @returns {Record<string, any>} */
+const recordOf = (value) => (typeof value === "object" && value !== null && !Array.isArray(value) ? value : {});
+
+/** The entries of a record that are lists. @param {any} value @returns {Record<string, any[]>} */
+const listsOf = (value) =>
+  Object.fromEntries(Object.entries(recordOf(value)).filter(([, entry]) => Array.isArray(entry)));
+
+/**
+ * The blocks of a sprite in the form that the rest expects, whatever a file has. A variable alone on the workspace is a
+ * list, not a block.
+ *
+ * @param {any} target
+ * @returns {Record<string, ScratchBlock>}
+ */
+function blocksOf(target) {
+  const blocks = Object.entries(recordOf(target?.blocks)).filter(([, block]) => !Array.isArray(block));
+  return Object.fromEntries(
+    blocks.map(([id, block]) => {
+      const { opcode, inputs, fields, next, topLevel, shadow, x, y } = recordOf(block);
+      const place = { x: Number(x) || 0, y: Number(y) || 0 };
+      const below = typeof next === "string" ? next : null;
+      return [
+        id,
+        {
+          opcode: String(opcode ?? ""),
+          inputs: listsOf(inputs),
+          fields: listsOf(fields),
+          next: below,
+          topLevel: topLevel === true,
+          shadow: shadow === true,
+          ...place,
+        },
+      ];
+    }),
+  );
 }

@@ -1,7 +1,7 @@
 // What several blocks of a script share: Aseba text that is added to a program that uses it.
 //
-// Lengths are mm, speeds mm/s; 3.2 of the robot's units are 1 mm/s. A wheel travels 0.785 mm per degree of a turn on the
-// spot, that is, the wheels are 90 mm apart.
+// Lengths are mm, speeds mm/s; 3.2 of the robot's units are 1 mm/s. A wheel travels 0.785 mm per degree of a turn on
+// the spot, that is, the wheels are 90 mm apart.
 
 /**
  * @typedef {object} Part
@@ -17,7 +17,7 @@ export const COLORS = 198;
 
 /** @type {Record<string, Part>} */
 export const LIBRARY = {
-  // Starts a move. Before: travel of both wheels, and either move.speed, the speed of the faster wheel, or, with speed 0,
+  // Starts a move. Before: travel of both wheels, and either move.speed, the speed of the faster wheel, or, at speed 0,
   // move.steps, its time. After: the targets of the motors, move.steps.
   "move.start": {
     variables: { "move.left": 0, "move.right": 0, "move.speed": 0, "move.steps": 0, "move.longest": 0 },
@@ -49,6 +49,7 @@ export const LIBRARY = {
       "odo.heading": 0,
       "odo.rest": 3,
       "odo.step": 2,
+      "odo.moved": 2,
     },
     everyStep: ["callsub odo.update"],
     subroutine: [
@@ -61,7 +62,8 @@ export const LIBRARY = {
       "\tcall math.muldiv(odo.direction, odo.heading, 180, 32767)",
       "\tcall math.sin(odo.step[0], odo.heading)",
       "\tcall math.cos(odo.step[1], odo.heading)",
-      "\tcall math.muldiv(odo.step, [motor.left.target + motor.right.target, motor.left.target + motor.right.target], odo.step, [32767, 32767])",
+      "\tcall math.fill(odo.moved, motor.left.target + motor.right.target)",
+      "\tcall math.muldiv(odo.step, odo.moved, odo.step, [32767, 32767])",
       "\todo.rest[1] = odo.rest[1] + odo.step[0]",
       "\todo.rest[2] = odo.rest[2] + odo.step[1]",
       "\todo.x = odo.x + odo.rest[1] / 640",

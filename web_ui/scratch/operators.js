@@ -4,14 +4,18 @@
 /** @typedef {import("../blockly/state.js").Socket} Socket */
 /** @typedef {import("./convert.js").Converter} Converter */
 /** @typedef {import("./convert.js").ScratchBlock} ScratchBlock */
-/** @typedef {(converter: Converter, scratch: ScratchBlock) => BlockState | null} Operator  null if the robot has none */
+/**
+ * @typedef {(converter: Converter, scratch: ScratchBlock) => BlockState | null} Operator  null if the robot has none
+ */
 
 /** A number that is written in an input. @param {number} value @returns {BlockState} */
 export const numbered = (value) => ({ type: "math_number", fields: { NUM: value } });
 
 /** Inputs without those that are empty. @param {Record<string, Socket>} inputs */
 const filled = (inputs) =>
-  Object.fromEntries(Object.entries(inputs).filter(([, { block, shadow }]) => block !== undefined || shadow !== undefined));
+  Object.fromEntries(
+    Object.entries(inputs).filter(([, { block, shadow }]) => block !== undefined || shadow !== undefined),
+  );
 
 /**
  * A block with an operator between two inputs.
@@ -22,10 +26,12 @@ const filled = (inputs) =>
  * @param {{ check?: string }} [wanted]  what Aseba takes there
  * @returns {Operator}
  */
-const between = (type, op, names, wanted = {}) => (converter, { inputs = {} }) => {
-  const [A, B] = names.map((name) => converter.socket(inputs[name], wanted));
-  return { type, fields: { OP: op }, inputs: filled({ A, B }) };
-};
+const between =
+  (type, op, names, wanted = {}) =>
+  (converter, { inputs = {} }) => {
+    const [A, B] = names.map((name) => converter.socket(inputs[name], wanted));
+    return { type, fields: { OP: op }, inputs: filled({ A, B }) };
+  };
 
 /** @type {readonly [string, string]} */
 const NUMBERS = ["NUM1", "NUM2"];
@@ -39,7 +45,10 @@ export const OPERATORS = {
   operator_add: between("thymio_arithmetic", "+", NUMBERS),
   operator_subtract: between("thymio_arithmetic", "-", NUMBERS),
   operator_multiply: between("thymio_arithmetic", "*", NUMBERS),
-  operator_divide: between("thymio_arithmetic", "/", NUMBERS),
+  operator_divide: (converter, scratch) => {
+    converter.leaveOut("leftOutDivision");
+    return between("thymio_arithmetic", "/", NUMBERS)(converter, scratch);
+  },
   operator_mod: between("thymio_arithmetic", "%", NUMBERS),
   operator_lt: between("thymio_compare", "LT", OPERANDS),
   operator_gt: between("thymio_compare", "GT", OPERANDS),
@@ -56,7 +65,10 @@ export const OPERATORS = {
   },
   control_if: (converter, { inputs = {} }) => ({
     type: "controls_if",
-    inputs: filled({ IF0: converter.socket(inputs.CONDITION, CONDITION), DO0: { block: converter.chain(inputs.SUBSTACK?.[1])[0] } }),
+    inputs: filled({
+      IF0: converter.socket(inputs.CONDITION, CONDITION),
+      DO0: { block: converter.chain(inputs.SUBSTACK?.[1])[0] },
+    }),
   }),
   control_if_else: (converter, { inputs = {} }) => ({
     type: "controls_if",

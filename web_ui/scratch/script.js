@@ -78,7 +78,13 @@ export class Script {
     this.current = this.#open(false);
   }
 
-  /** Go on at a label if a condition is true, else here. @param {BlockState} block @param {string} condition @param {Label} target */
+  /**
+   * Go on at a label if a condition is true, else here.
+   *
+   * @param {BlockState} block
+   * @param {string} condition
+   * @param {Label} target
+   */
   jumpIf(block, condition, target) {
     this.current.exit = { block, target, condition };
     this.current = this.#open(true);
@@ -107,7 +113,13 @@ export class Script {
     this.chain(plugged(block, input));
   }
 
-  /** Repeat until a condition is true, one round per step. @param {BlockState} block @param {string | null} until @param {() => void} inner */
+  /**
+   * Repeat until a condition is true, one round per step.
+   *
+   * @param {BlockState} block
+   * @param {string | null} until
+   * @param {() => void} inner
+   */
   loop(block, until, inner) {
     const [top, end] = [this.label(), this.label()];
     this.place(top);
@@ -117,7 +129,13 @@ export class Script {
     this.place(end);
   }
 
-  /** Repeat a number of times, one round per step. @param {BlockState} block @param {string} times @param {() => void} inner */
+  /**
+   * Repeat a number of times, one round per step.
+   *
+   * @param {BlockState} block
+   * @param {string} times
+   * @param {() => void} inner
+   */
   repeat(block, times, inner) {
     const left = this.g.fresh("rounds");
     this.line(block, `${left} = ${times}`);

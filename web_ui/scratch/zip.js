@@ -1,4 +1,5 @@
-// Reads one file of a ZIP archive, with the platform's decompression (APPNOTE.TXT of the format: sections 4.3.7, 4.3.12, 4.3.16).
+// Reads one file of a ZIP archive, with the platform's decompression (APPNOTE.TXT of the format: sections 4.3.7,
+// 4.3.12, 4.3.16).
 
 /** The archive cannot be read. */
 export class ZipError extends Error {
@@ -31,7 +32,8 @@ export async function readZip(archive, name) {
   const end = findEnd(view);
   let at = view.getUint32(end + 16, true);
   for (let count = view.getUint16(end + 10, true); count > 0; count--) {
-    if (at + 46 > view.byteLength || view.getUint32(at, true) !== ENTRY) throw new ZipError("the list of files is damaged");
+    if (at + 46 > view.byteLength || view.getUint32(at, true) !== ENTRY)
+      throw new ZipError("the list of files is damaged");
     const [nameSize, extraSize, commentSize] = [28, 30, 32].map((offset) => view.getUint16(at + offset, true));
     const found = new TextDecoder().decode(archive.subarray(at + 46, at + 46 + nameSize));
     if (found === name || found.endsWith(`/${name}`)) return unpack(archive, view, at);
@@ -64,11 +66,13 @@ async function unpack(archive, view, entry) {
 
 /** @param {Uint8Array} data @param {number} size */
 async function inflate(data, size) {
-  const stream = new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (data)]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  const stream = new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (data)])
+    .stream()
+    .pipeThrough(new DecompressionStream("deflate-raw"));
   const result = new Uint8Array(size);
   let filled = 0;
   try {
-    for (const reader = stream.getReader(); ; ) {
+    for (const reader = stream.getReader(); ;) {
       const { done, value } = await reader.read();
       if (done) break;
       if (filled + value.length > size) throw new ZipError("a file is larger than the archive says");

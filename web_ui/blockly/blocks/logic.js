@@ -95,7 +95,11 @@ export const LOGIC = [
     shape: "Boolean",
     style: "logic_blocks",
     builtIn: true,
-    args: [choice("OP", "compare", COMPARISON_OPTIONS), { ...number("A"), check: null }, { ...number("B"), check: null }],
+    args: [
+      choice("OP", "compare", COMPARISON_OPTIONS),
+      { ...number("A"), check: null },
+      { ...number("B"), check: null },
+    ],
     value: (g, block) => (["A", "B"].every((side) => g.isNumber(block, side)) ? comparison(g, block) : FALSE),
   },
   {
@@ -157,7 +161,8 @@ export const LOOPS = [
       const counter = g.fresh("count");
       return [g.line(block, `for ${counter} in 1:${times} do`), ...g.body(block, "DO"), g.line(block, "end")];
     },
-    step: (script, block) => script.repeat(block, String(Math.max(0, script.g.integer(block, "TIMES"))), () => script.statements(block, "DO")),
+    step: (script, block) =>
+      script.repeat(block, String(Math.max(0, script.g.integer(block, "TIMES"))), () => script.statements(block, "DO")),
     waits: true,
   },
   {

@@ -48,7 +48,8 @@ export const BRIGHT = { above: 450, below: 400 };
  * @param {string} sensor
  * @param {string} mode
  */
-export const proximity = (sensor, mode) => (mode === "PROX" ? `${sensor} > ${NEAR.above}` : `${sensor} < ${NEAR.below}`);
+export const proximity = (sensor, mode) =>
+  mode === "PROX" ? `${sensor} > ${NEAR.above}` : `${sensor} < ${NEAR.below}`;
 
 /**
  * The comparison of a ground sensor.

@@ -9,7 +9,12 @@ import { booleanValue, choice, numberValue } from "./spec.js";
 /** @typedef {import("./spec.js").Generator} Generator */
 /** @typedef {import("./spec.js").BlockState} BlockState */
 
-/** @param {string} type @param {Arg[]} args @param {(g: Generator, block: BlockState) => string} code @returns {BlockSpec} */
+/**
+ * @param {string} type
+ * @param {Arg[]} args
+ * @param {(g: Generator, block: BlockState) => string} code
+ * @returns {BlockSpec}
+ */
 const check = (type, args, code) => ({
   type,
   shape: "Boolean",

@@ -1,4 +1,5 @@
-// How a block is described: its fields and inputs, once, for its definition in Blockly, for files and for the generator.
+// How a block is described: its fields and inputs, once, for its definition in Blockly, for files and for the
+// generator.
 
 import { ATOM } from "../precedence.js";
 
@@ -6,7 +7,9 @@ import { ATOM } from "../precedence.js";
 /** @typedef {import("../generator.js").Generator} Generator */
 /** @typedef {import("../../scratch/script.js").ScriptRunner} ScriptRunner */
 /** @typedef {(script: import("../../scratch/script.js").Script, block: BlockState) => void} Step */
-/** @typedef {{ code: string, order: number, type: "Number" | "Boolean" }} Value  an expression, how strongly it binds */
+/**
+ * @typedef {{ code: string, order: number, type: "Number" | "Boolean" }} Value  an expression, how strongly it binds
+ */
 /** @typedef {{ text: string, id: string | null }} Line  a line of the program and the block it comes from */
 /** @typedef {{ event: string, lines: Line[] }} Handler */
 /**

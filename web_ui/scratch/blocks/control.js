@@ -10,7 +10,12 @@ import { BUTTON_MENU } from "./sensing.js";
 /** @typedef {import("../../blockly/blocks/spec.js").Generator} Generator */
 /** @typedef {import("../../blockly/state.js").BlockState} BlockState */
 
-/** @param {string} type @param {Arg[]} args @param {NonNullable<BlockSpec["trigger"]>} trigger @returns {BlockSpec} */
+/**
+ * @param {string} type
+ * @param {Arg[]} args
+ * @param {NonNullable<BlockSpec["trigger"]>} trigger
+ * @returns {BlockSpec}
+ */
 const hat = (type, args, trigger) => ({ type, shape: "hat", style: "scratch_event_blocks", args, trigger });
 
 /** @param {string} type @param {Arg[]} args @param {NonNullable<BlockSpec["step"]>} step @returns {BlockSpec} */
@@ -33,7 +38,11 @@ const sensorHat = (type, args, when) =>
 /** @param {string} name @param {readonly number[]} indices */
 const sum = (name, indices) => indices.map((index) => `${name}[${index}]`).join(" + ");
 
-/** What the sensors of a side add up to, and from where on they detect something. @type {Record<string, [string, number]>} */
+/**
+ * What the sensors of a side add up to, and from where on they detect something.
+ *
+ * @type {Record<string, [string, number]>}
+ */
 const SIDES = {
   front: [sum("prox.horizontal", [0, 1, 2, 3, 4]), 0],
   back: [sum("prox.horizontal", [5, 6]), 0],
@@ -56,7 +65,13 @@ const PARTS = {
 /** @type {Record<string, { ground: number, other: number }>} */
 const THRESHOLDS = { near: { ground: 600, other: 3000 }, far: { ground: 50, other: 1000 } };
 
-/** The scripts that the message of a block starts. @param {Generator} g @param {BlockState} block @returns {Line[]} */
+/**
+ * The scripts that the message of a block starts.
+ *
+ * @param {Generator} g
+ * @param {BlockState} block
+ * @returns {Line[]}
+ */
 const send = (g, block) =>
   g.scripts.startedBy(g.field(block, "MESSAGE")).map((script) => g.line(block, `${script} = 1`));
 
@@ -119,7 +134,9 @@ export const CONTROL = [
     }),
     style: "scratch_event_blocks",
   },
-  step("control_wait", [seconds("DURATION", 1)], (script, block) => script.wait(block, script.steps(block, "DURATION"))),
+  step("control_wait", [seconds("DURATION", 1)], (script, block) =>
+    script.wait(block, script.steps(block, "DURATION")),
+  ),
   step("control_repeat", [number("TIMES", 10), body("SUBSTACK")], (script, block) =>
     script.repeat(block, script.g.number(block, "TIMES"), () => script.statements(block, "SUBSTACK")),
   ),

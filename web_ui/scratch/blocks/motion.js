@@ -16,7 +16,12 @@ const FASTEST = 400;
 const ARC_SPEED = FASTEST / UNITS;
 const SMALLEST_RADIUS = 100;
 
-/** @param {string} type @param {Arg[]} args @param {NonNullable<BlockSpec["statement"]>} statement @returns {BlockSpec} */
+/**
+ * @param {string} type
+ * @param {Arg[]} args
+ * @param {NonNullable<BlockSpec["statement"]>} statement
+ * @returns {BlockSpec}
+ */
 const command = (type, args, statement) => ({ type, shape: "statement", style: "motion_blocks", args, statement });
 
 /**
@@ -72,7 +77,8 @@ const moveSpeed = (script, block) => script.line(block, "call math.clamp(move.sp
 
 /** @type {(script: Script, block: BlockState) => void} */
 const turnSpeed = (script, block) => {
-  for (const text of ["move.speed = 30", "if abs move.left > 45 then", "\tmove.speed = 60", "end"]) script.line(block, text);
+  for (const text of ["move.speed = 30", "if abs move.left > 45 then", "\tmove.speed = 60", "end"])
+    script.line(block, text);
 };
 
 const MOTORS = choice("M", "motors", [

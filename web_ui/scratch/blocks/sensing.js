@@ -27,7 +27,9 @@ const reporter = (type, args, value) => ({ type, shape: "Number", style: "sensin
 
 /** @param {string} type @param {string} variable @param {readonly string[]} words */
 const element = (type, variable, words) =>
-  reporter(type, [choice("N", "sensor", numbered(words))], (g, block) => numberValue(`${variable}[${g.field(block, "N")}]`));
+  reporter(type, [choice("N", "sensor", numbered(words))], (g, block) =>
+    numberValue(`${variable}[${g.field(block, "N")}]`),
+  );
 
 const GROUND = ["ground_left", "ground_right"];
 
