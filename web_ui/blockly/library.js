@@ -36,6 +36,8 @@ const MESSAGES = {
 export async function defineBlocks(language, t) {
   const { default: nested, ...messages } = await (MESSAGES[language] ?? MESSAGES.en)();
   Blockly.setLocale(/** @type {Record<string, string>} */ (nested ?? messages));
+  // Blockly would give each definition that has no comment this one, and so change a file that is opened.
+  Blockly.setLocale({ PROCEDURES_DEFNORETURN_COMMENT: "" });
   if (!Blockly.registry.hasItem(Blockly.registry.Type.FIELD, "field_colour")) registerFieldColour();
   const all = definitions(t);
   for (const { type } of all) delete Blockly.Blocks[type];
