@@ -112,6 +112,7 @@ test("menus hold text, numbers, nothing, or a block", () => {
   const empty = withMenu([1, "m"], { m: menu("horizontalSensors", "") });
   assert.match(empty.code, /v = prox.horizontal\[0\]/);
   assert.deepEqual(empty.leftOut, []);
+  assert.match(withMenu([1, [10, "2"]], {}).code, /v = prox.horizontal\[2\]/);
   const variable = withMenu([3, [12, "which", "id2"], "m"], { m: menu("horizontalSensors", "3") });
   assert.deepEqual(
     variable.leftOut.map(({ key }) => key),

@@ -64,8 +64,8 @@ def run_script(name: str) -> tuple[Runner, list[int]]:
 def test_a_square_of_moves_and_turns_ends_where_it_began() -> None:
     runner, (direction, x_mm, y_mm) = run_script("scratch_square")
     pose = runner.world.robots["thymio"].pose
-    assert math.hypot(pose.x_m, pose.y_m) < 0.04
-    assert math.degrees(math.remainder(pose.yaw_rad, math.tau)) == pytest.approx(0, abs=20)
+    assert math.hypot(pose.x_m, pose.y_m) < 0.01
+    assert math.degrees(math.remainder(pose.yaw_rad, math.tau)) == pytest.approx(0, abs=3)
     assert direction == pytest.approx(0, abs=8)
     assert (x_mm, y_mm) == pytest.approx((0, 0), abs=25)
 

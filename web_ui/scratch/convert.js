@@ -209,21 +209,22 @@ export class Converter {
     return menu === undefined ? null : String(Object.values(menu.fields ?? {})[0]?.[0] ?? "");
   }
 
-  /** The option of a menu or field; the first one for an empty or unknown value. */
   /**
+   * The option of a menu, a field or a written value; the first one for an empty or unknown value, and for a block.
+   *
    * @param {string} opcode
    * @param {Arg} arg
    * @param {string | undefined} input
    * @param {{ inputs: Record<string, any[]>, fields: Record<string, any[]> }} scratch
    */
   #choice(opcode, { name, options = [] }, input, { inputs, fields }) {
-    const given = input === undefined ? String(fields[name]?.[0] ?? "") : this.#menu(inputs[input]);
     const initial = options[0][1];
-    const top = input === undefined ? undefined : inputs[input]?.[1];
-    const isMenu = typeof top !== "string" || this.blocks[top]?.shadow === true;
-    if (!isMenu || Array.isArray(top)) this.leaveOut("leftOutMenu", { opcode, used: initial });
-    else if (options.some(([, value]) => value === given)) return given;
-    else if (given !== "" && given !== null) this.leaveOut("leftOutMenu", { opcode, used: initial });
+    const top = inputs[input ?? name]?.[1];
+    const isBlock = typeof top === "string" ? this.blocks[top]?.shadow !== true : top?.[0] === VARIABLE;
+    const written = Array.isArray(top) ? top[1] : fields[name]?.[0];
+    const given = String((input === undefined ? written : this.#menu(inputs[input])) ?? "");
+    if (!isBlock && options.some(([, value]) => value === given)) return given;
+    if (isBlock || given !== "") this.leaveOut("leftOutMenu", { opcode, used: initial });
     return initial;
   }
 
