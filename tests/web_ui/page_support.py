@@ -131,7 +131,7 @@ def build_playground(page: Any) -> None:
     """Open the creator, with a new playground unless something is being built."""
     open_tab(page, "playground")
     if not page.locator(".palette").is_visible():
-        page.click("[data-new]")
+        page.click(".current [data-new]")
     page.locator(".palette").wait_for()
 
 

@@ -177,7 +177,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
 def test_everything_is_built_by_keys_alone(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.locator("#tab-playground").press("Enter")
-    page.locator("[data-new]").press("Enter")
+    page.locator(".current [data-new]").press("Enter")
     page.locator("[data-tool=box]").press("Enter")
     assert page.evaluate("document.activeElement.id") == "view"
     for key in ("Shift+ArrowRight", "ArrowUp", ".", "Enter"):

@@ -120,7 +120,7 @@ def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(s
     page.keyboard.insert_text("var a = b")
     playwright.expect(verdict).to_contain_text("as soon as the robot is connected")
     open_tab(page, "playground")
-    page.click("[data-new]")
+    page.click(".current [data-new]")
     playwright.expect(page.locator(".notice")).to_contain_text("Reload the page")
     suite("--playground", "base", "--program", "none", ports=ports)
     playwright.expect(verdict).to_have_text("1 mistake, line 1")

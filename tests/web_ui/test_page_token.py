@@ -85,7 +85,7 @@ def test_nothing_violates_the_content_security_policy(browser, page_server, host
     page.locator("#tab-program").click()
     page.locator(".cm-editor").wait_for()
     page.locator("#tab-playground").click()
-    page.locator("[data-new]").click()
+    page.locator(".current [data-new]").click()
     page.locator("#creator-try").wait_for()
     assert page.evaluate("broken") == []
     page.close()
