@@ -45,7 +45,7 @@ LOCKED = {
     "program": ".pad button, .program-card [data-program], #time button, #time select, .stop",
     "playground": "#playground-choice, #gallery-open",
 }
-STIMULI = "#hands-sheet input, #hands-sheet button, #hands-sheet select"
+STIMULI = ".hand:not(.plain), .hand-sheet input, .hand-sheet button"
 STATES = """(controls) => [...document.querySelectorAll(controls)]
     .map((one) => [one.matches(":disabled"), one.title || one.closest("fieldset")?.title || ""])"""
 
