@@ -35,7 +35,7 @@ def choose_example(page: Any, title: str, about: str) -> None:
 
 def robot_button(page: Any, name: str) -> Any:
     """One of the robot's five buttons, not a key of the remote control."""
-    return page.get_by_role("group", name="Robot buttons").get_by_role("button", name=name)
+    return page.get_by_role("group", name="The five buttons of the robot").get_by_role("button", name=name)
 
 
 def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
