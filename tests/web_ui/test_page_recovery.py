@@ -43,7 +43,7 @@ def test_the_page_reconnects_to_a_restarted_simulator_and_discards_old_state(sui
 
 
 LOCKED = {
-    "program": ".pad button, .program-head [data-verb], #time button, #time select, .stop",
+    "program": ".pad button, .program-head > [data-verb], #time button, #time select, .stop",
     "playground": ".sample, #playground-change",
 }
 STIMULI = ".hand:not(.plain), .hand-sheet input, .hand-sheet button"

@@ -50,7 +50,7 @@ def test_with_the_read_only_token_the_page_only_watches(suite, page):
     page.wait_for_function("window.thymio?.state().readOnly && window.thymio.state().simulator !== null")
     page.locator("#read-only").wait_for()
     for tab, controls in (
-        ("program", "#time button, #time select, .pad button, .stop, .program-head [data-verb], .example"),
+        ("program", "#time button, #time select, .pad button, .stop, .program-head > [data-verb], .example"),
         ("playground", ".sample, #playground-change, #panel-playground .file button"),
     ):
         open_tab(page, tab)

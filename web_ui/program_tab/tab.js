@@ -118,7 +118,7 @@ export class ProgramTab {
     this.file.setEntries(view.entries);
     view.show();
     this.#render();
-    if (!this.#isStartShown) view.focus();
+    this.#focus();
   }
 
   /** Call when the tab is opened or left. @param {boolean} isShown */
@@ -127,7 +127,12 @@ export class ProgramTab {
     if (!isShown) return;
     this.#view?.resized();
     this.redraw();
-    if (!this.#isStartShown) this.#view?.focus();
+    this.#focus();
+  }
+
+  #focus() {
+    if (this.#isStartShown) this.start.focus();
+    else this.#view?.focus();
   }
 
   /** Draw with the next frame. */
