@@ -17,7 +17,7 @@ const WAYS = ["all", "less", "short", "icons"];
 const SLOW = 0.9;
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
-export function timePanel({ text, actions, store, announce, frame }) {
+export function timePanel({ text, actions, store, announce, frame, scene }) {
   const t = text("stage");
   const pageText = text("page");
   let ticks = 10;
@@ -65,7 +65,7 @@ export function timePanel({ text, actions, store, announce, frame }) {
         act: () => {
           ticks = choice;
           showLength();
-          fit();
+          scene.invalidate();
         },
       })),
   });
@@ -109,6 +109,8 @@ export function timePanel({ text, actions, store, announce, frame }) {
   );
   /** @type {boolean | null} */ let paused = null;
   let wanted = NaN;
+  /** What the width of the bar depends on, when it was fitted last. */
+  let fitted = "";
 
   /** @param {boolean} now */
   const showPaused = (now) => {
@@ -120,7 +122,6 @@ export function timePanel({ text, actions, store, announce, frame }) {
     element.closest("#stage")?.toggleAttribute("data-paused", now);
     if (paused !== null) announce(t(now ? "time.isPaused" : "time.runs"));
     paused = now;
-    fit();
   };
   /** How fast time really runs, or that it does not. @param {import("../state/index.js").Simulator | null} simulator */
   const showAchieved = (simulator) => {
@@ -128,10 +129,7 @@ export function timePanel({ text, actions, store, announce, frame }) {
     const isSlow = simulator !== null && !simulator.paused && simulator.achieved < SLOW * simulator.factor;
     const said = simulator?.paused ? t("time.isPaused") : t("time.real", { factor });
     setText(achieved, simulator === null ? "" : said);
-    if (achieved.dataset.slow !== String(isSlow)) {
-      achieved.dataset.slow = String(isSlow);
-      fit();
-    }
+    setAttribute(achieved, "data-slow", String(isSlow));
     setAttribute(achieved, "title", isSlow ? t("time.slow", { factor }) : "");
   };
   return {
@@ -153,6 +151,9 @@ export function timePanel({ text, actions, store, announce, frame }) {
       if (factor !== wanted) showFactor(speed, factor, t("time.factor", { factor }));
       wanted = factor;
       setText(clock, formatTime(timeNs || (robots[selected]?.latest?.stampNs ?? 0)));
+      const said = `${paused} ${achieved.dataset.slow} ${achieved.textContent?.length} ${clock.textContent?.length} ${ticks}`;
+      if (said !== fitted) fit();
+      fitted = said;
     },
   };
 }

@@ -21,6 +21,7 @@ export function trayPanel(context) {
   const fold = (now) => {
     folded = now;
     trySetItem(localStore, FOLDED_KEY, String(now));
+    for (const sheet of element.querySelectorAll(":popover-open")) /** @type {HTMLElement} */ (sheet).hidePopover();
     show();
     if (now) open.focus();
     else pad.element.querySelector("button")?.focus();
