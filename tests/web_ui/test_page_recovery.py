@@ -46,7 +46,7 @@ LOCKED = {
     "program": ".pad button, .program-head > [data-verb], #time button, #time select, .stop",
     "playground": ".sample, #playground-change",
 }
-STIMULI = ".hand:not(.plain), .hand-sheet input, .hand-sheet button"
+STIMULI = ".hand:not(.quiet), .hand-sheet input, .hand-sheet button"
 STATES = """(controls) => [...document.querySelectorAll(controls)]
     .map((one) => [one.matches(":disabled"), one.title || one.closest("fieldset")?.title || ""])"""
 

@@ -28,7 +28,7 @@ export function trayPanel(context) {
   };
   const close = h(
     "button",
-    { type: "button", class: "hand plain", id: "tray-fold", onclick: () => fold(true) },
+    { type: "button", class: "hand quiet", id: "tray-fold", onclick: () => fold(true) },
     icon("fold"),
     h("span", {}, t("hand.fold")),
   );

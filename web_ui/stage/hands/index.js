@@ -30,7 +30,7 @@ export function hands(context, fold) {
   const rest = [penHand, remoteHand, roomHand].map((create) => create(context));
   const more = h(
     "button",
-    { type: "button", class: "hand plain", "data-hand": "more", id: "hands-more" },
+    { type: "button", class: "hand quiet", "data-hand": "more", id: "hands-more" },
     icon("more"),
     h("span", {}, pageText("more")),
   );
