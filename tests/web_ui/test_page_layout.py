@@ -111,4 +111,4 @@ def test_the_creator_continues_when_its_tab_is_opened_again(suite, page):
     open_tab(page, "playground")
     page.locator(".palette").wait_for()
     page.click(".creator .leave")
-    playwright.expect(page.locator("#playground-choice")).to_be_visible()
+    playwright.expect(page.locator("#playground-change")).to_be_visible()

@@ -164,7 +164,7 @@ export class ProgramTab {
     const { current } = this.session.workspace;
     const { target } = this.selection;
     if (current.own || isUnsaved(current) || target === null) return false;
-    return !target.program || isExample(target.program.name, WELCOME);
+    return !target.program?.source.trim() || isExample(target.program.name, WELCOME);
   }
 
   #placeFileMenu() {
