@@ -123,8 +123,8 @@ def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(s
     page.click(".current [data-new]")
     playwright.expect(page.locator(".notice")).to_contain_text("Reload the page")
     suite("--playground", "base", "--program", "none", ports=ports)
-    playwright.expect(verdict).to_have_text("1 mistake, line 1")
     open_tab(page, "program")
+    playwright.expect(verdict).to_have_text("1 mistake, line 1")
     playwright.expect(page.locator(".mistake-card")).to_contain_text("No variable is called 'b'")
 
 

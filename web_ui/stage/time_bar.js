@@ -84,7 +84,7 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
   );
   const speed = h(
     "select",
-    { class: "select quiet", id: "speed" },
+    { class: "select quiet", id: "speed", "aria-label": t("time.speed") },
     ...FACTORS.map((factor) => h("option", { value: factor }, t("time.factor", { factor }))),
   );
   speed.addEventListener("change", () => actions.setFactor(Number(speed.value)));
