@@ -153,7 +153,7 @@ export class ProgramTab {
     this.element.remove();
   }
 
-  /** Whether it is known what there is to show: the robot has told its program, or there is a text already. */
+  /** Whether it is known what there is to show: the robot has reported its program, or there is a text already. */
   get #isKnown() {
     const { current } = this.session.workspace;
     return this.selection.target !== null || current.own || isUnsaved(current);

@@ -13,7 +13,7 @@ const STEPS = [1, 10, 100];
 const TICKS_PER_S = 100;
 /** What the bar says, from the most to the least. */
 const WAYS = ["all", "less", "short", "icons"];
-/** Less than this share of the speed is told. */
+/** Less than this share of the speed is reported. */
 const SLOW = 0.9;
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */

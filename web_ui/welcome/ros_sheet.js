@@ -80,15 +80,15 @@ export function rosSheet({ actions, announce, store, text, scene }, t, button, c
       const [speed, ...others] = listensTo(selected);
       lock(send, disabledReason(state, pageText));
       if (!element.matches(":popover-open")) return speed.topic;
-      const told = publishesOf(topics, selected);
-      const key = [selected, ...told].join();
+      const published = publishesOf(topics, selected);
+      const key = [selected, ...published].join();
       if (key !== shown) {
         shown = key;
         setText(command, speedCommand(selected));
         does.replaceChildren(
           ...[speed, ...others].map(({ topic, type }) => h("li", {}, h("code", {}, topic), h("small", { class: "muted" }, type))),
         );
-        tells.replaceChildren(...told.map((topic) => h("li", {}, h("code", {}, topic))));
+        tells.replaceChildren(...published.map((topic) => h("li", {}, h("code", {}, topic))));
       }
       return speed.topic;
     },
