@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterable, MutableSequence, Sequence
-from operator import itemgetter
+from collections.abc import Iterable, MutableSequence, Sequence
 from typing import Any, overload
 
 MIN_WORD, MAX_WORD = -32768, 32767
@@ -16,11 +15,6 @@ def image(words: Sequence[int]) -> bytes:
     `words` are a list or the storage of an engine.
     """
     return array("h", words).tobytes() if isinstance(words, list) else bytes(words)
-
-
-def parts_of(ranges: Sequence[tuple[int, int]]) -> Callable[[bytes], tuple[bytes, ...]]:
-    """Return a function from an image to its parts at two or more ranges of addresses (begin, end)."""
-    return itemgetter(*[slice(2 * begin, 2 * end) for begin, end in ranges])
 
 
 def words_of(image: bytes) -> list[int]:
