@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from aseba_vm import VirtualMachine
-from aseba_vm.machine.data_memory import image, words_of
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.firmware.indicators import Indicators
 from thymio_sim_ros.device.firmware.settings import Settings
@@ -36,10 +35,7 @@ _NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
 class Outputs:
-    """Queued commands of one device.
-
-    Invariant: `_sent` has the words of the last command of each output, as in the image of the memory.
-    """
+    """Queued commands of one device. Invariant: `_sent` has the words of the last command of each output."""
 
     def __init__(self, layout: str, settings: Settings, indicators: Indicators) -> None:
         """`settings` calibrate the motors; `indicators` release the lights and sounds that a program uses."""
@@ -49,13 +45,11 @@ class Outputs:
         self._outputs = bindings.outputs(layout)
         self._by_address = {output.slots[0].address: number for number, output in enumerate(self._outputs)}
         """Index of each output by the address of its first variable."""
-        self._spans = [[(2 * run.address, 2 * run.address_end) for run in output.runs] for output in self._outputs]
-        """Where the words of each output are in the image of the memory."""
         self._settings = settings
         self._indicators = indicators
         self._vm: VirtualMachine | None = None
         self._queued: list[Command] = []
-        self._sent: list[bytes] = []
+        self._sent: list[list[int]] = []
         self._light_levels: dict[str, tuple[int, ...]] = {}
         self._light_period = 0
         """Number of the period of `LIGHT_REPEAT_NS` to which `_light_levels` belongs."""
@@ -65,8 +59,8 @@ class Outputs:
         self._vm = vm
         self._light_levels.clear()
         self.has_used_sound = False
-        self._sent = self._images()
-        at_rest = [output.command(words_of(sent)) for output, sent in zip(self._outputs, self._sent, strict=True)]
+        self._sent = [self._words(output) for output in self._outputs]
+        at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
         self._queued = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
 
     def queue(self, *commands: Command) -> None:
@@ -111,20 +105,19 @@ class Outputs:
 
     def pop_changes(self) -> list[Command]:
         """Return the commands of variables that changed since the last call."""
-        sent, self._sent = self._sent, self._images()
-        if self._sent == sent:
-            return []
-        return [
-            self._adjusted(output.command(words_of(new)))
-            for output, new, old in zip(self._outputs, self._sent, sent, strict=True)
-            if new != old
-        ]
+        commands: list[Command] = []
+        for number, output in enumerate(self._outputs):
+            words = self._words(output)
+            if words != self._sent[number]:
+                self._sent[number] = words
+                commands.append(self._adjusted(output.command(words)))
+        return commands
 
     def resend_motor_targets(self) -> None:
         """Send the motor targets again, because their calibration has changed."""
-        for number, (output, words) in enumerate(zip(self._outputs, self._images(), strict=True)):
-            if isinstance(output.command(words_of(words)), MotorTargets):
-                self._sent[number] = b""
+        for output, sent in zip(self._outputs, self._sent, strict=True):
+            if isinstance(output.command(self._words(output)), MotorTargets):
+                sent.clear()
 
     def _adjusted(self, command: Command) -> Command:
         """Calibrate a command for motors; claim the lights of a command for lights."""
@@ -143,14 +136,19 @@ class Outputs:
         assert self._vm is not None
         if variable not in self._addresses:
             return
-        address, _size = self._addresses[variable]
+        address, size = self._addresses[variable]
         number = self._by_address.get(address)
+        if number is not None and self._sent[number] == words == self._vm.variables.words[address : address + size]:
+            return
         self._vm.write_variables(address, words)
         if number is not None:
-            self._sent[number] = self._images()[number]
+            self._sent[number] = self._words(self._outputs[number])
 
-    def _images(self) -> list[bytes]:
-        """Words of the variables of each output, as in the image of the memory."""
+    def _words(self, output: bindings.OutputBinding) -> list[int]:
+        """Words of the variables of an output."""
         assert self._vm is not None
-        memory = image(self._vm.variables.words)
-        return [b"".join([memory[begin:end] for begin, end in spans]) for spans in self._spans]
+        memory = self._vm.variables.words
+        words: list[int] = []
+        for address, address_end, _, _ in output.runs:
+            words += memory[address:address_end]
+        return words
