@@ -19,7 +19,7 @@ const BY_STATE = /** @type {Readonly<Record<string, ClassState>>} */ ({
   paused: "halted",
   fault: "mistake",
 });
-/** States of robots whose pupils need somebody. */
+/** States of robots whose pupils need help. */
 const NEEDS_LOOK = /** @type {ReadonlySet<ClassState>} */ (new Set(["mistake", "fell", "halted"]));
 
 /** @param {Pick<Program, "state" | "name"> | undefined} program @param {boolean} hasFallen @returns {ClassState} */
