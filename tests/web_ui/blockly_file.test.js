@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { newAesl, readAesl } from "../../web_ui/editor/aesl.js";
 import { difference } from "../../web_ui/blockly/compare.js";
-import { newFile, readFile, writeFile } from "../../web_ui/blockly/file.js";
+import { newFile, readFile, withoutBlocks, writeFile } from "../../web_ui/blockly/file.js";
 import { generate } from "../../web_ui/blockly/generator.js";
 import { emptyState, sameWorkspace } from "../../web_ui/blockly/state.js";
 import { writeWorkspace } from "../../web_ui/blockly/write_workspace.js";
@@ -125,12 +125,24 @@ test("a file without a workspace gets one, and other plug-ins stay", () => {
   }
 });
 
-test("an empty workspace is not stored", () => {
-  assert.doesNotMatch(writeFile(readFile(aesl(xml(SHADOWS))), emptyState()), /toolsPlugins|Blockly/);
-  const other = aesl(xml(SHADOWS)).replace("<ThymioBlockly>", "<Other/><ThymioBlockly>");
-  assert.match(writeFile(readFile(other), emptyState()), /<toolsPlugins>\s*<Other\/>\s*<\/toolsPlugins>/);
+test("an empty workspace is stored in a file of blocks, so that it stays one", () => {
+  const written = writeFile(readFile(aesl(xml(SHADOWS))), emptyState());
+  assert.match(written, /<ThymioBlockly>\s*<xml>\s*<\/xml>\s*<\/ThymioBlockly>/);
+  const fresh = newFile(emptyState(), "");
+  assert.equal(readFile(fresh).hasWorkspace, true);
+  assert.deepEqual(readFile(fresh).problems, []);
   const plain = newAesl("a = 1");
   assert.equal(writeFile(readFile(plain), emptyState()), plain);
+});
+
+test("blocks can leave a file: its program, other tools and everything else stay", () => {
+  const without = withoutBlocks(aesl(xml(SHADOWS)));
+  assert.doesNotMatch(without, /toolsPlugins|Blockly/);
+  assert.equal(readAesl(without).nodes[0].code, readFile(aesl(xml(SHADOWS))).code);
+  const other = aesl(xml(SHADOWS)).replace("<ThymioBlockly>", "<Other/><ThymioBlockly>");
+  assert.match(withoutBlocks(other), /<toolsPlugins>\s*<Other\/>\s*<\/toolsPlugins>/);
+  const plain = newAesl("a = 1");
+  assert.equal(withoutBlocks(plain), plain);
 });
 
 test("the workspace is that of the first node that has one", () => {

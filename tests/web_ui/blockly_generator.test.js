@@ -83,9 +83,9 @@ test("each line has the id of its block, and a block all lines inside", () => {
   const generated = generate(state);
   assert.deepEqual(generated.blocks, ["hat", "hat", "first", "first", "second", "hat"]);
   assert.equal(generated.code.split("\n").length - 1, generated.blocks.length);
-  assert.deepEqual(linesOfBlock(generated, state, "first"), { first: 2, last: 3 });
-  assert.deepEqual(linesOfBlock(generated, state, "hat"), { first: 0, last: 5 });
-  assert.equal(linesOfBlock(generated, state, "missing"), null);
+  assert.deepEqual(linesOfBlock(generated.blocks, state, "first"), { first: 2, last: 3 });
+  assert.deepEqual(linesOfBlock(generated.blocks, state, "hat"), { first: 0, last: 5 });
+  assert.equal(linesOfBlock(generated.blocks, state, "missing"), null);
 });
 
 test("a field that is missing or has no valid option is that of a new block", () => {

@@ -3,7 +3,7 @@
 
 import { AeslError, newAesl, readAesl, withCode } from "../editor/aesl.js";
 import { readWorkspace } from "./read_workspace.js";
-import { emptyState, isEmpty, sameWorkspace } from "./state.js";
+import { emptyState, sameWorkspace } from "./state.js";
 import { ROOT, writeWorkspace } from "./write_workspace.js";
 import { childrenOf, readXml } from "./xml_tree.js";
 
@@ -67,9 +67,16 @@ export function writeFile(file, state, code = null) {
   return code === null || file.kind === "xml" ? text : withCode(text, file.node, code);
 }
 
-/** A new .aesl file. @param {WorkspaceState} state @param {string} code */
+/** A new .aesl file: with a workspace even if it is empty. @param {WorkspaceState} state @param {string} code */
 export function newFile(state, code) {
-  return writeFile(readFile(newAesl(code)), state);
+  return withWorkspace(readFile(newAesl(code)), state);
+}
+
+/** The file without its blocks: a program as text. @param {string} text */
+export function withoutBlocks(text) {
+  const root = readXml(text);
+  const place = find(root);
+  return place === null || root.name === "xml" ? text : withoutWorkspace(text, childrenOf(root, "node")[place.node]);
 }
 
 /**
@@ -87,18 +94,16 @@ function find(root) {
 }
 
 /** @param {BlocklyFile} file @param {WorkspaceState} state */
-function withWorkspace({ text, node, kind }, state) {
+function withWorkspace({ text, node }, state) {
   const newline = /\r\n/.test(text) ? "\r\n" : "\n";
   const root = readXml(text);
   const place = find(root);
   if (place !== null) {
     const { xml } = place;
-    if (kind === "aesl" && isEmpty(state)) return withoutWorkspace(text, childrenOf(root, "node")[node]);
     const tag = xml.empty ? text.slice(xml.from, xml.to).replace(/\s*\/>$/, ">") : text.slice(xml.from, xml.inner);
     const indent = indentAt(text, xml.from);
     return text.slice(0, xml.from) + writeWorkspace(state, { root: tag, indent, newline }) + text.slice(xml.to);
   }
-  if (isEmpty(state)) return text;
   const element = childrenOf(root, "node").at(node);
   if (element === undefined) throw new AeslError(text, root.from, "found no <node>, expected one");
   return withNewWorkspace(text, element, state, newline);

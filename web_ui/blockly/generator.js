@@ -52,11 +52,11 @@ export function generate(state, { reserved = [] } = {}) {
 /**
  * The lines of a block, those of the blocks inside included: first and last, from 0; null if it has none.
  *
- * @param {Generated} generated
+ * @param {readonly (string | null)[]} blocks  the id of the block of each line
  * @param {WorkspaceState} state
  * @param {string} id
  */
-export function linesOfBlock({ blocks }, state, id) {
+export function linesOfBlock(blocks, state, id) {
   const block = [...allBlocks(state)].find((each) => each.id === id);
   if (block === undefined) return null;
   const alone = { ...block, next: undefined };
