@@ -3,7 +3,8 @@
 
 import { check } from "../../web_ui/vpl/check.js";
 import { generate, generateSource } from "../../web_ui/vpl/generator.js";
-import { VERSIONS } from "../../web_ui/vpl/versions.js";
+import { MODES } from "../../web_ui/vpl/kinds.js";
+import { CURRENT, VERSIONS } from "../../web_ui/vpl/versions.js";
 import { goldenPrograms, randomNumbers, randomProgram } from "./vpl_programs.js";
 
 /** @param {{ id: string, text: string | undefined, words?: number[] }} line */
@@ -15,10 +16,11 @@ for (const { id, program, words } of goldenPrograms()) {
 const random = randomNumbers(1);
 let left = Number(process.argv[2]);
 while (left > 0) {
-  const program = randomProgram(random, left % 2 === 0);
+  const program = randomProgram(random, MODES[left % 3]);
   if (check(program) !== null) continue;
   left -= 1;
   for (const { id, name, generator } of VERSIONS) {
+    if (program.mode === "extended" && generator !== CURRENT) continue;
     print({ id: `random ${left}, ${id} (${name})`, text: generateSource(program, generator).text });
   }
 }

@@ -3,6 +3,7 @@ import { test } from "node:test";
 
 import { compareText } from "../../web_ui/vpl/compare.js";
 import { newVpl, readVpl } from "../../web_ui/vpl/file.js";
+import { MODES } from "../../web_ui/vpl/kinds.js";
 import { generateSource } from "../../web_ui/vpl/generator.js";
 import { VERSIONS } from "../../web_ui/vpl/versions.js";
 import { goldenPrograms, program, randomNumbers, randomProgram, vplFile } from "./vpl_programs.js";
@@ -54,16 +55,16 @@ test("a file of 2014 to 2015 is of several versions", () => {
 });
 
 test("each version is recognized, and only what concerns the program is listed", () => {
-  const distance = program(false, [["prox", 1], [["move", 50, 50]]]);
+  const distance = program("basic", [["prox", 1], [["move", 50, 50]]]);
   /** @type {[string, Program, string[]][]} */
   const cases = [
     ["G3", distance, ["edge", "swapped", "strict", "report"]],
     ["G4", distance, ["edge", "strict", "report"]],
-    ["G5", program(false, [["button", 1], [["sound"]]]), ["melody", "report"]],
+    ["G5", program("basic", [["button", 1], [["sound"]]]), ["melody", "report"]],
     ["G6", distance, ["strict", "report"]],
-    ["G7", program(true, [["clap"], [["move"]]]), ["remember"]],
-    ["G8", program(true, [["button", 0, 0, 0, 0, 0, 1, 4], [["move"]]]), ["center"]],
-    ["G9", program(true, [["acc", 2, 3], [["move"]]]), ["angle"]],
+    ["G7", program("advanced", [["clap"], [["move"]]]), ["remember"]],
+    ["G8", program("advanced", [["button", 0, 0, 0, 0, 0, 1, 4], [["move"]]]), ["center"]],
+    ["G9", program("advanced", [["acc", 2, 3], [["move"]]]), ["angle"]],
   ];
   for (const [id, made, expected] of cases) {
     const { origin, ids, changes } = about(by(made, id));
@@ -78,7 +79,7 @@ test("what any version generated is recognized", () => {
   const programs = goldenPrograms()
     .slice(0, 60)
     .map((each) => each.program);
-  for (let count = 0; count < 60; count++) programs.push(randomProgram(random, count % 2 === 0));
+  for (let count = 0; count < 60; count++) programs.push(randomProgram(random, MODES[count % 2]));
   for (const made of programs.filter((each) => check(each) === null)) {
     for (const { format, generator } of VERSIONS) {
       if (format === 0) continue;
@@ -101,12 +102,12 @@ test("a file without text, and one with an error in the picture", () => {
   const { origin, message, ids } = about(broken);
   assert.deepEqual([origin, message.values], ["broken", { row: 2 }]);
   assert.deepEqual(ids, []);
-  assert.equal(about(newVpl(program(false, [["clap"], [["move"]]]))).origin, "empty");
+  assert.equal(about(newVpl(program("basic", [["clap"], [["move"]]]))).origin, "empty");
 });
 
 test("the text of a picture with an error may come from its first rows", () => {
-  const first = program(false, [["button", 1], [["move", 50, 50]]]);
-  const made = program(false, [["button", 1], [["move", 50, 50]]], [["clap"], []]);
+  const first = program("basic", [["button", 1], [["move", 50, 50]]]);
+  const made = program("basic", [["button", 1], [["move", 50, 50]]], [["clap"], []]);
   const { origin, ids } = about(
     newVpl(made, generateSource(first, VERSIONS.find(({ id }) => id === "G4")?.generator).text),
   );

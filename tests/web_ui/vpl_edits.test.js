@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { BLOCKS, makeBlock } from "../../web_ui/vpl/blocks.js";
+import { makeBlock } from "../../web_ui/vpl/blocks.js";
 import {
   addBlock,
   changeBlock,
@@ -16,7 +16,8 @@ import {
 } from "../../web_ui/vpl/edits.js";
 import { generate } from "../../web_ui/vpl/generator.js";
 import { DEPTH, endSeries, newHistory, record, redo, undo } from "../../web_ui/vpl/history.js";
-import { lostInBasic, palette, withMode } from "../../web_ui/vpl/mode.js";
+import { BLOCKS, MODES } from "../../web_ui/vpl/kinds.js";
+import { lostIn, palette, withMode } from "../../web_ui/vpl/mode.js";
 import { press, withBlockMode, withKey, withNote, withNumber } from "../../web_ui/vpl/parameters.js";
 import { isEmptyRow, makeProgram, sameProgram } from "../../web_ui/vpl/program.js";
 import { block, pick, program, randomBlock, randomNumbers, randomProgram } from "./vpl_programs.js";
@@ -28,7 +29,7 @@ const names = ({ rows }) =>
   rows.map(({ event, actions }) => `${event?.name ?? "-"}: ${actions.map(({ name }) => name).join(" ")}`);
 
 const TWO = program(
-  false,
+  "basic",
   [
     ["clap"],
     [
@@ -40,7 +41,7 @@ const TWO = program(
 );
 
 test("a program always ends with an empty row", () => {
-  assert.deepEqual(names(makeProgram(false)), ["-: "]);
+  assert.deepEqual(names(makeProgram("basic")), ["-: "]);
   assert.deepEqual(names(TWO), ["clap: move colortop", "button: move", "-: "]);
   assert.deepEqual(names(removeRow(TWO, 2)), names(TWO));
 });
@@ -60,19 +61,19 @@ test("an action of a kind that the row has is refused, with the reason", () => {
 });
 
 test("blocks move, are copied, and change their order", () => {
-  const action = /** @type {const} */ ({ row: 0, slot: "action", index: 1 });
+  const action = /** @type {const} */ ({ row: 0, slot: "actions", index: 1 });
   assert.deepEqual(names(moveBlock(TWO, action, 1)).slice(0, 2), ["clap: move", "button: move colortop"]);
   assert.deepEqual(names(moveBlock(TWO, action, 1, { copy: true })).slice(0, 2), [
     "clap: move colortop",
     "button: move colortop",
   ]);
   assert.deepEqual(names(moveBlock(TWO, action, 0, { at: 0 }))[0], "clap: colortop move");
-  assert.equal(moveBlock(TWO, { row: 0, slot: "action", index: 0 }, 1), TWO);
+  assert.equal(moveBlock(TWO, { row: 0, slot: "actions", index: 0 }, 1), TWO);
   assert.deepEqual(names(moveBlock(TWO, { row: 0, slot: "event" }, 1)).slice(0, 2), ["-: move colortop", "clap: move"]);
 });
 
 test("a state filter is always copied, and emptied when it is removed", () => {
-  const two = program(true, [["clap"], [["move"]], [1, 0, 0, 0]], [["timeout"], [["move"]]]);
+  const two = program("advanced", [["clap"], [["move"]], [1, 0, 0, 0]], [["timeout"], [["move"]]]);
   const copied = moveBlock(two, { row: 0, slot: "state" }, 1);
   assert.deepEqual(copied.rows[0].state, copied.rows[1].state);
   assert.deepEqual(removeBlock(copied, { row: 0, slot: "state" }).rows[0].state?.values, [0, 0, 0, 0]);
@@ -86,7 +87,7 @@ test("rows are inserted, removed, moved and copied", () => {
 });
 
 test("the result of an editor replaces its block only", () => {
-  const place = /** @type {const} */ ({ row: 0, slot: "action", index: 0 });
+  const place = /** @type {const} */ ({ row: 0, slot: "actions", index: 0 });
   const changed = changeBlock(TWO, place, makeBlock("move", [500, -500]));
   assert.deepEqual(changed.rows[0].actions[0].values, [500, -500]);
   assert.equal(changed.rows[1], TWO.rows[1]);
@@ -131,13 +132,13 @@ test("a note becomes long, silent and short again", () => {
 
 test("advanced mode adds state filters; leaving it lists what is lost", () => {
   assert.deepEqual(
-    withMode(TWO, true).rows.map(({ state }) => state?.values),
+    withMode(TWO, "advanced").rows.map(({ state }) => state?.values),
     Array(3).fill([0, 0, 0, 0]),
   );
-  assert.deepEqual(lostInBasic(withMode(TWO, true)), []);
-  assert.ok(sameProgram(withMode(withMode(TWO, true), false), TWO));
+  assert.deepEqual(lostIn(withMode(TWO, "advanced"), "basic"), []);
+  assert.ok(sameProgram(withMode(withMode(TWO, "advanced"), "basic"), TWO));
   const rich = program(
-    true,
+    "advanced",
     [
       ["button", 0, 0, 0, 0, 0, 1, 2],
       [
@@ -151,7 +152,7 @@ test("advanced mode adds state filters; leaving it lists what is lost", () => {
     [["timeout"], [["move"]]],
   );
   assert.deepEqual(
-    lostInBasic(rich).map(({ row, key }) => `${row} ${key}`),
+    lostIn(rich, "basic").map(({ row, key }) => `${row} ${key}`),
     [
       "0 mode.reset.button",
       "0 mode.state",
@@ -162,16 +163,16 @@ test("advanced mode adds state filters; leaving it lists what is lost", () => {
       "3 mode.removed.timeout",
     ],
   );
-  const basic = withMode(rich, false);
+  const basic = withMode(rich, "basic");
   assert.deepEqual(names(basic), ["button: move", "prox: ", "acc: move", "-: move", "-: "]);
   assert.deepEqual(basic.rows[1].event?.values, [2, 1, 0, 0, 0, 0, 0, 1000, 2000]);
-  assert.deepEqual(lostInBasic(basic), []);
+  assert.deepEqual(lostIn(basic, "basic"), []);
 });
 
 test("the palettes", () => {
-  assert.deepEqual(palette("event", false), ["button", "prox", "proxground", "acc", "clap"]);
-  assert.deepEqual(palette("action", true), ["move", "colortop", "colorbottom", "sound", "timer", "setstate"]);
-  assert.deepEqual(palette("state", false), []);
+  assert.deepEqual(palette("event", "basic"), ["button", "prox", "proxground", "acc", "clap"]);
+  assert.deepEqual(palette("action", "advanced"), ["move", "colortop", "colorbottom", "sound", "timer", "setstate"]);
+  assert.deepEqual(palette("state", "basic"), []);
 });
 
 test("undo and redo, 50 steps, a gesture at a time", () => {
@@ -186,7 +187,7 @@ test("undo and redo, 50 steps, a gesture at a time", () => {
 
   history = newHistory(TWO);
   for (const speed of [50, 100, 150]) {
-    const place = /** @type {const} */ ({ row: 1, slot: "action", index: 0 });
+    const place = /** @type {const} */ ({ row: 1, slot: "actions", index: 0 });
     history = record(history, changeBlock(history.present, place, makeBlock("move", [speed, 0])), "speed");
   }
   assert.equal(undo(history).present, TWO);
@@ -203,15 +204,69 @@ test("impossible values become the default of a block", () => {
   assert.throws(() => makeBlock("fly"), /found block "fly", expected one of button, /);
 });
 
+test("extended mode has conditions, of what lasts, and they take the place of events", () => {
+  const made = program(
+    "extended",
+    [
+      ["clap"],
+      [["move"]],
+      undefined,
+      [
+        ["prox", 1],
+        ["counter", 3, 2],
+      ],
+    ],
+    [["acc", 1, 2], []],
+  );
+  assert.equal(whyNot(made, 0, makeBlock("clap"), "conditions")?.key, "edit.slot");
+  assert.equal(whyNot(made, 0, makeBlock("counter"), "event")?.key, "edit.slot");
+  assert.equal(whyNot(withMode(made, "advanced"), 0, makeBlock("prox"), "conditions")?.key, "edit.extended");
+  assert.deepEqual(addBlock(made, "counter", 1).rows[1].conditions[0].values, [3, 0]);
+  const moved = moveBlock(made, { row: 1, slot: "event" }, 0, { slot: "conditions", at: 0 });
+  assert.deepEqual(
+    moved.rows[0].conditions.map(({ name }) => name),
+    ["acc", "prox", "counter"],
+  );
+  assert.equal(moved.rows[1].event, null);
+  assert.equal(changeBlock(moved, { row: 0, slot: "conditions", index: 0 }, makeBlock("acc")), moved);
+  assert.equal(removeBlock(moved, { row: 0, slot: "conditions", index: 1 }).rows[0].conditions.length, 2);
+});
+
+test("advanced mode drops what is extended, and says so", () => {
+  const made = program(
+    "extended",
+    [["init"], [["play", 3], ["move"]]],
+    [
+      ["clap"],
+      [
+        ["setcounter", 2, 1],
+        ["timer", 250],
+      ],
+      [1, 0, 0, 0],
+      [
+        ["counter", 2, 9],
+        ["prox", 1],
+      ],
+    ],
+  );
+  assert.deepEqual(
+    lostIn(made, "advanced").map(({ row, key }) => `${row} ${key}`),
+    ["0 mode.removed.init", "0 mode.removed.play", "1 mode.condition", "1 mode.condition", "1 mode.removed.setcounter"],
+  );
+  const advanced = withMode(made, "advanced");
+  assert.deepEqual(names(advanced), ["-: move", "clap: timer", "-: "]);
+  assert.deepEqual(lostIn(advanced, "advanced"), []);
+});
+
 test("random edits keep every program whole", () => {
   const random = randomNumbers(3);
   for (let round = 0; round < 60; round++) {
-    let made = randomProgram(random, round % 2 === 0);
+    let made = randomProgram(random, MODES[round % 3]);
     for (let step = 0; step < 20; step++) {
       const size = made.rows.length + 1;
       const place = {
         row: pick(random, size),
-        slot: /** @type {const} */ (["event", "state", "action"])[pick(random, 3)],
+        slot: /** @type {const} */ (["event", "state", "actions"])[pick(random, 3)],
         index: pick(random, 3),
       };
       const kinds = [...BLOCKS.keys()];
@@ -224,17 +279,18 @@ test("random edits keep every program whole", () => {
         () => removeRow(made, pick(random, size)),
         () => moveRow(made, pick(random, size), pick(random, size)),
         () => copyRow(made, pick(random, size), pick(random, size)),
-        () => withMode(made, random() < 0.5),
+        () => withMode(made, MODES[pick(random, 3)]),
       ];
       made = edits[pick(random, edits.length)]();
       assert.ok(isEmptyRow(made.rows[made.rows.length - 1]));
-      for (const { state, actions } of made.rows) {
-        assert.equal(state !== null, made.advanced);
+      for (const { state, conditions, actions } of made.rows) {
+        assert.ok(made.mode === "extended" || conditions.length === 0);
+        assert.equal(state !== null, made.mode !== "basic");
         assert.equal(new Set(actions.map(({ name }) => name)).size, actions.length);
       }
-      if (!made.advanced)
+      if (made.mode === "basic")
         assert.deepEqual(
-          lostInBasic(made).filter(({ key }) => !key.startsWith("mode.reset")),
+          lostIn(made, "basic").filter(({ key }) => !key.startsWith("mode.reset")),
           [],
         );
       generate(made);

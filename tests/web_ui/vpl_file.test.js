@@ -5,6 +5,7 @@ import { readAesl } from "../../web_ui/editor/aesl.js";
 import { changeBlock, insertRow } from "../../web_ui/vpl/edits.js";
 import { VplError } from "../../web_ui/vpl/errors.js";
 import { newVpl, readVpl, writeVpl } from "../../web_ui/vpl/file.js";
+import { MODES } from "../../web_ui/vpl/kinds.js";
 import { generate } from "../../web_ui/vpl/generator.js";
 import { sameProgram } from "../../web_ui/vpl/program.js";
 import { makeBlock } from "../../web_ui/vpl/blocks.js";
@@ -33,7 +34,7 @@ test("a program of format 1 is read, whatever the order of attributes", () => {
     ["button 0 0 0 0 1 0 0", "statefilter 2 0 0 0", "setstate 1 0 0 0", "timer 439"],
     ["statefilter 0 0 0 0"],
   ]);
-  assert.deepEqual([program.advanced, format, node, warnings], [true, 1, 0, []]);
+  assert.deepEqual([program.mode, format, node, warnings], ["advanced", 1, 0, []]);
 });
 
 test("a program of format 0 becomes rows with several actions, near and far swap, and today's thresholds apply", () => {
@@ -45,7 +46,7 @@ test("a program of format 0 becomes rows with several actions, near and far swap
     [],
   ]);
   assert.equal(stored.rows.length, 5);
-  assert.deepEqual([program.advanced, format, warnings], [false, 0, []]);
+  assert.deepEqual([program.mode, format, warnings], ["basic", 0, []]);
 });
 
 test("states of format 0 are two bits each, and its action statefilter sets the state", () => {
@@ -198,16 +199,41 @@ test("the VPL part is found in the node that has one", () => {
   assert.equal(readAesl(writeVpl(read, read.program, "c = 1")).nodes[0].code, "b = 1");
 });
 
+test("an extended program has an element of its own, and gives it up when it no longer needs it", () => {
+  const text = vplFile("current.aesl");
+  const read = readVpl(text);
+  const extended = program("extended", [["init"], [["playstop"]]], [["clap"], [["move"]], [1, 0, 0, 0], [["prox", 1]]]);
+  const written = writeVpl(read, extended, "a = 1\n");
+  assert.doesNotMatch(written, /vplroot|ThymioVisualProgramming/);
+  assert.ok(written.includes("<Notes><text>mine</text></Notes>"));
+  const again = readVpl(written);
+  assert.deepEqual([again.format, again.warnings], ["extended", []]);
+  assert.ok(sameProgram(again.program, extended));
+  assert.equal(writeVpl(again, again.program, again.code), written);
+  const back = writeVpl(again, read.program, read.code);
+  assert.ok(sameProgram(readVpl(back).program, read.program));
+  assert.match(back, /<ThymioVisualProgramming>\s*<vplroot xml-format-version="1">/);
+});
+
+test("VPL of Aseba has no extended blocks: they are not read from its files", () => {
+  const { program, warnings } = readVpl(sets('<set><block type="event" name="init"/></set>', 'advanced_mode="1"'));
+  assert.deepEqual(short(program), [["statefilter 0 0 0 0"]]);
+  assert.deepEqual(
+    warnings.map(({ key }) => key),
+    ["load.unknown"],
+  );
+});
+
 test("a new file is read back", () => {
   const random = randomNumbers(11);
   const programs = [
-    program(false),
-    program(true),
+    program("basic"),
+    program("advanced"),
     ...goldenPrograms()
       .slice(0, 40)
       .map((each) => each.program),
   ];
-  for (let count = 0; count < 40; count++) programs.push(randomProgram(random, count % 2 === 0));
+  for (let count = 0; count < 40; count++) programs.push(randomProgram(random, MODES[count % 3]));
   for (const each of programs) {
     const { source } = generate(each);
     const read = readVpl(newVpl(each, source?.text));

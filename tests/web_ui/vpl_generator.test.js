@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { check } from "../../web_ui/vpl/check.js";
+import { MODES } from "../../web_ui/vpl/kinds.js";
 import { generate, generateSource, rowOfLine } from "../../web_ui/vpl/generator.js";
 import { VERSIONS } from "../../web_ui/vpl/versions.js";
 import { goldenPrograms, program, randomNumbers, randomProgram } from "./vpl_programs.js";
@@ -19,7 +20,7 @@ function handlers(program) {
 }
 
 /** @param {Short} event @param {Short} action @param {number[]} [state] */
-const advancedRow = (event, action, state) => program(true, [event, [action], state]);
+const advancedRow = (event, action, state) => program("advanced", [event, [action], state]);
 /** @type {Short} */ const STOP = ["move", 0, 0];
 
 test("the golden programs are refused where VPL refuses them", () => {
@@ -35,7 +36,7 @@ test("the golden programs are refused where VPL refuses them", () => {
 test("a whole text, byte for byte", () => {
   const { source } = generate(
     program(
-      true,
+      "advanced",
       [["clap"], [["sound", 257, 517, 261, 516, 517, 517]], [1, 0, 2, 0]],
       [
         ["timeout"],
@@ -118,8 +119,8 @@ onevent timer0
 });
 
 test("an empty program has no text", () => {
-  assert.deepEqual(generate(program(false)).source, { text: "", rows: [null] });
-  assert.deepEqual(generate(program(true)).source, { text: "", rows: [null] });
+  assert.deepEqual(generate(program("basic")).source, { text: "", rows: [null] });
+  assert.deepEqual(generate(program("advanced")).source, { text: "", rows: [null] });
 });
 
 /** @type {[string, Short, string][]} */
@@ -175,7 +176,7 @@ for (const [what, action, statements] of ACTIONS) {
 }
 
 test("only silence needs no wave", () => {
-  const { source } = generate(program(false, [["clap"], [["sound", 517, 517, 517, 517, 517, 517]]]));
+  const { source } = generate(program("basic", [["clap"], [["sound", 517, 517, 517, 517, 517, 517]]]));
   assert.doesNotMatch(source?.text ?? "", /wave/);
 });
 
@@ -196,7 +197,7 @@ test("a row without condition comes before those with one, unless it uses advanc
   /** @param {Short} action */
   const order = (action) => {
     const { source } = generate(
-      program(true, [["prox", 1], [STOP]], [["prox", 0], [action]], [["proxground", 1], [STOP]]),
+      program("advanced", [["prox", 1], [STOP]], [["prox", 0], [action]], [["proxground", 1], [STOP]]),
     );
     return [...(source?.text ?? "").matchAll(/pair_run (\d)/g)].map(([, row]) => Number(row));
   };
@@ -205,12 +206,14 @@ test("a row without condition comes before those with one, unless it uses advanc
 });
 
 test("rows keep their number when rows above them are empty", () => {
-  const { source } = generate(program(false, [null, []], [["clap"], [STOP]]));
+  const { source } = generate(program("basic", [null, []], [["clap"], [STOP]]));
   assert.match(source?.text ?? "", /emit pair_run 1\n/);
 });
 
 test("each row knows its lines, and each line its row", () => {
-  const { source } = generate(program(true, [["prox", 1], [STOP]], [["acc", 1, 2], [STOP]], [["prox", 2], [STOP]]));
+  const { source } = generate(
+    program("advanced", [["prox", 1], [STOP]], [["acc", 1, 2], [STOP]], [["prox", 2], [STOP]]),
+  );
   assert.ok(source);
   const lines = source.text.split("\n");
   source.rows.forEach((span, row) => {
@@ -223,10 +226,50 @@ test("each row knows its lines, and each line its row", () => {
   assert.equal(rowOfLine(source, 1), null);
 });
 
+test("further conditions of extended mode are tested inside the event, as the state is", () => {
+  const made = program("extended", [
+    ["acc", 2, 3],
+    [STOP],
+    [1, 0, 0, 0],
+    [
+      ["acc", 1, 0],
+      ["posture", 2],
+      ["counter", 5, 7],
+    ],
+  ]);
+  assert.match(generate(made).source?.text ?? "", /\nvar angle\n# .*\nvar counter = 0\n/);
+  assert.deepEqual(handlers(made).split("\n").slice(1, 7), [
+    "\tcall math.atan2(angle, acc[1], acc[2])",
+    "\twhen angle >= 6827 and angle < 9557 do",
+    "\t\tif state[0] == 1 then",
+    "\t\t\tcall math.atan2(angle, acc[0], acc[2])",
+    "\t\t\tif angle >= -1365 and angle < 1365 then",
+    "\t\t\t\tif -acc[2] / 2 > abs(acc[0]) + abs(acc[1]) then",
+  ]);
+});
+
+test("rows of the start run after the outputs are reset, and set the state there", () => {
+  const made = program(
+    "extended",
+    [
+      ["init"],
+      [
+        ["setstate", 1],
+        ["play", 3],
+      ],
+    ],
+    [["clap"], [["setcounter", 3, 2]]],
+  );
+  const text = generate(made).source?.text ?? "";
+  const start = ["new_state[0] = 1", "call sound.play(3)", "emit pair_run 0", "", "call math.copy(state, new_state)"];
+  assert.ok(text.includes(`call leds.circle(0,0,0,0,0,0,0,0)\n${start.join("\n")}\ncall leds.circle(0,state[1]*32,`));
+  assert.match(text, /\tcounter = counter - 2\n\tif counter < 0 then\n\t\tcounter = 0\n\tend\n\temit pair_run 1\n/);
+});
+
 test("any program has a text or a refusal, in every version", () => {
   const random = randomNumbers(7);
   for (let count = 0; count < 300; count++) {
-    const made = randomProgram(random, count % 2 === 0);
+    const made = randomProgram(random, MODES[count % 3]);
     const { source, refusal } = generate(made);
     assert.equal(source === null, refusal !== null);
     assert.deepEqual(refusal, check(made));

@@ -3,7 +3,8 @@
 import { readFileSync } from "node:fs";
 import { gunzipSync } from "node:zlib";
 
-import { BLOCKS, makeBlock } from "../../web_ui/vpl/blocks.js";
+import { canBeCondition, kindOf, makeBlock } from "../../web_ui/vpl/blocks.js";
+import { palette } from "../../web_ui/vpl/mode.js";
 import { makeProgram, makeRow, programOf } from "../../web_ui/vpl/program.js";
 
 /** @typedef {import("../../web_ui/vpl/blocks.js").Block} Block */
@@ -32,9 +33,23 @@ export function goldenPrograms() {
     .trim()
     .split("\n");
   return lines.map((line) => {
-    const { id, words, refused, ...data } = JSON.parse(line);
-    return { id, words, refused, program: programOf(data) };
+    const { id, words, refused, advanced, rows } = JSON.parse(line);
+    return {
+      id,
+      words,
+      refused,
+      program: programOf({ mode: advanced ? "advanced" : "basic", rows: rows.map(plainRow) }),
+    };
   });
+}
+
+/** @typedef {[string, number[]] | null} Pair  block of a golden program */
+
+/** @param {{ event: Pair, state: Pair, actions: Pair[] }} row */
+function plainRow({ event, state, actions }) {
+  /** @param {Pair} pair */
+  const plain = (pair) => (pair === null ? null : { name: pair[0], values: pair[1] });
+  return { event: plain(event), state: plain(state), actions: actions.map(plain).filter((each) => each !== null) };
 }
 
 /** @param {Short | null} [short] */
@@ -43,20 +58,23 @@ export function block(short = null) {
 }
 
 /**
- * A program; a row is its event, its actions, and in advanced mode its state filter.
+ * A program; a row is its event, its actions, its state filter, and its further conditions.
  *
- * @param {boolean} advanced
- * @param {[event: Short | null, actions: Short[], state?: number[]][]} rows
+ * @param {import("../../web_ui/vpl/kinds.js").Mode} mode
+ * @param {[event: Short | null, actions: Short[], state?: number[], conditions?: Short[]][]} rows
  */
-export function program(advanced, ...rows) {
+export function program(mode, ...rows) {
+  /** @param {Short} short */
+  const made = ([name, ...values]) => makeBlock(name, values);
   return makeProgram(
-    advanced,
-    rows.map(([event, actions, state]) =>
-      makeRow(
-        block(event),
-        advanced ? makeBlock("statefilter", state) : null,
-        actions.map(([name, ...values]) => makeBlock(name, values)),
-      ),
+    mode,
+    rows.map(([event, actions, state, conditions = []]) =>
+      makeRow({
+        event: block(event),
+        state: mode === "basic" ? null : makeBlock("statefilter", state),
+        conditions: conditions.map(made),
+        actions: actions.map(made),
+      }),
     ),
   );
 }
@@ -83,7 +101,7 @@ export const pick = (random, below) => Math.floor(random() * below);
  * @param {boolean} [isAdvanced]
  */
 export function randomBlock(random, name, isAdvanced = true) {
-  const { parameters } = /** @type {import("../../web_ui/vpl/blocks.js").BlockKind} */ (BLOCKS.get(name));
+  const { parameters } = kindOf(name);
   return makeBlock(
     name,
     parameters.map(({ kind, least, greatest, advanced = greatest, initial }) => {
@@ -95,16 +113,29 @@ export function randomBlock(random, name, isAdvanced = true) {
   );
 }
 
-/** A program that may have errors. @param {() => number} random @param {boolean} advanced */
-export function randomProgram(random, advanced) {
-  const kinds = [...BLOCKS.values()].filter((kind) => advanced || !kind.advanced);
-  const events = kinds.filter(({ type }) => type === "event");
-  const actions = kinds.filter(({ type }) => type === "action");
+/**
+ * A program that may have errors.
+ *
+ * @param {() => number} random
+ * @param {import("../../web_ui/vpl/kinds.js").Mode} mode
+ */
+export function randomProgram(random, mode) {
+  /** @param {string} name */
+  const made = (name) => randomBlock(random, name, mode !== "basic");
+  const events = palette("event", mode);
   const rows = Array.from({ length: pick(random, 8) }, () => {
-    const event = random() < 0.9 ? randomBlock(random, events[pick(random, events.length)].name, advanced) : null;
-    const state = random() < 0.5 ? makeBlock("statefilter") : randomBlock(random, "statefilter");
-    const chosen = actions.filter(() => random() < 0.4).map(({ name }) => randomBlock(random, name, advanced));
-    return makeRow(event, advanced ? state : null, chosen);
+    const event = random() < 0.9 ? made(events[pick(random, events.length)]) : null;
+    const actions = palette("action", mode)
+      .filter(() => random() < 0.4)
+      .map(made);
+    const further = mode === "extended" ? [...events, "counter"].filter(() => random() < 0.2).map(made) : [];
+    const state = random() < 0.5 ? makeBlock("statefilter") : made("statefilter");
+    return makeRow({
+      event,
+      state: mode === "basic" ? null : state,
+      conditions: further.filter(canBeCondition),
+      actions,
+    });
   });
-  return makeProgram(advanced, rows);
+  return makeProgram(mode, rows);
 }

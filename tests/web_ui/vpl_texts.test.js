@@ -3,7 +3,7 @@ import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import texts from "../../web_ui/i18n/vpl.texts.js";
-import { BLOCKS } from "../../web_ui/vpl/blocks.js";
+import { BLOCKS } from "../../web_ui/vpl/kinds.js";
 
 const FOLDER = new URL("../../web_ui/vpl/", import.meta.url);
 const PREFIXES = new Set(Object.keys(texts.en).map((key) => key.split(".")[0]));
@@ -36,8 +36,9 @@ test("every text that a module names exists, and every text is named", () => {
   assert.deepEqual(unused, []);
 });
 
-test("leaving advanced mode has a text for each block that it changes", () => {
-  for (const { name, type, advanced } of BLOCKS.values()) {
-    if (type !== "state" && advanced) assert.ok(`mode.removed.${name}` in texts.en, name);
+test("leaving a mode has a text for each block that it removes", () => {
+  for (const { name, type, mode } of BLOCKS.values()) {
+    if (mode !== "basic" && (type === "event" || type === "action"))
+      assert.ok(`mode.removed.${name}` in texts.en, name);
   }
 });

@@ -2,18 +2,18 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { VplError } from "../../web_ui/vpl/errors.js";
-import { allows, offered, readToolbox, WHOLE, writeToolbox } from "../../web_ui/vpl/toolbox.js";
+import { offered, readToolbox, WHOLE, writeToolbox } from "../../web_ui/vpl/toolbox.js";
 
 test("a list hides blocks and chooses a mode", () => {
-  const toolbox = readToolbox('{ "vpl-toolbox": 1, "mode": "basic", "hidden": ["clap", "sound"] }');
-  assert.deepEqual(offered(toolbox, "event", false), ["button", "prox", "proxground", "acc"]);
-  assert.deepEqual(offered(toolbox, "action", false), ["move", "colortop", "colorbottom"]);
-  assert.deepEqual([allows(toolbox, false), allows(toolbox, true)], [true, false]);
+  const toolbox = readToolbox('{ "vpl-toolbox": 1, "modes": ["basic"], "hidden": ["clap", "sound"] }');
+  assert.deepEqual(offered(toolbox, "event", "basic"), ["button", "prox", "proxground", "acc"]);
+  assert.deepEqual(offered(toolbox, "action", "basic"), ["move", "colortop", "colorbottom"]);
+  assert.deepEqual(toolbox.modes, ["basic"]);
 });
 
 test("without entries everything is shown; a list is written and read back", () => {
   assert.deepEqual(readToolbox('{ "vpl-toolbox": 1 }'), WHOLE);
-  const toolbox = /** @type {const} */ ({ mode: "advanced", hidden: ["timer"] });
+  const toolbox = /** @type {const} */ ({ modes: ["advanced", "extended"], hidden: ["timer", "init"] });
   assert.deepEqual(readToolbox(writeToolbox(toolbox)), toolbox);
 });
 
@@ -23,7 +23,8 @@ for (const [text, key, found] of [
   ["{}", "toolbox.format", "–"],
   ['{ "vpl-toolbox": 2 }', "toolbox.format", "2"],
   ['{ "vpl-toolbox": 1, "hide": [] }', "toolbox.entry", "hide"],
-  ['{ "vpl-toolbox": 1, "mode": "easy" }', "toolbox.mode", '"easy"'],
+  ['{ "vpl-toolbox": 1, "modes": "easy" }', "toolbox.mode", '"easy"'],
+  ['{ "vpl-toolbox": 1, "modes": [] }', "toolbox.mode", "[]"],
   ['{ "vpl-toolbox": 1, "hidden": "sound" }', "toolbox.block", '"sound"'],
   ['{ "vpl-toolbox": 1, "hidden": ["fly"] }', "toolbox.block", '"fly"'],
   ['{ "vpl-toolbox": 1, "hidden": ["button", "prox", "proxground", "acc", "clap"] }', "toolbox.noEvent", undefined],

@@ -12,7 +12,7 @@ import { isEmptyRow, sameEvent } from "./program.js";
  * @property {"missing-event" | "missing-action" | "same-event-twice"} kind
  * @property {boolean} hint
  * @property {number} row          from 0
- * @property {"event" | "action"} slot  where the row lacks a block, or has the wrong one
+ * @property {"event" | "actions"} slot  where the row lacks a block, or has the wrong one
  * @property {number | null} other  the other row with the same event
  */
 
@@ -27,9 +27,10 @@ export function check({ rows }) {
     if (isEmptyRow(row)) continue;
     if (row.event === null || row.actions.length === 0) {
       const hint = rows.slice(index + 1).every(isEmptyRow);
-      const slot = row.event === null ? "event" : "action";
-      const key = `check.${hint ? "add" : "missing"}.${slot}`;
-      return { key, values: { row: index + 1 }, kind: `missing-${slot}`, hint, row: index, slot, other: null };
+      const missing = row.event === null ? "event" : "action";
+      const key = `check.${hint ? "add" : "missing"}.${missing}`;
+      const slot = missing === "event" ? missing : "actions";
+      return { key, values: { row: index + 1 }, kind: `missing-${missing}`, hint, row: index, slot, other: null };
     }
     const other = rows.findIndex((each) => sameEvent(each, row));
     if (other < index) {

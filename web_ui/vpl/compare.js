@@ -76,7 +76,9 @@ function comparison(origin, values = {}) {
 function versionsOf(file) {
   const code = essence(file.code);
   return VERSIONS.filter(
-    ({ format, generator }) => format === file.format && essence(textBy(generator, file)) === code,
+    ({ format, generator }) =>
+      (file.format === "extended" ? generator === CURRENT : format === file.format) &&
+      essence(textBy(generator, file)) === code,
   );
 }
 
@@ -131,8 +133,8 @@ function essence(text) {
 }
 
 /** The rows above one. @param {Program} program @param {number} row */
-function above({ advanced, rows }, row) {
-  return makeProgram(advanced, rows.slice(0, row));
+function above({ mode, rows }, row) {
+  return makeProgram(mode, rows.slice(0, row));
 }
 
 /** @param {Program} program */

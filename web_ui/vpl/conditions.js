@@ -32,6 +32,13 @@ const HALF_STEP = 1365;
 const NEAR = 1;
 const FAR = 2;
 
+/** Event of the rows that run once, at the start; it has no handler. */
+export const START = "";
+/** Postures of extended mode. */
+const ON_A_SIDE = 1;
+const UPSIDE_DOWN = 2;
+const COMPARISONS = ["", "<=", "<", "==", ">", ">="];
+
 /** @type {Record<string, (block: Block, generator: Generator) => Partial<EventTest> & { event: string }>} */
 const EVENTS = {
   button: ({ values }, { center }) => {
@@ -54,14 +61,36 @@ const EVENTS = {
   },
   acc: ({ values: [mode, orientation] }, { strictAngle }) => {
     if (mode === TAP) return { event: "tap" };
-    const before = [`call math.atan2(angle, ${mode === ROLL ? "acc[0]" : "acc[1]"}, acc[2])`];
-    return { event: "acc", before, condition: angleCondition(mode === ROLL ? -orientation : orientation, strictAngle) };
+    const [axis, middle] = mode === ROLL ? ["acc[0]", -orientation] : ["acc[1]", orientation];
+    return { event: "acc", before: [angleOf(axis)], condition: angleCondition(middle, strictAngle) };
   },
   clap: () => ({ event: "mic" }),
   timeout: () => ({ event: "timer0" }),
+  init: () => ({ event: START }),
+  posture: ({ values: [posture] }) => {
+    if (posture === ON_A_SIDE) {
+      const condition = `abs(abs(angle) - ${RIGHT_ANGLE}) < ${HALF_STEP}`;
+      return { event: "acc", before: [angleOf("acc[0]")], condition };
+    }
+    if (posture === UPSIDE_DOWN) return { event: "acc", condition: "-acc[2] / 2 > abs(acc[0]) + abs(acc[1])" };
+    return { event: "acc", condition: "abs(acc[0]) + abs(acc[1]) + abs(acc[2]) < 16" };
+  },
+  groundmean: ({ values: [presence] }) => {
+    const sum = "prox.ground.delta[0] + prox.ground.delta[1]";
+    return { event: "prox", condition: presence === NEAR ? `${sum} >= 900` : `${sum} <= 800` };
+  },
+  counter: ({ values: [comparison, value] }) => ({
+    event: START,
+    condition: `counter ${COMPARISONS[comparison]} ${value}`,
+  }),
 };
 
+/** The statement that computes an angle. @param {string} axis */
+const angleOf = (axis) => `call math.atan2(angle, ${axis}, acc[2])`;
+
 /**
+ * What an event block, or a further condition of a row, tests.
+ *
  * @param {Block} block
  * @param {Generator} generator
  * @returns {EventTest}
@@ -78,8 +107,8 @@ export function stateCondition(filter) {
   );
 }
 
-/** @param {string[]} conditions */
-export const all = (conditions) => conditions.join(" and ");
+/** All of these conditions; "" is none. @param {string[]} conditions */
+export const all = (conditions) => conditions.filter((each) => each !== "").join(" and ");
 
 /**
  * @param {string} variable

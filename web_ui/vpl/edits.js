@@ -1,6 +1,7 @@
 // The edits of a VPL program. Each returns a new program, or the same one where the edit is impossible.
 
-import { kindOf, makeBlock } from "./blocks.js";
+import { canBeCondition, kindOf, makeBlock } from "./blocks.js";
+import { includes } from "./kinds.js";
 import { emptyRow, makeProgram, makeRow } from "./program.js";
 
 /** @typedef {import("./blocks.js").Block} Block */
@@ -17,9 +18,149 @@ import { emptyRow, makeProgram, makeRow } from "./program.js";
  * @returns {Block | null}
  */
 export function blockAt({ rows }, { row, slot, index = 0 }) {
-  const found = rows[row];
-  if (found === undefined) return null;
-  return slot === "action" ? (found.actions[index] ?? null) : found[slot];
+  const found = rows[row]?.[slot] ?? null;
+  return isList(found) ? (found[index] ?? null) : found;
+}
+
+/** @param {Block | readonly Block[] | null} value @returns {value is readonly Block[]} */
+function isList(value) {
+  return Array.isArray(value);
+}
+
+/** The slot of a row that takes a block from a palette. @param {Block | string} block @returns {Place["slot"]} */
+export function slotOf(block) {
+  const { type } = kindOf(block);
+  if (type === "action") return "actions";
+  return type === "condition" ? "conditions" : type;
+}
+
+/**
+ * Why a block cannot be put into a slot of a row, or null if it can.
+ *
+ * @param {Program} program
+ * @param {number} row
+ * @param {Block} block
+ * @param {Place["slot"]} [slot]      further conditions take events, too
+ * @param {number | null} [without]   index of an action that leaves the row
+ * @returns {Finding | null}
+ */
+export function whyNot({ mode, rows }, row, block, slot = slotOf(block), without = null) {
+  const values = { row: row + 1 };
+  if (rows[row] === undefined) return { key: "edit.row", values: { ...values, rows: rows.length } };
+  const needed = slot === "conditions" ? "extended" : kindOf(block).mode;
+  if (!includes(mode, needed)) return { key: needed === "extended" ? "edit.extended" : "edit.advanced", values };
+  if (slot === "conditions" ? !canBeCondition(block) : slot !== slotOf(block)) return { key: "edit.slot", values };
+  const same =
+    slot === "actions" && rows[row].actions.some(({ name }, index) => name === block.name && index !== without);
+  return same ? { key: "edit.twice", values } : null;
+}
+
+/**
+ * Put a block into a row: it replaces the event or the state filter; actions and conditions are added at an index.
+ *
+ * @param {Program} program
+ * @param {number} row
+ * @param {Block} block
+ * @param {{ slot?: Place["slot"], index?: number }} [options]  the index is the end without it
+ */
+export function putBlock(program, row, block, { slot = slotOf(block), index } = {}) {
+  if (whyNot(program, row, block, slot) !== null) return program;
+  const found = program.rows[row][slot];
+  return withSlot(program, row, slot, isList(found) ? spliced(found, index ?? found.length, 0, block) : block);
+}
+
+/**
+ * Add a new block, as a click in a palette does: to the selected row, else to the first row that lacks one.
+ *
+ * @param {Program} program
+ * @param {string} name
+ * @param {number | null} [selected]
+ */
+export function addBlock(program, name, selected = null) {
+  const slot = slotOf(name);
+  const lacking = program.rows.findIndex((row) => (isList(row[slot]) ? row[slot].length === 0 : row[slot] === null));
+  return putBlock(program, selected ?? (lacking < 0 ? program.rows.length - 1 : lacking), makeBlock(name));
+}
+
+/** Remove a block; a state filter is emptied. @param {Program} program @param {Place} place */
+export function removeBlock(program, { row, slot, index = 0 }) {
+  if (blockAt(program, { row, slot, index }) === null) return program;
+  const found = program.rows[row][slot];
+  if (isList(found)) return withSlot(program, row, slot, spliced(found, index, 1));
+  return withSlot(program, row, slot, slot === "state" ? makeBlock("statefilter") : null);
+}
+
+/**
+ * Move or copy a block to a row; an action or condition gets the index `at`. A state filter is always copied. An event
+ * can become a condition, and a condition an event.
+ *
+ * @param {Program} program
+ * @param {Place} from
+ * @param {number} row
+ * @param {{ at?: number, copy?: boolean, slot?: Place["slot"] }} [options]
+ */
+export function moveBlock(program, from, row, { at, copy = false, slot = from.slot } = {}) {
+  const block = blockAt(program, from);
+  if (block === null) return program;
+  const leaves = !copy && from.slot !== "state";
+  const stays = leaves && from.row === row && from.slot === slot;
+  if (stays && slot === "event") return program;
+  if (whyNot(program, row, block, slot, stays ? (from.index ?? 0) : null) !== null) return program;
+  return putBlock(leaves ? removeBlock(program, from) : program, row, block, { slot, index: at });
+}
+
+/**
+ * Replace a block by another of its kind: the result of its editor.
+ *
+ * @param {Program} program
+ * @param {Place} place
+ * @param {Block} block
+ */
+export function changeBlock(program, place, block) {
+  const { row, slot, index = 0 } = place;
+  if (blockAt(program, place)?.name !== block.name) return program;
+  if (slot === "conditions" && !canBeCondition(block)) return program;
+  const found = program.rows[row][slot];
+  return withSlot(program, row, slot, isList(found) ? spliced(found, index, 1, block) : block);
+}
+
+/** Insert an empty row in front of a row. @param {Program} program @param {number} at */
+export function insertRow({ mode, rows }, at) {
+  return makeProgram(mode, spliced(rows, at, 0, emptyRow(mode)));
+}
+
+/** @param {Program} program @param {number} row */
+export function removeRow(program, row) {
+  return program.rows[row] === undefined ? program : makeProgram(program.mode, spliced(program.rows, row, 1));
+}
+
+/**
+ * Move a row; `to` is its index afterwards.
+ *
+ * @param {Program} program
+ * @param {number} from
+ * @param {number} to
+ */
+export function moveRow(program, from, to) {
+  const { mode, rows } = program;
+  if (rows[from] === undefined || rows[to] === undefined || from === to) return program;
+  return makeProgram(mode, spliced(spliced(rows, from, 1), to, 0, rows[from]));
+}
+
+/** Copy a row; `to` is the index of the copy. @param {Program} program @param {number} from @param {number} to */
+export function copyRow(program, from, to) {
+  const { mode, rows } = program;
+  return rows[from] === undefined ? program : makeProgram(mode, spliced(rows, to, 0, rows[from]));
+}
+
+/**
+ * @param {Program} program
+ * @param {number} row
+ * @param {Place["slot"]} slot
+ * @param {Block | readonly Block[] | null} content
+ */
+function withSlot({ mode, rows }, row, slot, content) {
+  return makeProgram(mode, spliced(rows, row, 1, makeRow({ [slot]: content }, rows[row])));
 }
 
 /**
@@ -33,136 +174,4 @@ export function blockAt({ rows }, { row, slot, index = 0 }) {
  */
 function spliced(list, at, removed, ...added) {
   return [...list.slice(0, at), ...added, ...list.slice(at + removed)];
-}
-
-/**
- * Why a block cannot be put into a row, or null if it can.
- *
- * @param {Program} program
- * @param {number} row
- * @param {Block} block
- * @param {number | null} [without]  index of an action that leaves the row
- * @returns {Finding | null}
- */
-export function whyNot({ advanced, rows }, row, block, without = null) {
-  const kind = kindOf(block);
-  if (rows[row] === undefined) return { key: "edit.row", values: { row: row + 1, rows: rows.length } };
-  if (kind.advanced && !advanced) return { key: "edit.advanced", values: { row: row + 1 } };
-  const twice =
-    kind.type === "action" && rows[row].actions.some(({ name }, index) => name === block.name && index !== without);
-  return twice ? { key: "edit.twice", values: { row: row + 1 } } : null;
-}
-
-/**
- * Put a block into a row: it replaces the event or the state filter; an action is added at an index.
- *
- * @param {Program} program
- * @param {number} row
- * @param {Block} block
- * @param {number} [index]  of an action; the end without it
- */
-export function putBlock(program, row, block, index = program.rows[row]?.actions.length) {
-  if (whyNot(program, row, block) !== null) return program;
-  const { event, state, actions } = program.rows[row];
-  const type = kindOf(block).type;
-  if (type === "event") return withRow(program, row, makeRow(block, state, actions));
-  if (type === "state") return withRow(program, row, makeRow(event, block, actions));
-  return withRow(program, row, makeRow(event, state, spliced(actions, index, 0, block)));
-}
-
-/**
- * Add a new block, as a click in a palette does: to the selected row, else to the first row that lacks one.
- *
- * @param {Program} program
- * @param {string} name
- * @param {number | null} selected
- */
-export function addBlock(program, name, selected = null) {
-  const type = kindOf(name).type;
-  const lacking = program.rows.findIndex(({ event, actions }) =>
-    type === "event" ? event === null : actions.length === 0,
-  );
-  return putBlock(program, selected ?? (lacking < 0 ? program.rows.length - 1 : lacking), makeBlock(name));
-}
-
-/** Remove a block; a state filter is emptied. @param {Program} program @param {Place} place */
-export function removeBlock(program, { row, slot, index = 0 }) {
-  const found = program.rows[row];
-  if (found === undefined || blockAt(program, { row, slot, index }) === null) return program;
-  const { event, state, actions } = found;
-  if (slot === "event") return withRow(program, row, makeRow(null, state, actions));
-  if (slot === "state") return withRow(program, row, makeRow(event, makeBlock("statefilter"), actions));
-  return withRow(program, row, makeRow(event, state, spliced(actions, index, 1)));
-}
-
-/**
- * Move or copy a block to a row; an action gets the index `at`. A state filter is always copied.
- *
- * @param {Program} program
- * @param {Place} from
- * @param {number} row
- * @param {{ at?: number, copy?: boolean }} [options]
- */
-export function moveBlock(program, from, row, { at, copy = false } = {}) {
-  const block = blockAt(program, from);
-  if (block === null) return program;
-  const leaves = !copy && from.slot !== "state";
-  const without = leaves && from.row === row && from.slot === "action" ? (from.index ?? 0) : null;
-  if (whyNot(program, row, block, without) !== null) return program;
-  if (leaves && from.row === row && from.slot !== "action") return program;
-  return putBlock(leaves ? removeBlock(program, from) : program, row, block, at);
-}
-
-/**
- * Replace a block by another of its kind: the result of its editor.
- *
- * @param {Program} program
- * @param {Place} place
- * @param {Block} block
- */
-export function changeBlock(program, place, block) {
-  const old = blockAt(program, place);
-  if (old === null || old.name !== block.name) return program;
-  const { event, state, actions } = program.rows[place.row];
-  if (place.slot === "action")
-    return withRow(program, place.row, makeRow(event, state, spliced(actions, place.index ?? 0, 1, block)));
-  return withRow(
-    program,
-    place.row,
-    makeRow(place.slot === "event" ? block : event, place.slot === "state" ? block : state, actions),
-  );
-}
-
-/** Insert an empty row in front of a row. @param {Program} program @param {number} at */
-export function insertRow(program, at) {
-  return makeProgram(program.advanced, spliced(program.rows, at, 0, emptyRow(program.advanced)));
-}
-
-/** @param {Program} program @param {number} row */
-export function removeRow(program, row) {
-  return program.rows[row] === undefined ? program : makeProgram(program.advanced, spliced(program.rows, row, 1));
-}
-
-/**
- * Move a row; `to` is its index afterwards.
- *
- * @param {Program} program
- * @param {number} from
- * @param {number} to
- */
-export function moveRow(program, from, to) {
-  const { advanced, rows } = program;
-  if (rows[from] === undefined || rows[to] === undefined || from === to) return program;
-  return makeProgram(advanced, spliced(spliced(rows, from, 1), to, 0, rows[from]));
-}
-
-/** Copy a row; `to` is the index of the copy. @param {Program} program @param {number} from @param {number} to */
-export function copyRow(program, from, to) {
-  const { advanced, rows } = program;
-  return rows[from] === undefined ? program : makeProgram(advanced, spliced(rows, to, 0, rows[from]));
-}
-
-/** @param {Program} program @param {number} at @param {Readonly<Row>} row */
-function withRow({ advanced, rows }, at, row) {
-  return makeProgram(advanced, spliced(rows, at, 1, row));
 }

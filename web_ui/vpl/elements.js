@@ -42,15 +42,15 @@ export function readElements(text) {
 }
 
 /**
- * The last element with a name within another one, in the order of the text.
+ * The last element with one of these names within another one, in the order of the text.
  *
  * @param {Element} element
- * @param {string} name
+ * @param {string[]} names
  * @returns {Element | null}
  */
-export function lastOf(element, name) {
+export function lastOf(element, names) {
   for (const child of [...element.children].reverse()) {
-    const found = child.name === name ? child : lastOf(child, name);
+    const found = names.includes(child.name) ? child : lastOf(child, names);
     if (found !== null) return found;
   }
   return null;

@@ -8,8 +8,9 @@ import { REPORTS } from "./generator.js";
 import { makeProgram, sameProgram } from "./program.js";
 import { readPairs } from "./read_pairs.js";
 import { readSets } from "./read_sets.js";
-import { writeSets } from "./write_sets.js";
+import { EXTENDED_ROOT, FORMAT, ROOT, rootName, writeSets } from "./write_sets.js";
 
+/** @typedef {import("./elements.js").Element} Element */
 /** @typedef {import("./program.js").Finding} Finding */
 /** @typedef {import("./program.js").Program} Program */
 /**
@@ -17,14 +18,14 @@ import { writeSets } from "./write_sets.js";
  * @property {string} text          the whole file
  * @property {number} node          index of the node with the VPL program
  * @property {string} code          its Aseba text, which is what the robot runs
- * @property {0 | 1} format
+ * @property {0 | 1 | "extended"} format
  * @property {Program} program
  * @property {Program} stored       the rows as they are stored: format 0 has one action in each
  * @property {Finding[]} warnings   what could not be read as it is written
  */
 
-const ROOT = "vplroot";
-const FORMAT = "xml-format-version";
+/** Element around the program in files of VPL of Aseba. */
+const PLUGIN = "ThymioVisualProgramming";
 
 /**
  * Open a file with a VPL program; with several, the last one counts. Throws VplError.
@@ -34,20 +35,21 @@ const FORMAT = "xml-format-version";
  */
 export function readVpl(text) {
   const { aesl, document } = parsed(text);
-  const nodes = document.children.flatMap(({ children }) => children).filter(({ name }) => name === "node");
-  const roots = nodes.map((node) => lastOf(node, ROOT));
+  const roots = nodesOf(document).map(rootIn);
   const root = [...roots].reverse().find((each) => each !== null) ?? null;
   if (root === null) throw new VplError("file.none");
   const node = roots.indexOf(root);
   const code = aesl.nodes[node].code;
-  const format = root.attributes[FORMAT];
-  if (format === undefined) {
+  const format = root.attributes[FORMAT[root.name]];
+  if (root.name === ROOT && format === undefined) {
     const { program, pairs, warnings } = readPairs(root, text);
     return { text, node, code, format: 0, program, stored: pairs, warnings };
   }
-  const { program, warnings } = readSets(root, text);
-  if (format !== "1") warnings.unshift({ key: "load.format", values: { ...placeOf(text, root.from), found: format } });
-  return { text, node, code, format: 1, program, stored: program, warnings };
+  const isExtended = root.name === EXTENDED_ROOT;
+  const { program, warnings } = readSets(root, text, isExtended);
+  const found = format ?? "";
+  if (found !== "1") warnings.unshift({ key: "load.format", values: { ...placeOf(text, root.from), found } });
+  return { text, node, code, format: isExtended ? "extended" : 1, program, stored: program, warnings };
 }
 
 /**
@@ -58,14 +60,54 @@ export function readVpl(text) {
  * @param {string} code  that of `generate`, or `file.code` if the program has an error or its text is to be kept
  */
 export function writeVpl(file, program, code) {
-  let { text } = file;
-  if (!sameProgram(program, file.program)) {
-    const root = rootOf(text, file.node);
-    text =
-      text.slice(0, root.from) + writeSets(program, marginAt(text, root.from), newlineOf(text)) + text.slice(root.to);
-  }
+  const text = sameProgram(program, file.program) ? file.text : withProgram(file, program);
   if (code.trimEnd() === file.code.trimEnd()) return text;
   return withReport(withNodeCode(text, file.node, code), code);
+}
+
+/**
+ * A new file for one Thymio.
+ *
+ * @param {Program} [program]
+ * @param {string} [code]
+ */
+export function newVpl(program = makeProgram("basic"), code = "") {
+  const text = newAesl(code);
+  const end = text.lastIndexOf("</node>");
+  const plugin = `<toolsPlugins>\n${plugged(program, "", "\n")}\n</toolsPlugins>\n`;
+  return withReport(text.slice(0, end) + plugin + text.slice(end), code);
+}
+
+/**
+ * The file with another program. An extended program has another element, which VPL of Aseba does not read.
+ *
+ * @param {VplFile} file
+ * @param {Program} program
+ */
+function withProgram({ text, node: index }, program) {
+  const node = nodesOf(readElements(text))[index];
+  const root = rootIn(node);
+  if (root === null) throw new RangeError(`node ${index}: found no VPL program, expected that of the file`);
+  const isSame = root.name === rootName(program);
+  const plugin = lastOf(node, [PLUGIN]);
+  const old = !isSame && root.name === ROOT && plugin !== null ? plugin : root;
+  const margin = /(?:^|\n)([ \t]*)$/.exec(text.slice(0, old.from))?.[1] ?? "";
+  const newline = newlineOf(text);
+  const element = isSame ? writeSets(program, margin, newline) : plugged(program, margin, newline);
+  return text.slice(0, old.from) + element + text.slice(old.to);
+}
+
+/**
+ * The element of a program, in that of its plug-in.
+ *
+ * @param {Program} program
+ * @param {string} margin
+ * @param {string} newline
+ */
+function plugged(program, margin, newline) {
+  if (rootName(program) === EXTENDED_ROOT) return writeSets(program, margin, newline);
+  const inner = writeSets(program, `${margin} `, newline);
+  return [`<${PLUGIN}>`, ` ${inner}`, `</${PLUGIN}>`].join(`${newline}${margin}`);
 }
 
 /**
@@ -80,24 +122,6 @@ function withNodeCode(text, index, code) {
   const { tag, code: old } = readAesl(text).nodes[index];
   if (old.trim() !== "") return withCode(text, index, code.trimEnd() + old.slice(old.trimEnd().length));
   return text.slice(0, tag.to) + encoded(code, false, newlineOf(text)) + text.slice(tag.to);
-}
-
-/**
- * A new file for one Thymio.
- *
- * @param {Program} [program]
- * @param {string} [code]
- */
-export function newVpl(program = makeProgram(false), code = "") {
-  const plugin = [
-    "<toolsPlugins>",
-    " <ThymioVisualProgramming>",
-    `  ${writeSets(program, "  ")}`,
-    " </ThymioVisualProgramming>",
-  ];
-  const text = newAesl(code);
-  const end = text.lastIndexOf("</node>");
-  return withReport(`${text.slice(0, end)}${plugin.join("\n")}\n</toolsPlugins>\n${text.slice(end)}`, code);
 }
 
 /**
@@ -117,26 +141,19 @@ function parsed(text) {
   try {
     return { aesl: readAesl(text), document: readElements(text) };
   } catch (error) {
-    if (error instanceof AeslError)
-      throw new VplError("file.xml", { line: error.line, column: error.column, what: error.message });
-    throw error;
+    if (!(error instanceof AeslError)) throw error;
+    throw new VplError("file.xml", { line: error.line, column: error.column, what: error.message });
   }
 }
 
-/** @param {string} text @param {number} index */
-function rootOf(text, index) {
-  const nodes = readElements(text)
-    .children.flatMap(({ children }) => children)
-    .filter(({ name }) => name === "node");
-  const root = lastOf(nodes[index], ROOT);
-  if (root === null)
-    throw new RangeError(`node ${index}: found no <${ROOT}>, expected that of the file that was opened`);
-  return root;
+/** @param {Element} document @returns {Element[]} */
+function nodesOf(document) {
+  return document.children.flatMap(({ children }) => children).filter(({ name }) => name === "node");
 }
 
-/** White space at the start of the line of a place. @param {string} text @param {number} at */
-function marginAt(text, at) {
-  return /(?:^|\n)([ \t]*)$/.exec(text.slice(0, at))?.[1] ?? "";
+/** The element of the program of a node. @param {Element} node */
+function rootIn(node) {
+  return lastOf(node, [ROOT, EXTENDED_ROOT]);
 }
 
 /** @param {string} text */

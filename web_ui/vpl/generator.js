@@ -2,9 +2,9 @@
 
 import { hasCondition } from "./blocks.js";
 import { check } from "./check.js";
-import { all, eventTest, stateCondition } from "./conditions.js";
-import { preamble } from "./preamble.js";
-import { isAdvancedRow, isEmptyRow } from "./program.js";
+import { all, eventTest, START, stateCondition } from "./conditions.js";
+import { definitions, initialization, STATE_DISPLAY } from "./preamble.js";
+import { hasFilter, isAdvancedRow, isEmptyRow } from "./program.js";
 import { actionStatements, setsState } from "./statements.js";
 import { CURRENT } from "./versions.js";
 
@@ -17,6 +17,7 @@ import { CURRENT } from "./versions.js";
 
 /** Names of the event that a generated program emits with the index of a row, each time the row has run. */
 export const REPORTS = ["pair_run", "PairExecuted"];
+const COPY_STATE = "call math.copy(state, new_state)";
 const HANDLERS = ["acc", "buttons", "mic", "prox", "rc5", "tap", "timer0"];
 
 /**
@@ -37,21 +38,29 @@ export function generate(program) {
  * @param {Generator} [generator]
  * @returns {Source}
  */
-export function generateSource({ advanced, rows }, generator = CURRENT) {
+export function generateSource({ mode, rows }, generator = CURRENT) {
+  const advanced = mode !== "basic";
   const indexed = rows.map((row, index) => ({ row, index })).filter(({ row }) => !isEmptyRow(row));
   /** @type {(Lines | null)[]} */ const spans = rows.map(() => null);
   if (indexed.length === 0) return { text: "", rows: spans };
   const used = indexed.map(({ row }) => row);
-  const lines = preamble(advanced, used, generator);
-  for (const [event, parts] of handlers(advanced, indexed, generator)) {
-    lines.push("", `onevent ${event}`);
-    if (event === "timer0") lines.push("\ttimer.period[0] = 0");
+  const lines = initialization(advanced, used, generator);
+  /** @param {Part[]} parts */
+  const add = (parts) => {
     for (const { index, lines: own } of parts) {
       spans[index] = { first: lines.length + 1, last: lines.length + own.length };
       lines.push(...own);
       if (generator.spaced) lines.push("");
     }
     lines.push(...stateLines(advanced, parts, generator));
+  };
+  const { start, handlers } = arranged(advanced, indexed, generator);
+  add(start);
+  lines.push(...definitions(advanced, used, generator));
+  for (const [event, parts] of handlers) {
+    lines.push("", `onevent ${event}`);
+    if (event === "timer0") lines.push("\ttimer.period[0] = 0");
+    add(parts);
   }
   return { text: lines.map((line) => `${line}\n`).join(""), rows: spans };
 }
@@ -68,14 +77,14 @@ export function rowOfLine({ rows }, line) {
 }
 
 /**
- * The rows of each handler, in the order of the text.
+ * The rows that run at the start, and those of each handler, in the order of the text.
  *
  * @param {boolean} advanced
  * @param {{ row: Readonly<Row>, index: number }[]} indexed
  * @param {Generator} generator
- * @returns {[string, Part[]][]}
+ * @returns {{ start: Part[], handlers: [string, Part[]][] }}
  */
-function handlers(advanced, indexed, generator) {
+function arranged(advanced, indexed, generator) {
   /** @type {Map<string, Part[]>} */ const found = new Map();
   for (const { row, index } of indexed) {
     if (row.event === null) continue; // refused by `check`
@@ -85,8 +94,11 @@ function handlers(advanced, indexed, generator) {
     const at = comesFirst(row, advanced, generator) ? parts.findIndex((part) => isTested(part.row, generator)) : -1;
     parts.splice(at < 0 ? parts.length : at, 0, { row, index, lines });
   }
-  const all = [...found];
-  return generator.fixedHandlers ? all.sort(([a], [b]) => HANDLERS.indexOf(a) - HANDLERS.indexOf(b)) : all;
+  const start = found.get(START) ?? [];
+  found.delete(START);
+  const handlers = [...found];
+  if (generator.fixedHandlers) handlers.sort(([a], [b]) => HANDLERS.indexOf(a) - HANDLERS.indexOf(b));
+  return { start, handlers };
 }
 
 /**
@@ -97,13 +109,13 @@ function handlers(advanced, indexed, generator) {
  * @param {Generator} generator
  */
 function comesFirst(row, advanced, { order }) {
-  if (hasCondition(row.event) || hasCondition(row.state)) return false;
+  if (hasCondition(row.event) || hasFilter(row)) return false;
   return order === "basic" ? !advanced : !isAdvancedRow(row);
 }
 
 /** Whether rows without conditions are put before this one. @param {Readonly<Row>} row @param {Generator} generator */
-function isTested({ event, state }, { order }) {
-  return hasCondition(state) || (order !== "state" && hasCondition(event));
+function isTested(row, { order }) {
+  return hasFilter(row) || (order !== "state" && hasCondition(row.event));
 }
 
 /**
@@ -114,17 +126,19 @@ function isTested({ event, state }, { order }) {
  */
 function rowText(row, block, index, generator) {
   const { event, before, condition, edge } = eventTest(block, generator);
-  const { report } = generator;
   const statements = row.actions.flatMap((action) => actionStatements(action, generator));
-  if (report !== "") statements.push(`emit ${report} ${index}`);
+  if (generator.report !== "") statements.push(`emit ${generator.report} ${index}`);
+  // Each further condition has an `if` of its own: long conditions need more stack than the robot has.
+  const inner = row.conditions.reduceRight((body, each) => {
+    const test = eventTest(each, generator);
+    return [...test.before, ...enclosed("if", test.condition, body)];
+  }, statements);
   const state = stateCondition(row.state);
-  let body = statements;
-  if (generator.test === "if") {
-    body = enclosed("if", all([condition, state].filter((each) => each !== "")), body);
-  } else {
-    body = enclosed("if", state, body);
-    body = enclosed(edge ? "when" : "if", condition, body);
-  }
+  const body =
+    generator.test === "if"
+      ? enclosed("if", all([condition, state]), inner)
+      : enclosed(edge ? "when" : "if", condition, enclosed("if", state, inner));
+  if (event === START) return { event, lines: [...before, ...body] };
   const lines = [...before, ...body].map((line) => `\t${line}`);
   // The original has a blank here, and a file is compared with the text of the original.
   if (event === "rc5") lines[1] = ` ${lines[1]}`;
@@ -146,7 +160,9 @@ function enclosed(test, condition, body) {
  */
 function stateLines(advanced, parts, { remember, spaced }) {
   const wanted = remember === "all" ? advanced : parts.some(({ row }) => row.actions.some(setsState));
-  if (!wanted) return [];
-  const lines = ["\tcall math.copy(state, new_state)", "\tcallsub display_state"];
+  if (!wanted || parts.length === 0) return [];
+  // At the start there is no subroutine yet.
+  const isStart = parts[0].row.event?.name === "init";
+  const lines = isStart ? [COPY_STATE, STATE_DISPLAY] : [`\t${COPY_STATE}`, "\tcallsub display_state"];
   return spaced ? [...lines, ""] : ["", ...lines];
 }

@@ -1,9 +1,11 @@
-// Basic and advanced mode: what leaving advanced mode removes, and the change itself.
+// The modes: what a change to a smaller one removes, and the change itself.
 
-import { BLOCKS, BUTTONS, buttonBlock, isAdvanced, kindOf, makeBlock } from "./blocks.js";
-import { makeProgram, makeRow } from "./program.js";
+import { BUTTONS, buttonBlock, kindOf, makeBlock, modeOf } from "./blocks.js";
+import { BLOCKS, includes } from "./kinds.js";
+import { blocksOf, makeProgram, makeRow } from "./program.js";
 
 /** @typedef {import("./blocks.js").Block} Block */
+/** @typedef {import("./kinds.js").Mode} Mode */
 /** @typedef {import("./program.js").Finding} Finding */
 /** @typedef {import("./program.js").Program} Program */
 
@@ -12,51 +14,51 @@ const BETWEEN = 3;
 const FAR = 2;
 
 /**
- * The program in a mode. Whether it loses something is the question to ask first: `lostInBasic`.
+ * The program in a mode. Whether it loses something is the question to ask first: `lostIn`.
  *
  * @param {Program} program
- * @param {boolean} advanced
+ * @param {Mode} mode
  */
-export function withMode(program, advanced) {
-  if (program.advanced === advanced) return program;
-  if (advanced) return makeProgram(true, program.rows);
-  return makeProgram(
-    false,
-    program.rows.map(({ event, actions }) =>
-      makeRow(
-        basic(event),
-        null,
-        actions.map(basic).filter((each) => each !== null),
-      ),
-    ),
+export function withMode(program, mode) {
+  if (program.mode === mode) return program;
+  const rows = program.rows.map(({ event, state, conditions, actions }) =>
+    makeRow({
+      event: fitted(event, mode),
+      state: fitted(state, mode),
+      conditions: mode === "extended" ? conditions : [],
+      actions: actions.map((action) => fitted(action, mode)).filter((each) => each !== null),
+    }),
   );
+  return makeProgram(mode, rows);
 }
 
 /**
- * What the program loses in basic mode, one finding for each block; empty if nothing needs to be asked.
+ * What the program loses in a mode, one finding for each block; empty if nothing needs to be asked.
  *
  * @param {Program} program
+ * @param {Mode} mode
  * @returns {(Finding & { row: number })[]}
  */
-export function lostInBasic({ rows }) {
-  return rows.flatMap(({ event, state, actions }, row) =>
-    [event, state, ...actions]
-      .filter((block) => block !== null)
-      .filter(isAdvanced)
-      .map((block) => ({ key: lossOf(block), values: { row: row + 1 }, row })),
+export function lostIn({ rows }, mode) {
+  return rows.flatMap((found, row) =>
+    blocksOf(found)
+      .filter((block) => !includes(mode, found.conditions.includes(block) ? "extended" : modeOf(block)))
+      .map((block) => ({ key: lossOf(block, found.conditions.includes(block), mode), values: { row: row + 1 }, row })),
   );
 }
 
-/** @param {Block} block */
-function lossOf(block) {
-  if (block.name === "statefilter") return "mode.state";
-  return kindOf(block).advanced ? `mode.removed.${block.name}` : `mode.reset.${block.name}`;
+/** @param {Block} block @param {boolean} isCondition @param {Mode} mode */
+function lossOf(block, isCondition, mode) {
+  const { type, mode: first } = kindOf(block);
+  if (isCondition) return "mode.condition";
+  if (type === "state") return "mode.state";
+  return includes(mode, first) ? `mode.reset.${block.name}` : `mode.removed.${block.name}`;
 }
 
-/** The block as basic mode has it, null if it has none. @param {Block | null} block */
-function basic(block) {
-  if (block === null || kindOf(block).advanced) return null;
-  if (!isAdvanced(block)) return block;
+/** The block as a mode has it, null if it has none. @param {Block | null} block @param {Mode} mode */
+function fitted(block, mode) {
+  if (block === null || !includes(mode, kindOf(block).mode)) return null;
+  if (includes(mode, modeOf(block))) return block;
   if (block.name === "button") return buttonBlock(BUTTONS);
   if (block.name === "acc") return makeBlock("acc");
   const { parameters } = kindOf(block);
@@ -70,11 +72,9 @@ function basic(block) {
 /**
  * The blocks that a mode offers, in the order of the palettes.
  *
- * @param {import("./blocks.js").BlockType} type
- * @param {boolean} advanced
+ * @param {import("./kinds.js").BlockType} type
+ * @param {Mode} mode
  */
-export function palette(type, advanced) {
-  return [...BLOCKS.values()]
-    .filter((kind) => kind.type === type && (advanced || !kind.advanced))
-    .map(({ name }) => name);
+export function palette(type, mode) {
+  return [...BLOCKS.values()].filter((kind) => kind.type === type && includes(mode, kind.mode)).map(({ name }) => name);
 }

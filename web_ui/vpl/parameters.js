@@ -1,9 +1,10 @@
 // What the editor of a block does: a click on one of its parts, a slider, a note. Each returns a new block.
 
-import { BUTTONS, buttonBlock, kindOf, LENGTH_UNIT, makeBlock, SILENCE, TAP } from "./blocks.js";
+import { BUTTONS, buttonBlock, kindOf, makeBlock, TAP } from "./blocks.js";
+import { LENGTH_UNIT, SILENCE } from "./kinds.js";
 
 /** @typedef {import("./blocks.js").Block} Block */
-/** @typedef {import("./blocks.js").Parameter} Parameter */
+/** @typedef {import("./kinds.js").Parameter} Parameter */
 
 /** The distance thresholds snap to a tenth of the nearest of these. */
 const DECADES = [10, 100, 200, 500, 750, 1000, 2000, 4000];
@@ -26,7 +27,7 @@ function greatestOf({ greatest, advanced: inAdvanced = greatest }, advanced) {
  */
 export function press(block, index, advanced) {
   const parameter = parameterOf(block, index, "choice");
-  const next = block.values[index] >= greatestOf(parameter, advanced) ? 0 : block.values[index] + 1;
+  const next = block.values[index] >= greatestOf(parameter, advanced) ? parameter.least : block.values[index] + 1;
   return withValue(block, index, next);
 }
 

@@ -1,8 +1,9 @@
 // Reads a VPL program of format 0 (Aseba 1.3): `<settings …/>`, then one `<buttonset …/>` for each event with
 // one action.
 
-import { BLOCKS, kindOf, makeBlock } from "./blocks.js";
+import { kindOf, makeBlock } from "./blocks.js";
 import { placeOf, wholeNumber } from "./elements.js";
+import { BLOCKS } from "./kinds.js";
 import { makeProgram, makeRow, sameEvent } from "./program.js";
 
 /** @typedef {import("./blocks.js").Block} Block */
@@ -30,10 +31,10 @@ export function readPairs(root, text) {
   const warn = (key, element, values = {}) =>
     warnings.push({ key, values: { ...placeOf(text, element.from), ...values } });
   const sets = root.children.filter(({ name }) => name === "buttonset");
-  const mode = root.children.find(({ name }) => name === "settings")?.attributes["advanced-mode"];
-  const advanced = mode === "true" || sets.some(({ attributes }) => stateOf(attributes) >= 0);
-  const rows = sets.map((set) => readPair(set, advanced, warn));
-  return { program: makeProgram(advanced, merged(rows)), pairs: makeProgram(advanced, rows), warnings };
+  const stored = root.children.find(({ name }) => name === "settings")?.attributes["advanced-mode"];
+  const mode = stored === "true" || sets.some(({ attributes }) => stateOf(attributes) >= 0) ? "advanced" : "basic";
+  const rows = sets.map((set) => readPair(set, mode === "advanced", warn));
+  return { program: makeProgram(mode, merged(rows)), pairs: makeProgram(mode, rows), warnings };
 }
 
 /** The bits of the state filter, -1 if there is none. @param {Record<string, string>} attributes */
@@ -54,7 +55,8 @@ function readPair(set, advanced, warn) {
   const action = readBlock(set, actionName, ACTION_NAMES[actionName] ?? actionName, "action", warn);
   const bits = Math.max(0, stateOf(attributes));
   const states = Array.from({ length: STATES }, (_each, index) => (bits >> (2 * index)) & 3);
-  return makeRow(event, advanced ? makeBlock("statefilter", states) : null, action === null ? [] : [action]);
+  const state = advanced ? makeBlock("statefilter", states) : null;
+  return makeRow({ event, state, actions: action === null ? [] : [action] });
 }
 
 /**
@@ -66,7 +68,8 @@ function readPair(set, advanced, warn) {
  */
 function readBlock(set, found, name, type, warn) {
   if (found === "") return null;
-  if (BLOCKS.get(name)?.type !== type) {
+  const kind = BLOCKS.get(name);
+  if (kind?.type !== type || kind.mode === "extended") {
     warn("load.unknown", set, { found });
     return null;
   }
@@ -99,7 +102,7 @@ function merged(rows) {
     const at = row.event === null ? -1 : result.findIndex((each) => sameEvent(each, row));
     const added = row.actions.filter(({ name }) => !result[at]?.actions.some((each) => each.name === name));
     if (at < 0 || added.length < row.actions.length) result.push(row);
-    else result[at] = makeRow(row.event, row.state, [...result[at].actions, ...added]);
+    else result[at] = makeRow({ actions: [...result[at].actions, ...added] }, result[at]);
   }
   return result;
 }

@@ -1,6 +1,7 @@
 // What action blocks mean in Aseba: the statements of a row.
 
-import { hasCondition, LENGTH_UNIT, SILENCE } from "./blocks.js";
+import { hasCondition } from "./blocks.js";
+import { LENGTH_UNIT, SILENCE } from "./kinds.js";
 
 /** @typedef {import("./blocks.js").Block} Block */
 /** @typedef {import("./versions.js").Generator} Generator */
@@ -9,6 +10,14 @@ import { hasCondition, LENGTH_UNIT, SILENCE } from "./blocks.js";
 const FREQUENCIES = [262, 311, 370, 440, 524, 0];
 /** Length of a short note in sixtieths of a second. */
 const SHORT = 7;
+
+const GREATEST_COUNT = 255;
+/** Set, add, subtract; the counter stays from 0 to 255. @type {Record<number, (value: number) => string[]>} */
+const COUNTER_OPERATIONS = {
+  1: (value) => [`counter = ${value}`],
+  2: (value) => [`counter = counter + ${value}`, ...limited(">", GREATEST_COUNT)],
+  3: (value) => [`counter = counter - ${value}`, ...limited("<", 0)],
+};
 
 /** @type {Record<string, (values: readonly number[], generator: Generator) => string[]>} */
 const ACTIONS = {
@@ -19,11 +28,19 @@ const ACTIONS = {
   timer: ([milliseconds]) => [`timer.period[0] = ${milliseconds}`],
   setstate: (values) =>
     values.flatMap((value, index) => (value === 0 ? [] : [`new_state[${index}] = ${value === 1 ? 1 : 0}`])),
+  setcounter: ([operation, value]) => COUNTER_OPERATIONS[operation](value),
+  play: ([number]) => [`call sound.play(${number})`],
+  playstop: () => ["call sound.play(-1)"],
 };
 
 /** @param {Block} block @param {Generator} generator */
 export function actionStatements(block, generator) {
   return ACTIONS[block.name](block.values, generator);
+}
+
+/** @param {string} beyond @param {number} limit */
+function limited(beyond, limit) {
+  return [`if counter ${beyond} ${limit} then`, `\tcounter = ${limit}`, "end"];
 }
 
 /**

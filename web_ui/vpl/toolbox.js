@@ -1,21 +1,20 @@
 // The teacher's file that hides blocks: a list in JSON. Blocks that a program has stay in it, whatever the list hides.
 
-import { BLOCKS } from "./blocks.js";
 import { VplError } from "./errors.js";
+import { BLOCKS, MODES } from "./kinds.js";
 import { palette } from "./mode.js";
 
-/** @typedef {"basic" | "advanced" | "both"} Mode */
-/** @typedef {{ mode: Mode, hidden: readonly string[] }} Toolbox */
+/** @typedef {import("./kinds.js").Mode} Mode */
+/** @typedef {{ modes: readonly Mode[], hidden: readonly string[] }} Toolbox */
 
 const FORMAT = "vpl-toolbox";
-const MODES = /** @type {const} */ (["basic", "advanced", "both"]);
-const ENTRIES = [FORMAT, "mode", "hidden"];
+const ENTRIES = [FORMAT, "modes", "hidden"];
 
-/** All blocks in both modes. @type {Toolbox} */
-export const WHOLE = { mode: "both", hidden: [] };
+/** What pupils see without a list: all of VPL of Aseba. @type {Toolbox} */
+export const WHOLE = { modes: ["basic", "advanced"], hidden: [] };
 
 /**
- * Read a list such as `{ "vpl-toolbox": 1, "mode": "basic", "hidden": ["sound"] }`. Throws VplError.
+ * Read a list such as `{ "vpl-toolbox": 1, "modes": ["basic"], "hidden": ["sound"] }`. Throws VplError.
  *
  * @param {string} text
  * @returns {Toolbox}
@@ -25,38 +24,31 @@ export function readToolbox(text) {
   if (data[FORMAT] !== 1) throw new VplError("toolbox.format", { found: shown(data[FORMAT]) });
   const unknown = Object.keys(data).find((key) => !ENTRIES.includes(key));
   if (unknown !== undefined) throw new VplError("toolbox.entry", { found: unknown, known: ENTRIES.join(", ") });
-  const { mode = WHOLE.mode, hidden = WHOLE.hidden } = data;
-  const known = MODES.find((each) => each === mode);
-  if (known === undefined) throw new VplError("toolbox.mode", { found: shown(mode), known: MODES.join(", ") });
-  if (!Array.isArray(hidden)) throw blockError(hidden);
-  for (const name of hidden) if (!BLOCKS.has(name)) throw blockError(name);
-  const toolbox = { mode: known, hidden: [...hidden] };
-  for (const advanced of [false, true].filter((each) => allows(toolbox, each))) {
-    if (offered(toolbox, "event", advanced).length === 0) throw new VplError("toolbox.noEvent");
-    if (offered(toolbox, "action", advanced).length === 0) throw new VplError("toolbox.noAction");
+  const modes = listOf(data.modes ?? WHOLE.modes, MODES, "toolbox.mode");
+  const hidden = listOf(data.hidden ?? WHOLE.hidden, [...BLOCKS.keys()], "toolbox.block");
+  if (modes.length === 0) throw new VplError("toolbox.mode", { found: "[]", known: MODES.join(", ") });
+  const toolbox = { modes, hidden };
+  for (const mode of modes) {
+    if (offered(toolbox, "event", mode).length === 0) throw new VplError("toolbox.noEvent");
+    if (offered(toolbox, "action", mode).length === 0) throw new VplError("toolbox.noAction");
   }
   return toolbox;
 }
 
 /** @param {Toolbox} toolbox */
-export function writeToolbox({ mode, hidden }) {
-  return `${JSON.stringify({ [FORMAT]: 1, mode, hidden }, null, 2)}\n`;
-}
-
-/** Whether pupils may use a mode. @param {Toolbox} toolbox @param {boolean} advanced */
-export function allows({ mode }, advanced) {
-  return mode === "both" || (mode === "advanced") === advanced;
+export function writeToolbox({ modes, hidden }) {
+  return `${JSON.stringify({ [FORMAT]: 1, modes, hidden }, null, 2)}\n`;
 }
 
 /**
  * The blocks that a palette offers.
  *
  * @param {Toolbox} toolbox
- * @param {import("./blocks.js").BlockType} type
- * @param {boolean} advanced
+ * @param {import("./kinds.js").BlockType} type
+ * @param {Mode} mode
  */
-export function offered({ hidden }, type, advanced) {
-  return palette(type, advanced).filter((name) => !hidden.includes(name));
+export function offered({ hidden }, type, mode) {
+  return palette(type, mode).filter((name) => !hidden.includes(name));
 }
 
 /** @param {string} text @returns {Record<string, unknown>} */
@@ -72,9 +64,21 @@ function parsed(text) {
   return /** @type {Record<string, unknown>} */ (data);
 }
 
-/** @param {unknown} found */
-function blockError(found) {
-  return new VplError("toolbox.block", { found: shown(found), known: [...BLOCKS.keys()].join(", ") });
+/**
+ * A list of known words.
+ *
+ * @template {string} T
+ * @param {unknown} list
+ * @param {readonly T[]} known
+ * @param {string} key  of the error
+ * @returns {T[]}
+ */
+function listOf(list, known, key) {
+  return (Array.isArray(list) ? list : [list]).map((each) => {
+    const found = Array.isArray(list) ? known.find((word) => word === each) : undefined;
+    if (found === undefined) throw new VplError(key, { found: shown(each), known: known.join(", ") });
+    return found;
+  });
 }
 
 /** @param {unknown} value */
