@@ -96,12 +96,10 @@ export function sameProgram(a, b) {
   );
 }
 
-/** @typedef {Partial<Row>} PlainRow */
-
 /**
  * The program of plain data, such as a saved draft: the same shape, with values that may be missing or impossible.
  *
- * @param {{ mode: Mode, rows: readonly PlainRow[] }} data
+ * @param {{ mode: Mode, rows: readonly Partial<Row>[] }} data
  */
 export function programOf({ mode, rows }) {
   /** @param {Block | null} plain */

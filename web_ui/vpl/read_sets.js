@@ -1,5 +1,5 @@
-// Reads a VPL program of format 1: `<program advanced_mode="…">` with one `<set>` for each row. Extended programs have
-// the same elements, with more blocks.
+// Reads a VPL program of format 1: `<program advanced_mode="…">` with one `<set>` for each row. Extended programs
+// have the same elements, with more blocks.
 
 import { makeBlock } from "./blocks.js";
 import { whyNot } from "./edits.js";
