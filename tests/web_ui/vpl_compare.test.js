@@ -97,6 +97,14 @@ test("a text that was edited by hand is recognized", () => {
   assert.deepEqual(about(text.replaceAll("\t", "  ")).changes, []);
 });
 
+test("the rows of a stored text are known where it is equal", () => {
+  /** @param {string} text */
+  const rows = (text) => compareText(readVpl(text)).source?.rows ?? null;
+  assert.deepEqual(rows(vplFile("settings.aesl")), [{ first: 20, last: 20 }, { first: 26, last: 29 }, null]);
+  assert.equal(rows(vplFile("current.aesl").replaceAll("\t", "  ")), null);
+  assert.equal(rows(vplFile("format0.aesl")), null);
+});
+
 test("a file without text, and one with an error in the picture", () => {
   const broken = vplFile("current.aesl").replace(/<block type="action" name="move" value0="0".*\n.*\n/, "");
   const { origin, message, ids } = about(broken);

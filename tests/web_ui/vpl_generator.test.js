@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { check } from "../../web_ui/vpl/check.js";
 import { MODES } from "../../web_ui/vpl/kinds.js";
-import { generate, generateSource, rowOfLine } from "../../web_ui/vpl/generator.js";
+import { generate, generateSource, reportedRow, rowOfLine } from "../../web_ui/vpl/generator.js";
 import { VERSIONS } from "../../web_ui/vpl/versions.js";
 import { goldenPrograms, program, randomNumbers, randomProgram } from "./vpl_programs.js";
 
@@ -264,6 +264,12 @@ test("rows of the start run after the outputs are reset, and set the state there
   const start = ["new_state[0] = 1", "call sound.play(3)", "emit pair_run 0", "", "call math.copy(state, new_state)"];
   assert.ok(text.includes(`call leds.circle(0,0,0,0,0,0,0,0)\n${start.join("\n")}\ncall leds.circle(0,state[1]*32,`));
   assert.match(text, /\tcounter = counter - 2\n\tif counter < 0 then\n\t\tcounter = 0\n\tend\n\temit pair_run 1\n/);
+});
+
+test("the events of rows name them", () => {
+  assert.equal(reportedRow("pair_run", [3]), 3);
+  assert.equal(reportedRow("PairExecuted", [0]), 0);
+  assert.equal(reportedRow("ping", [3]), null);
 });
 
 test("any program has a text or a refusal, in every version", () => {

@@ -9,6 +9,7 @@ import { CURRENT, VERSIONS } from "./versions.js";
 /** @typedef {import("./file.js").VplFile} VplFile */
 /** @typedef {import("./program.js").Finding} Finding */
 /** @typedef {import("./program.js").Program} Program */
+/** @typedef {import("./generator.js").Source} Source */
 /** @typedef {import("./versions.js").Generator} Generator */
 /** @typedef {import("./versions.js").Version} Version */
 /**
@@ -26,6 +27,7 @@ import { CURRENT, VERSIONS } from "./versions.js";
  * @property {Finding} message              what to say about it
  * @property {readonly Version[]} versions  those that generate the text, newest first; of a broken picture, its first
  *   rows count
+ * @property {Source | null} source         the stored text with the lines of its rows, if they are known
  * @property {Finding[]} changes            what becomes different when the text is generated anew
  */
 
@@ -60,16 +62,28 @@ export function compareText(file) {
   }
   const versions = versionsOf(file);
   if (versions.length === 0) return comparison("edited");
-  const changes = changesSince(versions[0], file);
-  if (versions[0].generator === CURRENT) return { ...comparison("current"), versions, changes };
+  const found = { versions, source: sourceOf(versions[0], file), changes: changesSince(versions[0], file) };
+  if (versions[0].generator === CURRENT) return { ...comparison("current"), ...found };
   const [newest, oldest] = [versions[0].name, versions[versions.length - 1].name];
   const version = newest === oldest ? newest : `${oldest} – ${newest}`;
-  return { ...comparison("older", { version }), versions, changes };
+  return { ...comparison("older", { version }), ...found };
+}
+
+/**
+ * The stored text with the lines of its rows: known if the text is equal, and its rows are those of the program.
+ *
+ * @param {Version} version
+ * @param {VplFile} file
+ */
+function sourceOf({ generator }, { program, code }) {
+  if (!generator.merged) return null;
+  const source = generateSource(program, generator);
+  return source.text.trimEnd() === code.trimEnd() ? source : null;
 }
 
 /** @param {Origin} origin @param {Record<string, string | number>} [values] @returns {Comparison} */
 function comparison(origin, values = {}) {
-  return { origin, message: { key: `text.${origin}`, values }, versions: [], changes: [] };
+  return { origin, message: { key: `text.${origin}`, values }, versions: [], source: null, changes: [] };
 }
 
 /** The versions that generate the text of a file from its picture, newest first. @param {VplFile} file */

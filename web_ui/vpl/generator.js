@@ -66,6 +66,16 @@ export function generateSource({ mode, rows }, generator = CURRENT) {
 }
 
 /**
+ * The row that has just run, as an event of the robot reports it; null for other events.
+ *
+ * @param {string} event
+ * @param {readonly number[]} values
+ */
+export function reportedRow(event, values) {
+  return REPORTS.includes(event) && values.length > 0 ? values[0] : null;
+}
+
+/**
  * The row whose lines contain a line, or null: the line belongs to all rows.
  *
  * @param {Source} source
