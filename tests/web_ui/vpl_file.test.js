@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { readAesl } from "../../web_ui/editor/aesl.js";
+import { compareText } from "../../web_ui/vpl/compare.js";
 import { changeBlock, insertRow } from "../../web_ui/vpl/edits.js";
 import { VplError } from "../../web_ui/vpl/errors.js";
 import { newVpl, readVpl, writeVpl } from "../../web_ui/vpl/file.js";
@@ -168,6 +169,26 @@ test("a changed program is read back, and everything else stays", () => {
     assert.ok(written.endsWith(text.slice(end)), name);
     assert.ok(start < 0 || written.includes("<vplroot xml-format-version"));
   }
+});
+
+test("a new text of a file of format 0 makes it one of format 1", () => {
+  const read = readVpl(vplFile("format0.aesl"));
+  const written = writeVpl(read, read.program, textOf(read.text));
+  assert.equal(readVpl(written).format, 1);
+  assert.equal(compareText(readVpl(written)).origin, "current");
+});
+
+test("values of format 0 that cannot be are reported", () => {
+  const pair = '<buttonset event-name="prox" eb0="5" state="-1" action-name="move" ab0="777" ab1="50"/>';
+  const { program, warnings } = readVpl(file(`<vplroot>${pair}</vplroot>`));
+  assert.deepEqual(short(program)[0], ["prox 0 0 0 0 0 0 0 1000 2000", "move 500 50"]);
+  assert.deepEqual(
+    warnings.map(({ key, values: { name, found, used } }) => [key, name, found, used]),
+    [
+      ["load.value", "prox", "5", 0],
+      ["load.value", "move", "777", 500],
+    ],
+  );
 });
 
 test("other plug-ins, nodes, constants and comments stay", () => {

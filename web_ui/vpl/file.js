@@ -60,8 +60,11 @@ export function readVpl(text) {
  * @param {string} code  that of `generate`, or `file.code` if the program has an error or its text is to be kept
  */
 export function writeVpl(file, program, code) {
-  const text = sameProgram(program, file.program) ? file.text : withProgram(file, program);
-  if (code.trimEnd() === file.code.trimEnd()) return text;
+  const isKept = code.trimEnd() === file.code.trimEnd();
+  // The rows of format 0 are not those of a new text.
+  const isSame = sameProgram(program, file.program) && (isKept || file.format !== 0);
+  const text = isSame ? file.text : withProgram(file, program);
+  if (isKept) return text;
   return withReport(withNodeCode(text, file.node, code), code);
 }
 

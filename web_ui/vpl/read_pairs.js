@@ -1,7 +1,7 @@
 // Reads a VPL program of format 0 (Aseba 1.3): `<settings …/>`, then one `<buttonset …/>` for each event with
 // one action.
 
-import { kindOf, makeBlock } from "./blocks.js";
+import { makeBlock } from "./blocks.js";
 import { placeOf, wholeNumber } from "./elements.js";
 import { BLOCKS } from "./kinds.js";
 import { makeProgram, makeRow, sameEvent } from "./program.js";
@@ -74,14 +74,19 @@ function readBlock(set, found, name, type, warn) {
     return null;
   }
   const prefix = type === "event" ? "eb" : "ab";
-  const { parameters } = kindOf(name);
-  const values = parameters.map(({ kind }, index) => {
-    const text = kind === "threshold" ? undefined : set.attributes[`${prefix}${index}`];
+  const exchanges = name === "prox" || name === "proxground";
+  const texts = kind.parameters.map((parameter, index) =>
+    parameter.kind === "threshold" ? undefined : set.attributes[`${prefix}${index}`],
+  );
+  const values = texts.map((text) => {
     if (text === undefined) return undefined;
     const value = wholeNumber(text) ?? Number.NaN;
-    return name === "prox" || name === "proxground" ? exchanged(value) : value;
+    return exchanges ? exchanged(value) : value;
   });
-  return makeBlock(name, values);
+  const block = makeBlock(name, values);
+  const changed = values.findIndex((value, index) => value !== undefined && value !== block.values[index]);
+  if (changed >= 0) warn("load.value", set, { name: found, found: texts[changed] ?? "", used: block.values[changed] });
+  return block;
 }
 
 /** Format 0 has 1 for far or black and 2 for near or white. @param {number} value */

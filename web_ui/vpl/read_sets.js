@@ -52,7 +52,7 @@ export function readSets(root, text, isExtended = false) {
  * @returns {Mode}
  */
 function modeOfFile(program, sets, warn) {
-  if (Number.parseInt(program.attributes.advanced_mode ?? "0", 10)) return "advanced";
+  if ((wholeNumber(program.attributes.advanced_mode ?? "0") ?? 0) !== 0) return "advanced";
   const needed = sets.find((set) => set.children.some(isOfAdvancedMode));
   if (needed === undefined) return "basic";
   warn("load.advanced", needed);
