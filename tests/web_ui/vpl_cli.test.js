@@ -39,6 +39,6 @@ test("a file without VPL, a missing file and wrong usage have exit code 2", () =
 
 test("the command compares text and picture", () => {
   const { output } = answer(vplFile("settings.aesl"), "--compare");
-  assert.deepEqual(output.split("\n").length, 5);
+  assert.deepEqual(output.split("\n").length, 6);
   assert.match(output, /an older VPL \(2014-02 – 2015-06\)/);
 });

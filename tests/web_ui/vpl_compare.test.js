@@ -38,20 +38,13 @@ test("a file of 1.3 lists what changes, with its thresholds", () => {
   const { message, changes } = compareText(file);
   assert.deepEqual(message, { key: "text.older", values: { version: "1.3.3 (2014)" } });
   assert.deepEqual(changes.find(({ key }) => key === "change.distance")?.values, { low: 1500, high: 2500 });
-  assert.deepEqual(about(vplFile("format0.aesl")).changes, [
-    "edge",
-    "distance",
-    "ground",
-    "strict",
-    "report",
-    "merged",
-  ]);
+  assert.deepEqual(about(vplFile("format0.aesl")).changes, ["edge", "distance", "ground", "report", "merged"]);
 });
 
 test("a file of 2014 to 2015 is of several versions", () => {
   const { origin, ids, changes } = about(vplFile("settings.aesl"));
   assert.deepEqual([origin, ids], ["older", ["G4", "G3", "G3"]]);
-  assert.deepEqual(changes, ["edge", "remember", "report"]);
+  assert.deepEqual(changes, ["edge", "remember", "report", "state"]);
 });
 
 test("each version is recognized, and only what concerns the program is listed", () => {

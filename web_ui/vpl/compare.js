@@ -1,9 +1,10 @@
 // Compares the text of a file with its picture: which version of VPL wrote it, and what changes when it is
 // generated anew.
 
+import { hasCondition } from "./blocks.js";
 import { check } from "./check.js";
 import { generateSource } from "./generator.js";
-import { makeProgram, sameProgram } from "./program.js";
+import { hasFilter, makeProgram, sameProgram } from "./program.js";
 import { CURRENT, VERSIONS } from "./versions.js";
 
 /** @typedef {import("./file.js").VplFile} VplFile */
@@ -111,11 +112,14 @@ function textBy(generator, { program, stored }) {
  */
 function changesSince({ generator }, file) {
   const today = generateSource(file.program).text;
-  const changes = CONSEQUENCES.filter(
-    ([property]) => generateSource(file.program, { ...CURRENT, [property]: generator[property] }).text !== today,
-  ).map(([property, key]) => ({ key: /** @type {string} */ (key), values: limitsOf(generator, property) }));
+  const changes = CONSEQUENCES.filter(([property]) => {
+    if (property === "strict" && generator.distance !== null) return false; // other limits anyway
+    return generateSource(file.program, { ...CURRENT, [property]: generator[property] }).text !== today;
+  }).map(([property, key]) => ({ key: /** @type {string} */ (key), values: limitsOf(generator, property) }));
   /** @param {string} key @param {boolean} applies */
   const add = (key, applies) => applies && changes.push({ key, values: {} });
+  const isFiltered = file.program.rows.some((row) => hasCondition(row.event) && hasFilter(row));
+  add("change.state", generator.test === "if" && isFiltered);
   add("change.merged", !sameProgram(file.program, file.stored));
   add("change.debugging", file.code.replace(DEBUGGING, "") !== file.code);
   const known = new Set(commentsOf(today + textBy(generator, file)));
