@@ -3,6 +3,7 @@ import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import texts from "../../web_ui/i18n/vpl.texts.js";
+import { nameKey } from "../../web_ui/vpl/blocks.js";
 import { BLOCKS } from "../../web_ui/vpl/kinds.js";
 
 const FOLDER = new URL("../../web_ui/vpl/", import.meta.url);
@@ -34,6 +35,13 @@ test("every text that a module names exists, and every text is named", () => {
   );
   const unused = Object.keys(texts.en).filter((key) => !keys.includes(key) && !fitting.some((each) => each.test(key)));
   assert.deepEqual(unused, []);
+});
+
+test("every block has a name", () => {
+  assert.deepEqual(
+    [...BLOCKS.keys()].filter((name) => !(nameKey(name) in texts.en)),
+    [],
+  );
 });
 
 test("leaving a mode has a text for each block that it removes", () => {

@@ -26,6 +26,11 @@ export function kindOf(block) {
   return found;
 }
 
+/** The key of the name of a block, for pupils. @param {Block | string} block */
+export function nameKey(block) {
+  return `block.${kindOf(block).name}`;
+}
+
 /**
  * A block with these values; missing and impossible ones are the defaults.
  *
