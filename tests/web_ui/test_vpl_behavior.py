@@ -12,14 +12,12 @@ PROGRAMS = Path(__file__).parents[1] / "data" / "web" / "vpl"
 
 
 @pytest.mark.thymio(playground="arena", program=PROGRAMS / "avoid.aesl")
-@pytest.mark.parametrize("seed", range(2))
-def test_the_obstacle_avoider_avoids(thymio, seed):
+def test_the_obstacle_avoider_avoids(thymio):
     thymio.run(40)
     assert no_contact(thymio)
     assert emitted(thymio, "pair_run", [0])
 
 
 @pytest.mark.thymio(playground="line", program=PROGRAMS / "line.aesl")
-@pytest.mark.parametrize("seed", range(2))
-def test_the_line_follower_follows_the_line(thymio, seed):
+def test_the_line_follower_follows_the_line(thymio):
     thymio.until(followed_line(thymio), seconds=240)

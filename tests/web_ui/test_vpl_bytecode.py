@@ -15,7 +15,7 @@ from aseba_vm.targets import THYMIO_II
 from web_ui import build
 
 SCRIPT = Path(__file__).with_name("print_vpl.js")
-RANDOM_PROGRAMS = 20
+RANDOM_PROGRAMS = 8
 EVENTS = (("pair_run", 1), ("debug_log", 14), ("PairExecuted", 1))
 
 pytestmark = pytest.mark.process

@@ -36,7 +36,7 @@ test("the text of the current version belongs to its blocks", () => {
 test("a file of 1.3 lists what changes, with its thresholds", () => {
   const file = readVpl(vplFile("format0.aesl"));
   const { message, changes } = compareText(file);
-  assert.deepEqual(message, { key: "text.older", values: { version: "1.3.3 (2014)" } });
+  assert.deepEqual(message, { key: "text.older", values: { version: "1.3.3, 2014" } });
   assert.deepEqual(changes.find(({ key }) => key === "change.distance")?.values, { low: 1500, high: 2500 });
   assert.deepEqual(about(vplFile("format0.aesl")).changes, ["edge", "distance", "ground", "report", "merged"]);
 });

@@ -67,15 +67,15 @@ const SINGLE = {
 /** The versions, newest first. @type {readonly Version[]} */
 export const VERSIONS = [
   { id: "G10", name: "1.6.1", format: 1, generator: CURRENT },
-  { id: "G9", name: "1.6.0 (2018)", format: 1, generator: BEFORE_1_6_1 },
-  { id: "G8", name: "1.5.5 (2016)", format: 1, generator: BEFORE_1_6 },
-  { id: "G7", name: "1.5.3 (2016)", format: 1, generator: BEFORE_1_5_4 },
+  { id: "G9", name: "1.6.0, 2018", format: 1, generator: BEFORE_1_6_1 },
+  { id: "G8", name: "1.5.5, 2016", format: 1, generator: BEFORE_1_6 },
+  { id: "G7", name: "1.5.3, 2016", format: 1, generator: BEFORE_1_5_4 },
   { id: "G7", name: "2016-01", format: 1, generator: { ...BEFORE_1_5_4, report: "PairExecuted" } },
-  { id: "G6", name: "1.4.0 (2015)", format: 1, generator: BEFORE_1_5 },
+  { id: "G6", name: "1.4.0, 2015", format: 1, generator: BEFORE_1_5 },
   { id: "G5", name: "2015-07", format: 1, generator: BEFORE_1_4 },
   { id: "G4", name: "2015-06", format: 1, generator: WITH_IF },
   { id: "G3", name: "2014-03", format: 1, generator: SWAPPED },
   { id: "G3", name: "2014-02", format: 1, generator: { ...SWAPPED, wave: ["angle", "cos_result"] } },
-  { id: "G2", name: "1.3.3 (2014)", format: 0, generator: SINGLE },
-  { id: "G1", name: "1.3.1 (2013)", format: 0, generator: { ...SINGLE, distance: [400, 500] } },
+  { id: "G2", name: "1.3.3, 2014", format: 0, generator: SINGLE },
+  { id: "G1", name: "1.3.1, 2013", format: 0, generator: { ...SINGLE, distance: [400, 500] } },
 ];
