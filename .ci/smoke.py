@@ -30,7 +30,8 @@ def main(prefix: Path) -> None:
     check_files(prefix)
     port, foxglove_port = free_port(), free_port()
     shared_memory = set(os.listdir("/dev/shm"))
-    command = [prefix / "bin" / "thymio-sim", "--port", str(port), "--foxglove-port", str(foxglove_port)]
+    ports = ["--port", str(port), "--foxglove-port", str(foxglove_port)]
+    command = [prefix / "bin" / "thymio-sim", "--program", "line_follower", *ports]
     environment = os.environ | {"ROS_DOMAIN_ID": "97"}
     suite = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True)
     try:

@@ -117,7 +117,6 @@ OTHER_FILES = {
     "keysText": "keys",
     "pageText": "page",
     "playgroundText": "playground",
-    "programText": "program",
 }
 """Names of the texts of other files."""
 

@@ -30,7 +30,7 @@ class SuiteConfig:
         tokens: tokens that clients of page and bridge need; None lets the bridge choose.
     """
 
-    playground: str = "line"
+    playground: str = "desk"
     program: str = "welcome"
     behaviour: str = ""
     device: DeviceOptions = DEFAULTS

@@ -44,6 +44,7 @@ import { fillTexts } from "./shell/texts.js";
 import { Workspace } from "./shell/workspace.js";
 import { Speaker } from "./sound/speaker.js";
 import { GraphicsNotice } from "./stage/graphics_notice.js";
+import { useHand } from "./stage/hands/use_hand.js";
 import { isWatched, PARAMETERS, subscriptionKey } from "./state/names.js";
 import { Store } from "./state/store.js";
 import { h } from "./ui/dom.js";
@@ -229,7 +230,10 @@ async function main() {
   store.subscribe(() => speaker.update(store.state));
   watchSubscriptions(store, client);
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
-  watchKeyboard(scene.canvas, scene, dragController, (button, pressed) => actions.pressPad(button, pressed));
+  watchKeyboard(scene.canvas, scene, dragController, (button, pressed) => actions.pressPad(button, pressed), {
+    useHand,
+    pause: () => element("#pause").click(),
+  });
   watchDrops(element("#drop"), (file, place) => {
     /** @param {string} words */
     const refuse = (words) => messageAt.show(place, [h("p", {}, words)], text("page")("notice.dismiss"));
@@ -241,7 +245,8 @@ async function main() {
   });
   window.addEventListener("keydown", ({ key }) => {
     if (key !== "Escape" || isSomethingOpen()) return; // it closes what is open first
-    if (store.state.connection === "connected") void actions.stop();
+    if (dragController.mode) dragController.setMode(false);
+    else if (store.state.connection === "connected") void actions.stop();
   });
   client.start();
   followWorkspace();

@@ -2,30 +2,10 @@
 
 from __future__ import annotations
 
-from array import array
-from collections.abc import Callable, Iterable, MutableSequence, Sequence
-from operator import itemgetter
+from collections.abc import Iterable, MutableSequence, Sequence
 from typing import Any, overload
 
 MIN_WORD, MAX_WORD = -32768, 32767
-
-
-def image(words: Sequence[int]) -> bytes:
-    """Return signed words, two bytes each in the order of the computer: quick to make, to divide and to compare.
-
-    `words` are a list or the storage of an engine.
-    """
-    return array("h", words).tobytes() if isinstance(words, list) else bytes(words)
-
-
-def parts_of(ranges: Sequence[tuple[int, int]]) -> Callable[[bytes], tuple[bytes, ...]]:
-    """Return a function from an image to its parts at two or more ranges of addresses (begin, end)."""
-    return itemgetter(*[slice(2 * begin, 2 * end) for begin, end in ranges])
-
-
-def words_of(image: bytes) -> list[int]:
-    """Return the words of an image or of a part of it."""
-    return array("h", image).tolist()
 
 
 class Variables(Sequence[int]):

@@ -132,7 +132,7 @@ def test_checking_the_ports_accepts_no_connection(capsys, monkeypatch):
 def test_the_runner_repeats_itself_bit_for_bit(capsys):
     outputs = []
     for seed in ("3", "3", "4"):
-        assert main.main(["runner", "--seconds", "10", "--seed", seed]) == 0
+        assert main.main(["runner", "--program", "line_follower", "--seconds", "10", "--seed", seed]) == 0
         outputs.append(json.loads(capsys.readouterr().out)["robots"])
     assert outputs[0] == outputs[1]
     assert outputs[0] != outputs[2]

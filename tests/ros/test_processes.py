@@ -58,7 +58,8 @@ def is_free(port: int) -> bool:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_whole_suite_runs_and_ends(ros, process, number):
     port, foxglove_port = free_port(), free_port()
-    suite = process("thymio_sim_ros.cli.main", "--port", str(port), "--foxglove-port", str(foxglove_port))
+    ports = ("--port", str(port), "--foxglove-port", str(foxglove_port))
+    suite = process("thymio_sim_ros.cli.main", "--program", "line_follower", *ports)
     odometry: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")

@@ -44,7 +44,9 @@ FOR_TOOLS = {
 @pytest.fixture
 def topics(ros):
     """Names of all topics of the suite as `thymio-sim` starts it, page and bridge included."""
-    suite_nodes = combined.suite_nodes(ros.context, SuiteConfig(port=0, foxglove_port=free_port()))
+    suite_nodes = combined.suite_nodes(
+        ros.context, SuiteConfig(program="line_follower", port=0, foxglove_port=free_port())
+    )
     for life in suite_nodes:
         ros.live(life)
     ros.until(lambda: set(_names(ros)) >= FOR_TOOLS | NEEDED, what="the topics of all nodes")

@@ -1,10 +1,10 @@
-// The tab "Class": one word per robot, numbers on dots, who has waited longest, names given by the class.
+// The tab "Class": one word per robot, who has waited longest, names given by the class.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { RobotNames } from "../../web_ui/browser/robot_names.js";
-import { classState, fits, membersOf, needsLook, robotNumber, Troubles } from "../../web_ui/class_tab/class_states.js";
+import { classState, fits, membersOf, needsLook, Troubles } from "../../web_ui/class_tab/class_states.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import classTexts from "../../web_ui/i18n/class.texts.js";
 
@@ -34,20 +34,13 @@ test("every state has its word in every language", () => {
   }
 });
 
-test("the number on a dot is that of the name, or the place in the list", () => {
-  const names = ["thymio_1", "thymio_2", "thymio_10"];
-  assert.deepEqual(names.map((name) => robotNumber(names, name)), ["1", "2", "10"]);
-  assert.equal(robotNumber(["ada", "bob"], "bob"), "2");
-  assert.deepEqual(["a1", "b1"].map((name) => robotNumber(["a1", "b1"], name)), ["1", "2"]); // never two with the same
-  assert.deepEqual(["a", "b1"].map((name) => robotNumber(["a", "b1"], name)), ["1", "2"]);
-});
-
 test("members are filtered by who needs a look and who has not started", () => {
   const members = membersOf({
     robots: { t1: NEW_ROBOT, t2: NEW_ROBOT, t3: NEW_ROBOT },
     programs: { t1: program("running"), t2: program("fault", "x", { line: "7", first_line: "2" }), "": program("off") },
     simulator: /** @type {any} */ ({ fallen: [] }),
   });
+  assert.deepEqual(members.map(({ number }) => number), ["1", "2", "3"]); // as on the dots in the view
   assert.deepEqual(members.map(({ state, line }) => [state, line]), [["runs", 0], ["mistake", 6], ["idle", 0]]); // prettier-ignore
   assert.deepEqual(members.map((member) => fits("look", member)), [false, true, false]);
   assert.deepEqual(members.map((member) => fits("idle", member)), [false, false, true]);

@@ -12,10 +12,10 @@ import { KEY_TABLE, keyLabel } from "../../web_ui/input/key_table.js";
 function press(key, shiftKey, moves) {
   /** @type {Record<string, (event: any) => void>} */ const listeners = {};
   const element = { addEventListener: (/** @type {string} */ name, /** @type {any} */ listener) => void (listeners[name] = listener) };
-  const scene = { camera: { turn() {} }, zoom() {}, setView() {} };
+  const scene = { camera: { turn() {} }, zoom() {}, setView() {}, setSensors() {} };
   const dragController = { mode: moves, setMode() {}, nudge() {}, drop: async () => {}, next() {} };
   let isUsed = false;
-  const event = { key, shiftKey, repeat: false, stopPropagation() {}, preventDefault: () => void (isUsed = true) };
+  const event = { key: key === "Space" ? " " : key, shiftKey, repeat: false, stopPropagation() {}, preventDefault: () => void (isUsed = true) };
   watchKeyboard(/** @type {any} */ (element), /** @type {any} */ (scene), /** @type {any} */ (dragController), () => {});
   listeners.keydown(event);
   return isUsed;

@@ -96,9 +96,12 @@ def open_menu(page: Any, button: str) -> None:
     page.wait_for_function("(button) => document.querySelector(button).ariaExpanded === 'true'", arg=button)
 
 
-def open_hands(page: Any) -> None:
-    """Open the sheet with the stimuli that have values."""
-    open_menu(page, "#hands-more")
+def open_hands(page: Any, hand: str = "room") -> None:
+    """Open the sheet of a hand with values: hand, tilt, pen, remote or room; on phones some are in that of "More"."""
+    button = f"[data-hand={hand}]"
+    if not page.locator(button).is_visible():
+        open_menu(page, "#hands-more")
+    open_menu(page, button)
 
 
 def open_editor(page: Any) -> None:
@@ -131,7 +134,7 @@ def build_playground(page: Any) -> None:
     """Open the creator, with a new playground unless something is being built."""
     open_tab(page, "playground")
     if not page.locator(".palette").is_visible():
-        page.click("[data-new]")
+        page.click(".current [data-new]")
     page.locator(".palette").wait_for()
 
 

@@ -43,7 +43,7 @@ const ANSWERS = {
   "planes[0].hasWalls: found 3, expected true or false": "One of its values can only be on or off.",
   "shapes[1].image: found an image that cannot be read, expected a complete PNG or JPEG file": "Thing 2: The picture cannot be read. Try another one.",
   "shapes[0].kind: found 'trampoline', expected one of box, wall": "Thing 1: This page does not know this thing.",
-  "shapes[0].sise: found an unknown key, expected 'size_x_m' (one of x_m)": "Thing 1: It has a value that this page does not know.",
+  "shapes[0].size: found an unknown key, expected 'size_x_m' (one of x_m)": "Thing 1: It has a value that this page does not know.",
   "found more than 24000000 bytes, expected a smaller file": "This file is too large.",
   "shapes: found 1001 items, expected at most 1000": "There are too many: at most 1000 are possible.",
   "shapes[0]: found a single place, expected a valid track": "Thing 1: It needs two different points.",
@@ -129,7 +129,7 @@ test("with the text of the file the page says more than the simulator's message"
   assert.equal(sentenceOf(labels("en"), reasonOfMessage(fault, text)), "Box “crate”: Position x must be from -10000 to 10000 cm.");
 });
 
-test("an empty file, a damaged one and one of another program are told apart", () => {
+test("an empty file, a damaged one and one of another program are distinguished", () => {
   /** @param {string} text */
   const said = (text) => reasonOfFault(faultOf(text), text).phrase.word;
   assert.equal(said(" \n"), "fault.empty");

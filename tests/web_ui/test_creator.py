@@ -16,6 +16,7 @@ from tests.web_ui.page_support import (
     MARKS,
     TouchPoints,
     build_playground,
+    choose_example,
     choose_language,
     go_on_building,
     open_editor,
@@ -160,8 +161,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
     page.locator("#view").focus()
     page.keyboard.press("t")
     start = page.evaluate("window.thymio.state().robot.latest.pose")
-    open_tab(page, "program")
-    page.select_option(".behavior select", "thesis_basic")
+    choose_example(page, "thesis_basic")
     page.wait_for_function(
         "window.thymio.state().program?.state === 'running' && window.thymio.state().program.name.includes('basic')"
     )
@@ -177,7 +177,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
 def test_everything_is_built_by_keys_alone(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.locator("#tab-playground").press("Enter")
-    page.locator("[data-new]").press("Enter")
+    page.locator(".current [data-new]").press("Enter")
     page.locator("[data-tool=box]").press("Enter")
     assert page.evaluate("document.activeElement.id") == "view"
     for key in ("Shift+ArrowRight", "ArrowUp", ".", "Enter"):
@@ -451,12 +451,7 @@ def test_the_head_says_where_the_playground_is_kept(suite, page):
     open_editor(page)
     page.focus(".cm-content")
     page.keyboard.insert_text("var a")
-    star = page.locator(".editor .unsaved")
-    playwright.expect(star).to_be_visible()
-    assert star.evaluate("(one) => [getComputedStyle(one).backgroundColor, one.textContent]") == [
-        "rgba(0, 0, 0, 0)",
-        "●",
-    ]
+    playwright.expect(page.locator(".program-unsaved")).to_be_visible()
     open_tab(page, "playground")
     playwright.expect(kept).to_have_text("Saved on this device")
     with page.expect_download():

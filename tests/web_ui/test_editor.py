@@ -179,7 +179,7 @@ def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the
     editor.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
     open_editor(editor)
     editor.click("[data-draft=restore]")
-    expect(editor, ".cm-content").to_have_text("var a = SIZE_")
+    expect(editor, ".cm-line").to_have_text("var a = SIZE_")
     with editor.expect_download() as saved:
         choose_in_file_menu(editor, "save")
     assert saved.value.suggested_filename == "my maze.aesl"
@@ -188,7 +188,7 @@ def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the
     broken.write_text("<network>\n<node>a < b</node></network>")
     editor.set_input_files("#editor-file", str(broken))
     expect(editor, ".verdict").to_contain_text("line 2, column 9")
-    expect(editor, ".cm-content").to_have_text("var a = SIZE_")
+    expect(editor, ".cm-line").to_have_text("var a = SIZE_")
 
 
 def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
@@ -249,7 +249,7 @@ def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_change
     expect(editor, ".cm-content").to_be_hidden()
     open_editor(editor)
     choose_language(editor, "de")
-    expect(editor, ".editor").to_have_attribute("aria-label", "Aseba-Editor")
+    expect(editor, ".program").to_have_attribute("aria-label", "Programm")
     expect(editor, ".breakpoints .breakpoint:visible").to_have_count(1)
     expect(editor, ".cm-content").to_be_focused()
     expect(editor, ".cm-activeLine").to_have_text("count = count + 10")

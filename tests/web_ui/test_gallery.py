@@ -70,7 +70,7 @@ def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brough
     own = page.locator("section.own")
     playwright.expect(own).to_be_hidden()
     for title in ("First", "Second"):
-        page.click("[data-new]")
+        page.click(".current [data-new]")
         page.locator("[data-field=title]").fill(title)
         page.locator("[data-field=title]").press("Enter")
         playwright.expect(page.locator(".kept")).to_have_text("Saved on this device")

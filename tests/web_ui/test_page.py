@@ -153,18 +153,18 @@ def test_stimuli_reach_the_program(suite, page, tmp_path):
         if control == "tap":
             page.click("[data-operate=tap]")
         elif control == "remote":
-            open_hands(page)
+            open_hands(page, "remote")
             page.click("[data-key='87']")
         else:
-            open_hands(page)
+            open_hands(page, "tilt" if control == "roll" else "room")
             page.locator(f"[data-operate={control}]").fill("45")
         page.wait_for_function("(group) => Math.max(...window.thymio.state().robot.leds[group]) === 1", arg=group)
 
 
 def test_the_pen_leaves_a_trail(suite, page):
     open_page(page, suite("--program", "line_follower"))
-    open_hands(page)
-    page.select_option("[data-operate=pen]", "down")
+    open_hands(page, "pen")
+    page.click("[data-pen=down]")
     page.wait_for_function("() => window.thymio.state().robot.trail > 0")
 
 

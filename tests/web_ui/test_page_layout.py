@@ -6,7 +6,15 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, build_playground, choose_robot, open_menu, open_page, open_tab
+from tests.web_ui.page_support import (
+    MARKS,
+    build_playground,
+    choose_example,
+    choose_robot,
+    open_menu,
+    open_page,
+    open_tab,
+)
 from tests.web_ui.test_page_touch import STOP_IN_SIGHT
 
 pytestmark = MARKS
@@ -79,15 +87,13 @@ def test_actions_go_to_the_chosen_robot_or_to_all(suite, page):
     page.wait_for_function(pressed, arg=names)
     page.mouse.up()
     page.wait_for_function(released, arg=names)
-    open_tab(page, "program")
-    page.wait_for_function("() => window.thymio.state().behaviors.length > 3")
     runs = "([name, behavior]) => window.thymio.state().programs[name]?.name.startsWith(behavior)"
-    page.select_option("#behavior-choice", "explorer")
+    choose_example(page, "explorer")
     for name in names:
         page.wait_for_function(runs, arg=[name, "explorer"])
     choose_robot(page, names[1])
     playwright.expect(page.locator("#stop")).to_have_text("Stop robot")
-    page.select_option("#behavior-choice", "friendly")
+    choose_example(page, "friendly")
     page.wait_for_function(runs, arg=[names[1], "friendly"])
     page.click("#stop")
     page.wait_for_function("(name) => window.thymio.state().programs[name].state === 'stopped'", arg=names[1])
@@ -105,4 +111,4 @@ def test_the_creator_continues_when_its_tab_is_opened_again(suite, page):
     open_tab(page, "playground")
     page.locator(".palette").wait_for()
     page.click(".creator .leave")
-    playwright.expect(page.locator("#playground-choice")).to_be_visible()
+    playwright.expect(page.locator("#playground-change")).to_be_visible()

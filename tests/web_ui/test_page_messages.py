@@ -6,7 +6,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, drop_file, open_page
+from tests.web_ui.page_support import MARKS, choose_playground, drop_file, open_page
 from tests.web_ui.test_gallery import open_gallery
 
 pytestmark = MARKS
@@ -77,3 +77,32 @@ def test_success_notices_disappear_and_errors_stay_until_closed(suite, page, tmp
     drop_file(page, program, "#view")
     playwright.expect(page.locator(".notice.info")).to_contain_text("good.aesl is loaded")
     playwright.expect(page.locator(".notice.info")).to_have_count(0)
+
+
+def test_one_message_is_shown_at_a_time_and_the_next_one_follows(suite, page, tmp_path):
+    files = [tmp_path / name for name in ("song.mp3", "film.mp4")]
+    for file in files:
+        file.write_bytes(b"")
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.locator("[data-view=move]").click()
+    hint = page.locator(".messages .hint")
+    playwright.expect(hint).to_be_visible()
+    for file in files:
+        page.set_input_files("#playground-file", str(file))
+    playwright.expect(page.locator(".notice:visible")).to_have_count(1)
+    playwright.expect(page.locator(".notice:visible")).to_contain_text("film.mp4")
+    playwright.expect(hint).to_be_hidden()
+    page.locator(".notice:visible button").click()
+    playwright.expect(page.locator(".notice:visible")).to_contain_text("song.mp3")
+    page.locator(".notice:visible button").click()
+    playwright.expect(hint).to_be_visible()
+
+
+def test_a_new_playground_fades_in(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.evaluate(
+        "() => new MutationObserver(() => { window.arrived = true; })"
+        ".observe(document.querySelector('#stage'), {attributeFilter: ['data-arriving']})"
+    )
+    choose_playground(page, "maze")
+    page.wait_for_function("() => window.arrived && !document.querySelector('#stage').hasAttribute('data-arriving')")

@@ -69,8 +69,8 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "switch.aesl"
     choose_playground(page, "maze")
     page.wait_for_function("() => window.thymio.state().simulator.playground === 'maze'")
-    open_hands(page)
-    page.select_option("[data-operate=pen]", "down")
+    open_hands(page, "pen")
+    page.click("[data-pen=down]")
 
     open_editor(page)
     page.focus(".cm-content")

@@ -43,10 +43,10 @@ def test_the_page_reconnects_to_a_restarted_simulator_and_discards_old_state(sui
 
 
 LOCKED = {
-    "program": ".pad button, .program-head [data-verb], #time button, #time select, .stop",
+    "program": ".pad button, .program-head > [data-verb], #time button, #time select, .stop",
     "playground": ".sample, #playground-change",
 }
-STIMULI = "#hands-sheet input, #hands-sheet button, #hands-sheet select"
+STIMULI = ".hand:not(.quiet), .hand-sheet input, .hand-sheet button"
 STATES = """(controls) => [...document.querySelectorAll(controls)]
     .map((one) => [one.matches(":disabled"), one.title || one.closest("fieldset")?.title || ""])"""
 
@@ -120,11 +120,11 @@ def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(s
     page.keyboard.insert_text("var a = b")
     playwright.expect(verdict).to_contain_text("as soon as the robot is connected")
     open_tab(page, "playground")
-    page.click("[data-new]")
+    page.click(".current [data-new]")
     playwright.expect(page.locator(".notice")).to_contain_text("Reload the page")
     suite("--playground", "base", "--program", "none", ports=ports)
-    playwright.expect(verdict).to_have_text("1 mistake, line 1")
     open_tab(page, "program")
+    playwright.expect(verdict).to_have_text("1 mistake, line 1")
     playwright.expect(page.locator(".mistake-card")).to_contain_text("No variable is called 'b'")
 
 

@@ -35,7 +35,7 @@ def choose_example(page: Any, title: str, about: str) -> None:
 
 def robot_button(page: Any, name: str) -> Any:
     """One of the robot's five buttons, not a key of the remote control."""
-    return page.get_by_role("group", name="Robot buttons").get_by_role("button", name=name)
+    return page.get_by_role("group", name="The five buttons of the robot").get_by_role("button", name=name)
 
 
 def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
@@ -56,8 +56,7 @@ def test_the_basic_mode_drives_by_the_arrow_buttons(class_page):
 
 def test_the_explorer_avoids_obstacles(class_page):
     class_page.get_by_role("tab", name="Playground").click()
-    class_page.get_by_role("button", name="Gallery").click()
-    class_page.get_by_role("dialog").get_by_role("button", name="Obstacle").first.click()
+    class_page.get_by_role("button", name="Obstacle").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
     about = "Forward starts, backward stops. Avoids obstacles."
     choose_example(class_page, "Avoid things after forward", about)
@@ -67,7 +66,7 @@ def test_the_explorer_avoids_obstacles(class_page):
 
 def test_the_track_follower_follows_the_track(class_page):
     class_page.get_by_role("tab", name="Playground").click()
-    class_page.get_by_role("combobox", name="Choose a playground").select_option(label="Borderless")
+    class_page.get_by_role("button", name="Borderless").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'borderless'")
     about = "Forward starts, backward stops. Follows the track."
     choose_example(class_page, "Follow the track after forward", about)

@@ -6,7 +6,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, open_tab
+from tests.web_ui.page_support import MARKS, open_menu, open_page, open_tab
 
 pytestmark = MARKS
 
@@ -23,14 +23,17 @@ def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite,
     open_tab(page, "program")
     state = page.locator("#program-state")
     playwright.expect(state).to_have_text("running")
-    page.locator("#pause").click()
+    page.get_by_role("button", name="Pause time").click()
     playwright.expect(state).to_have_text("time is paused")
+    playwright.expect(page.locator("#stage")).to_have_attribute("data-paused", "")
     step = page.locator("#time [data-verb=step]")
     playwright.expect(step).to_be_enabled()
     page.wait_for_function("() => window.thymio.state().timeNs > 0")
     for ticks, far in ((None, 0.1), ("1", 0.01), ("100", 1.0)):
         if ticks is not None:
-            page.select_option("#step-length", ticks)
+            open_menu(page, "#step-length")
+            page.click(f"[data-ticks='{ticks}']")
+            playwright.expect(step).to_have_accessible_name(f"Step {far:g} s")
         page.wait_for_function(
             "() => { const {timeNs} = window.thymio.state(); const isStill = window.previous === timeNs;"
             " window.previous = timeNs; return isStill; }",
@@ -44,5 +47,6 @@ def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite,
             f"(then) => {{ const [m, s] = ({CLOCK})().split(':'); return Math.abs(60 * m + +s - then) < 0.002; }}",
             arg=start + far,
         )
-    page.locator("#pause").click()
+    page.get_by_role("button", name="Let time run").click()
     playwright.expect(state).to_have_text("running")
+    playwright.expect(page.locator("#stage")).not_to_have_attribute("data-paused", "")

@@ -50,7 +50,7 @@ def test_with_the_read_only_token_the_page_only_watches(suite, page):
     page.wait_for_function("window.thymio?.state().readOnly && window.thymio.state().simulator !== null")
     page.locator("#read-only").wait_for()
     for tab, controls in (
-        ("program", "#time button, #time select, .pad button, .stop, .program-head [data-verb], .example"),
+        ("program", "#time button, #time select, .pad button, .stop, .program-head > [data-verb], .example"),
         ("playground", ".sample, #playground-change, #panel-playground .file button"),
     ):
         open_tab(page, tab)
@@ -85,7 +85,7 @@ def test_nothing_violates_the_content_security_policy(browser, page_server, host
     page.locator("#tab-program").click()
     page.locator(".cm-editor").wait_for()
     page.locator("#tab-playground").click()
-    page.locator("[data-new]").click()
+    page.locator(".current [data-new]").click()
     page.locator("#creator-try").wait_for()
     assert page.evaluate("broken") == []
     page.close()

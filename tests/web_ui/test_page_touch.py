@@ -15,6 +15,7 @@ from tests.web_ui.page_support import (
     build_playground,
     choose_language,
     open_editor,
+    open_menu,
     open_page,
     wait_for_position,
 )
@@ -147,6 +148,7 @@ def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be
     show = tablet.locator("#tray-unfold")
     if show.is_visible():
         show.tap()
+    open_menu(tablet, "#hands-more")
     tablet.locator("#tray-fold").tap()
     forward.wait_for(state="hidden")
     tablet.reload()

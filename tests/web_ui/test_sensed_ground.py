@@ -11,7 +11,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from PIL import Image
 
-from tests.web_ui.page_support import MARKS, open_page, wait_until_still
+from tests.web_ui.page_support import MARKS, open_menu, open_page, wait_until_still
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.playground import reader
 
@@ -42,6 +42,7 @@ def test_the_view_is_dark_exactly_where_the_sensors_measure_dark(suite, page, tm
     loaded = reader.load(path)
     ground = Ground(loaded.floors, loaded.paints)
     open_page(page, suite("--playground", str(path), "--program", "none"))
+    open_menu(page, "[data-view=look]")
     page.select_option("#quality", "medium")
     page.locator("#view").focus()
     page.keyboard.press("t")

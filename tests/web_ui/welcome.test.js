@@ -1,4 +1,4 @@
-// The first visit: who sees the three starts, what they offer, and what a ROS node is told.
+// The first visit: who sees the three starts, what they offer, and what the ROS sheet shows.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -273,7 +273,7 @@ class AsebaDevice:
             self.due.bring_forward(self._indicators_ns)
 
     def _next_due_ns(self) -> int:
-        if self._scheduler.is_busy or self.services.is_recording:
+        if self.is_busy or self.services.is_recording:
             return 0
         return min(self._indicators_ns, self._queue.next_timer_ns)
 

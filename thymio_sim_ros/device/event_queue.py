@@ -67,7 +67,7 @@ class EventQueue:
     @property
     def has_events(self) -> bool:
         """Whether an event is pending."""
-        return self._timers.are_due or bool(self._pending or self._local_now or self._global)
+        return bool(self._pending or self._local_now or self._global) or self._timers.are_due
 
     @property
     def has_global(self) -> bool:

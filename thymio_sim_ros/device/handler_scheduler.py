@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from aseba_vm import VirtualMachine
-from aseba_vm.machine.reference import ACTIVE
-from aseba_vm.vm import STEP_BY_STEP
 from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.event_queue import EventQueue, GlobalEvent
 from thymio_sim_ros.device.firmware.services import FirmwareServices
@@ -56,8 +54,8 @@ class HandlerScheduler:
     @property
     def is_busy(self) -> bool:
         """Whether `run` has work: an unfinished handler, a pending event, or periods of timers to read."""
-        flags = self._vm.flags
-        return not flags & STEP_BY_STEP and (bool(flags & ACTIVE) or self._queue.has_events or self.has_stale_periods)
+        vm = self._vm
+        return not vm.is_step_by_step and (vm.is_active or self._queue.has_events or self.has_stale_periods)
 
     @property
     def has_stale_periods(self) -> bool:

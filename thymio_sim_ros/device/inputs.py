@@ -74,9 +74,8 @@ class Inputs:
         has_changed = False
         if new != old:
             has_changed = self._write(sensor, binding, new) or old is None or old[1] < self._variables.last_clear
-            words_before = old[0] if old is not None else (0,) * binding.size
-            if binding.edges and new[0] != words_before:
-                self._cause_edge_events(words_before, new[0], binding.edges)
+            if binding.edges:
+                self._cause_edge_events(old[0] if old is not None else (0,) * binding.size, new[0], binding.edges)
         event, above = binding.event, binding.above
         if event in self._local_events.wanted and (above is None or words[0] > self._vm.variables.words[above] != 0):
             self._local_events.cause(event)
@@ -110,10 +109,11 @@ class Inputs:
 
     def _cause_edge_events(self, old: Sequence[int], new: Sequence[int], edges: Sequence[Slot]) -> None:
         """Cause the events of the variables that have changed."""
-        for slot in edges:
-            begin, end = slot.begin, slot.begin + slot.size
-            if slot.edge in self._local_events.wanted and new[begin:end] != old[begin:end]:
-                self._local_events.cause(slot.edge)
+        if new != old:
+            for slot in edges:
+                begin, end = slot.begin, slot.begin + slot.size
+                if slot.edge in self._local_events.wanted and new[begin:end] != old[begin:end]:
+                    self._local_events.cause(slot.edge)
 
     def _is_due(self, sensor: str, now_ns: int) -> bool:
         """Whether a new period of a rate-limited sensor has begun."""

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from aseba_vm import VirtualMachine
-from aseba_vm.machine.data_memory import image, parts_of, words_of
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.firmware.indicators import Indicators
 from thymio_sim_ros.device.firmware.settings import Settings
@@ -36,10 +35,7 @@ _NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
 class Outputs:
-    """Queued commands of one device.
-
-    Invariant: `_sent` has the words of the last commands: those of each run of an output, as in an image of the memory.
-    """
+    """Queued commands of one device. Invariant: `_sent` has the words of the last command of each output."""
 
     def __init__(self, layout: str, settings: Settings, indicators: Indicators) -> None:
         """`settings` calibrate the motors; `indicators` release the lights and sounds that a program uses."""
@@ -47,16 +43,13 @@ class Outputs:
         """Whether the program has used sound since the reset."""
         self._addresses = target(layout).addresses
         self._outputs = bindings.outputs(layout)
-        runs = [(number, run) for number, output in enumerate(self._outputs) for run in output.runs]
-        self._output_of_run = [number for number, _ in runs]
-        self._by_address = {run.address: index for index, (_, run) in enumerate(runs)}
-        """Index of each run by its address."""
-        self._runs_in = parts_of([(run.address, run.address_end) for _, run in runs])
+        self._by_address = {output.slots[0].address: number for number, output in enumerate(self._outputs)}
+        """Index of each output by the address of its first variable."""
         self._settings = settings
         self._indicators = indicators
         self._vm: VirtualMachine | None = None
         self._queued: list[Command] = []
-        self._sent: list[bytes] = []
+        self._sent: list[list[int]] = []
         self._light_levels: dict[str, tuple[int, ...]] = {}
         self._light_period = 0
         """Number of the period of `LIGHT_REPEAT_NS` to which `_light_levels` belongs."""
@@ -66,8 +59,8 @@ class Outputs:
         self._vm = vm
         self._light_levels.clear()
         self.has_used_sound = False
-        self._sent = self._read()
-        at_rest = [self._command(number, self._sent) for number in range(len(self._outputs))]
+        self._sent = [self._words(output) for output in self._outputs]
+        at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
         self._queued = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
 
     def queue(self, *commands: Command) -> None:
@@ -112,19 +105,19 @@ class Outputs:
 
     def pop_changes(self) -> list[Command]:
         """Return the commands of variables that changed since the last call."""
-        sent, self._sent = self._sent, self._read()
-        if self._sent == sent:
-            return []
-        runs = zip(self._output_of_run, self._sent, sent, strict=True)
-        changed = sorted({number for number, new, old in runs if new != old})
-        return [self._adjusted(self._command(number, self._sent)) for number in changed]
+        commands: list[Command] = []
+        for number, output in enumerate(self._outputs):
+            words = self._words(output)
+            if words != self._sent[number]:
+                self._sent[number] = words
+                commands.append(self._adjusted(output.command(words)))
+        return commands
 
     def resend_motor_targets(self) -> None:
         """Send the motor targets again, because their calibration has changed."""
-        now = self._read()
-        for index, number in enumerate(self._output_of_run):
-            if isinstance(self._command(number, now), MotorTargets):
-                self._sent[index] = b""
+        for output, sent in zip(self._outputs, self._sent, strict=True):
+            if isinstance(output.command(self._words(output)), MotorTargets):
+                sent.clear()
 
     def _adjusted(self, command: Command) -> Command:
         """Calibrate a command for motors; claim the lights of a command for lights."""
@@ -143,19 +136,19 @@ class Outputs:
         assert self._vm is not None
         if variable not in self._addresses:
             return
-        address, _size = self._addresses[variable]
-        index = self._by_address.get(address)
+        address, size = self._addresses[variable]
+        number = self._by_address.get(address)
+        if number is not None and self._sent[number] == words == self._vm.variables.words[address : address + size]:
+            return
         self._vm.write_variables(address, words)
-        if index is not None:
-            written = image(list(words))
-            self._sent[index] = written + self._sent[index][len(written) :]
+        if number is not None:
+            self._sent[number] = self._words(self._outputs[number])
 
-    def _read(self) -> list[bytes]:
-        """Return the present words of all runs."""
+    def _words(self, output: bindings.OutputBinding) -> list[int]:
+        """Words of the variables of an output."""
         assert self._vm is not None
-        return list(self._runs_in(image(self._vm.variables.words)))
-
-    def _command(self, number: int, runs: Sequence[bytes]) -> Command:
-        """Return the command of an output, given the words of all runs."""
-        parts = [words for each, words in zip(self._output_of_run, runs, strict=True) if each == number]
-        return self._outputs[number].command(words_of(b"".join(parts)))
+        memory = self._vm.variables.words
+        words: list[int] = []
+        for address, address_end, _, _ in output.runs:
+            words += memory[address:address_end]
+        return words

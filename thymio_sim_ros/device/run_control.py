@@ -139,7 +139,7 @@ class RunControl:
         """Process the messages of the machine; return whether they restarted the robot or switched it off."""
         # The natives that request a restart or power-off raise NativeFault only to end the handler at once.
         requested, self._services.requested = self._services.requested, ""
-        for message in self._vm.pop_messages() if self._vm.outbox else ():
+        for message in self._vm.pop_messages():
             if isinstance(message, Emitted):
                 self._network_events.add_emitted(message)
             elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode) and not requested:

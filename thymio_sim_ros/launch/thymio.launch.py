@@ -27,7 +27,7 @@ LOOPBACK = ("localhost", "127.0.0.1", "::1")
 TOKENS = ("THYMIO_SIM_TOKEN", "THYMIO_SIM_READ_ONLY_TOKEN")
 
 ARGUMENTS = {
-    "playground": ("line", "playground: the name of a shipped one, or a file"),
+    "playground": ("desk", "playground: the name of a shipped one, or a file"),
     "program": ("welcome", "Aseba program: the name of a built-in one, an .aesl file, or none"),
     "behaviour": ("", "built-in behavior, such as menu, that runs when the robot is switched on; '' for the program"),
     "card": ("", "folder used as the robots' memory card; '' for no card"),

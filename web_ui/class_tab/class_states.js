@@ -1,5 +1,6 @@
 // What each robot of a class is doing, in one word. Pure.
 
+import { numberOf } from "../scene/tags.js";
 import { lineOf } from "../state/program_status.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -18,7 +19,7 @@ const BY_STATE = /** @type {Readonly<Record<string, ClassState>>} */ ({
   paused: "halted",
   fault: "mistake",
 });
-/** States of robots whose pupils need somebody. */
+/** States of robots whose pupils need help. */
 const NEEDS_LOOK = /** @type {ReadonlySet<ClassState>} */ (new Set(["mistake", "fell", "halted"]));
 
 /** @param {Pick<Program, "state" | "name"> | undefined} program @param {boolean} hasFallen @returns {ClassState} */
@@ -33,27 +34,14 @@ export function needsLook(state) {
   return NEEDS_LOOK.has(state);
 }
 
-/**
- * The number on the dot of a robot: that at the end of its name if no other robot has it, else its place in the list.
- *
- * @param {readonly string[]} names  of all robots
- * @param {string} name
- */
-export function robotNumber(names, name) {
-  const numbers = names.map((each) => /\d+$/.exec(each)?.[0] ?? "");
-  const own = numbers[names.indexOf(name)];
-  const isClear = numbers.every((number) => number !== "") && new Set(numbers).size === numbers.length;
-  return isClear ? own : String(names.indexOf(name) + 1);
-}
-
 /** @param {Pick<State, "robots" | "programs" | "simulator">} state @returns {Member[]} */
 export function membersOf({ robots, programs, simulator }) {
   const names = Object.keys(robots);
   const fallen = new Set(simulator?.fallen ?? []);
-  return names.map((robot) => {
+  return names.map((robot, at) => {
     const program = programs[robot] ?? programs[""];
     const state = classState(program, fallen.has(robot));
-    return { robot, number: robotNumber(names, robot), state, line: program === undefined ? 0 : lineOf(program.values) };
+    return { robot, number: numberOf(robot, at + 1), state, line: program === undefined ? 0 : lineOf(program.values) };
   });
 }
 

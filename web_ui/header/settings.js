@@ -1,8 +1,8 @@
 // Language, sound and theme: side by side in the header; on phones in a sheet that a button opens.
 
 import { h } from "../ui/dom.js";
+import { foldedList } from "../ui/folded_list.js";
 import { icon } from "../ui/icons.js";
-import { makeSheet } from "../ui/sheet.js";
 import { languageChoice } from "./language.js";
 import { soundButton } from "./sound.js";
 import { themeSwitch } from "./theme_switch.js";
@@ -24,21 +24,15 @@ export function settingsPanel(context) {
     { type: "button", class: "btn icon", id: "settings-open", title: t("settings"), "aria-label": t("settings") },
     icon("more"),
   );
-  makeSheet(button, list);
-  let isPhone = true;
+  const setFolded = foldedList(button, list);
   return {
     slot: "header",
     element: h("div", { class: "settings" }, button, list),
     render() {
       sound.render();
       theme.render();
-      const now = context.frame.layout === "phone";
-      if (now === isPhone) return;
-      isPhone = now;
-      button.hidden = !now;
-      list.popover = now ? "auto" : null;
-      list.classList.toggle("sheet", now);
-      list.classList.toggle("row", !now);
+      setFolded(context.frame.layout === "phone");
+      list.classList.toggle("row", context.frame.layout !== "phone");
     },
   };
 }

@@ -128,7 +128,7 @@ export class WelcomeHost {
     this.close();
   };
 
-  /** @param {boolean} [isQuiet]  whether a failure is not reported: nobody asked for it @returns {Promise<Module | null>} */
+  /** @param {boolean} [isQuiet]  whether a failure is not reported, because no user asked for it @returns {Promise<Module | null>} */
   async #load(isQuiet = false) {
     this.isAsked = true;
     this.module ??= await import("../welcome/index.js").catch(() => null);

@@ -2,6 +2,8 @@
 //
 // A key is a `KeyboardEvent.key`; keys of one group are pressed together ("Shift", "ArrowUp") or are alternatives.
 
+import { HAND_KEYS } from "./hand_keys.js";
+
 /**
  * @typedef {object} KeyRow
  * @property {readonly string[]} [held]   held while a key is pressed: "Control" or "Shift"
@@ -27,7 +29,10 @@ export const KEY_TABLE = [
       { keys: ["t"], text: "view.top" },
       { keys: ["f"], text: "view.follow" },
       { keys: ["e"], text: "view.eye" },
+      { keys: ["b"], text: "view.beams" },
       { keys: ["m"], text: "view.move" },
+      { keys: ["Space"], text: "view.pause" },
+      { keys: Object.values(HAND_KEYS).map((key) => key.toLowerCase()), text: "view.hands" },
     ],
   },
   {

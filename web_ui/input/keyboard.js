@@ -1,4 +1,7 @@
-// Keyboard control of the 3D view: arrows and Enter press the robot's buttons; with Shift, arrows turn the camera.
+// Keyboard control of the 3D view: arrows and Enter press the robot's buttons; with Shift, arrows turn the camera; letters
+// choose views and use the hands; Space pauses time.
+
+import { handOfKey } from "./hand_keys.js";
 
 /** @typedef {import("../scene/index.js").SceneView} SceneView */
 
@@ -45,13 +48,15 @@ export function plainKey({ key }) {
  * @param {SceneView} scene
  * @param {import("../move/drag_controller.js").DragController} dragController
  * @param {(button: string, pressed: boolean) => void} press   presses a button of the addressed robots
+ * @param {{ useHand?: (name: string) => void, pause?: () => void }} [others]
  */
-export function watchKeyboard(element, scene, dragController, press) {
+export function watchKeyboard(element, scene, dragController, press, { useHand, pause } = {}) {
   /** @type {Set<string>} */ const pressedKeys = new Set();
   element.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { shiftKey, repeat } = event;
     const key = plainKey(event);
+    const hand = handOfKey(key);
     if (key === "m") dragController.setMode(!dragController.mode);
     else if (dragController.mode && key in MOVES) {
       const [x, y, turn] = MOVES[key];
@@ -71,7 +76,12 @@ export function watchKeyboard(element, scene, dragController, press) {
     } else if (key === "+" || key === "=") scene.zoom(1);
     else if (key === "-") scene.zoom(-1);
     else if (key in VIEW_KEYS) scene.setView(VIEW_KEYS[key]);
-    else return;
+    else if (key === "b") scene.setSensors(!scene.showSensors);
+    else if (key === " ") {
+      if (!repeat) pause?.();
+    } else if (hand !== undefined) {
+      if (!repeat) useHand?.(hand);
+    } else return;
     event.preventDefault();
   });
   /** @param {string} key */

@@ -83,13 +83,13 @@ export class RefusalBox {
    * The message and its words; without its reason if the page's server is gone.
    *
    * @param {string} headline
-   * @param {(module: typeof import("./refusal.js")) => Reason | null} reasonIn
+   * @param {(module: typeof import("./refusal.js")) => Reason | null} findReason
    */
-  async #view(headline, reasonIn) {
+  async #view(headline, findReason) {
     const { language } = this.context;
     const module = await import("./refusal.js").catch(() => null);
     if (module === null) return { children: [h("p", { class: "headline" }, headline)], words: headline };
-    const reason = reasonIn(module);
+    const reason = findReason(module);
     const words = reason === null ? headline : `${headline} ${module.refusalText(language, reason)}`;
     return { children: module.refusalView(language, headline, reason), words };
   }

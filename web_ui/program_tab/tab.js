@@ -118,7 +118,7 @@ export class ProgramTab {
     this.file.setEntries(view.entries);
     view.show();
     this.#render();
-    if (!this.#isStartShown) view.focus();
+    this.#focus();
   }
 
   /** Call when the tab is opened or left. @param {boolean} isShown */
@@ -127,7 +127,12 @@ export class ProgramTab {
     if (!isShown) return;
     this.#view?.resized();
     this.redraw();
-    if (!this.#isStartShown) this.#view?.focus();
+    this.#focus();
+  }
+
+  #focus() {
+    if (this.#isStartShown) this.start.focus();
+    else this.#view?.focus();
   }
 
   /** Draw with the next frame. */
@@ -148,7 +153,7 @@ export class ProgramTab {
     this.element.remove();
   }
 
-  /** Whether it is known what there is to show: the robot has told its program, or there is a text already. */
+  /** Whether it is known what there is to show: the robot has reported its program, or there is a text already. */
   get #isKnown() {
     const { current } = this.session.workspace;
     return this.selection.target !== null || current.own || isUnsaved(current);
@@ -159,7 +164,7 @@ export class ProgramTab {
     const { current } = this.session.workspace;
     const { target } = this.selection;
     if (current.own || isUnsaved(current) || target === null) return false;
-    return !target.program || isExample(target.program.name, WELCOME);
+    return !target.program?.source.trim() || isExample(target.program.name, WELCOME);
   }
 
   #placeFileMenu() {

@@ -9,7 +9,7 @@ import { valuesTable } from "./values_table.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
-/** At most 20 pictures a second: nobody reads faster. */
+/** At most 20 pictures a second: people do not read faster. */
 const LEAST_MS = 50;
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */

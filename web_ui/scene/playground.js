@@ -153,7 +153,7 @@ const LOWER = 40;
 
 /**
  * Paint and floors cover each other in the order of their heights, by drawing them one after another: so they can lie
- * closer together than the depth buffer tells apart, and what stands on them does not sink in.
+ * closer together than the depth buffer distinguishes, and what stands on them does not sink in.
  *
  * @param {THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>} mesh
  * @param {Marker} marker

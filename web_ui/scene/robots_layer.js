@@ -139,7 +139,7 @@ export class RobotsLayer {
   }
 }
 
-/** Whether somebody has to look at this robot: it fell, or its program has ended by a fault. @param {State} state @param {string} name */
+/** Whether a person should look at this robot: it fell, or its program has ended by a fault. @param {State} state @param {string} name */
 function needsHelp({ simulator, programs }, name) {
   return (simulator?.fallen?.includes(name) ?? false) || programs[name]?.state === "fault";
 }

@@ -59,7 +59,7 @@ export class NameTags {
     const { dot, name } = tag;
     setText(dot, number);
     setText(name, title);
-    setAttribute(dot, "aria-label", title);
+    setAttribute(dot, "aria-label", title.includes(number) ? title : `${number} ${title}`);
     setAttribute(dot, "aria-pressed", String(isSelected));
     if (dot.style.getPropertyValue("--color") !== color) dot.style.setProperty("--color", color);
     for (const element of [dot, name]) element.toggleAttribute("data-selected", isSelected);

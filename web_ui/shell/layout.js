@@ -7,6 +7,8 @@ const SINGLE_PX = 900;
 const NARROW_PX = 1181;
 /** Lower windows start with a folded tray. */
 const LOW_PX = 720;
+/** In lower windows the buttons over the view have no names. */
+const TINY_PX = 480;
 
 /** Least width of workspace and stage beside each other, and the largest share of the workspace. */
 const LEAST_WORK_PX = 360;
@@ -24,6 +26,11 @@ export function layoutOf(width) {
 /** Whether the tray starts folded. @param {number} height  CSS pixels of the window */
 export function isLow(height) {
   return height < LOW_PX;
+}
+
+/** Whether only icons fit over the view. @param {number} height  CSS pixels of the window */
+export function isTiny(height) {
+  return height < TINY_PX;
 }
 
 /**

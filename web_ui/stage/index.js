@@ -1,5 +1,7 @@
-// The panels of the stage, in the order of the focus. To add one: a file, and a line here.
+// The panels of the stage, in the order of the focus; of the messages the first that has something to say is shown. To
+// add one: a file, and a line here.
 
+import { arrivalPanel } from "./arrival.js";
 import { bannerPanel } from "./banner.js";
 import { fallenPanel } from "./fallen.js";
 import { moveHintPanel } from "./move_hint.js";
@@ -9,4 +11,13 @@ import { trayPanel } from "./tray.js";
 import { viewsPanel } from "./views.js";
 
 /** @type {import("../shell/context.js").CreatePanel[]} */
-export const STAGE = [viewsPanel, bannerPanel, fallenPanel, moveHintPanel, noticesPanel, trayPanel, timePanel];
+export const STAGE = [
+  viewsPanel,
+  arrivalPanel,
+  bannerPanel,
+  noticesPanel,
+  fallenPanel,
+  moveHintPanel,
+  trayPanel,
+  timePanel,
+];

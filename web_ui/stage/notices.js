@@ -1,5 +1,6 @@
 // Notices about user actions: one area over the view, or inside an open dialog.
-// Success messages disappear by themselves; errors stay until they are closed or their cause is resolved.
+// Success messages disappear by themselves; errors stay until they are closed or their cause is resolved. The newest is
+// shown; those before it follow when it is gone.
 
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
@@ -13,6 +14,13 @@ function placeOfNotices() {
   if (dialog !== null) return dialog;
   const view = document.querySelector("#messages");
   return view?.checkVisibility() === false ? document.querySelector("#work") : view;
+}
+
+/** Over the view, notices come before what the robots say. @param {Element} place @param {HTMLElement} element */
+function put(place, element) {
+  const fallen = place.querySelector(":scope > .fallen");
+  if (fallen === null) place.append(element);
+  else fallen.before(element);
 }
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
@@ -46,7 +54,7 @@ export function noticesPanel({ text, store }) {
     element,
     render({ notices }) {
       const place = placeOfNotices();
-      if (place !== null && element.parentElement !== place) place.append(element);
+      if (place !== null && element.parentElement !== place) put(place, element);
       if (notices === shown) return;
       shown = notices;
       time(notices);

@@ -20,7 +20,7 @@ export function buttonPad({ text, actions }) {
     return { name, button };
   });
   return {
-    element: h("div", { class: "pad", id: "pad", role: "group", "aria-label": t("dpad") }, ...buttons.map(({ button }) => button)),
+    element: h("div", { class: "pad", id: "pad", role: "group", "aria-label": t("pad") }, ...buttons.map(({ button }) => button)),
     /** @param {import("../state/index.js").State} state */
     render({ connection, readOnly, robots, selected }) {
       for (const { name, button } of buttons) {

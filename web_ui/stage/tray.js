@@ -1,4 +1,5 @@
-// The tray below the view: the robot's buttons, and what a hand does to the robot. It folds; the browser remembers that.
+// The tray below the view: the robot's buttons, and what a hand does to the robot. It folds, which the browser
+// remembers.
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { h, setAttribute } from "../ui/dom.js";
@@ -14,29 +15,31 @@ export function trayPanel(context) {
   const { text, frame } = context;
   const t = text("stage");
   const pad = buttonPad(context);
-  const hand = hands(context);
   /** @type {boolean | null} null: by the room that there is */
   let folded = { true: true, false: false }[localStore.getItem(FOLDED_KEY) ?? ""] ?? null;
-  /** @param {boolean} now @param {HTMLElement} next  gets the focus */
-  const fold = (now, next) => {
+  /** @param {boolean} now */
+  const fold = (now) => {
     folded = now;
     trySetItem(localStore, FOLDED_KEY, String(now));
+    for (const sheet of element.querySelectorAll(":popover-open")) /** @type {HTMLElement} */ (sheet).hidePopover();
     show();
-    next.focus();
+    if (now) open.focus();
+    else pad.element.querySelector("button")?.focus();
   };
   const close = h(
     "button",
-    { type: "button", class: "hand plain", id: "tray-fold", onclick: () => fold(true, open) },
+    { type: "button", class: "hand quiet", id: "tray-fold", onclick: () => fold(true) },
     icon("fold"),
     h("span", {}, t("hand.fold")),
   );
   const open = h(
     "button",
-    { type: "button", class: "btn unfold", id: "tray-unfold", "aria-expanded": "false", onclick: () => fold(false, close) },
+    { type: "button", class: "btn unfold", id: "tray-unfold", "aria-expanded": "false", onclick: () => fold(false) },
     icon("pad", { small: true }),
     h("span", {}, t("hand.unfold")),
+    icon("caretUp", { small: true }),
   );
-  hand.grid.append(close);
+  const hand = hands(context, close);
   const element = h("div", { class: "tray-parts" }, pad.element, h("span", { class: "vline" }), hand.element, open);
   const show = () => {
     const tray = element.parentElement;

@@ -1,14 +1,21 @@
-// Over the view: cameras at the left, tools at the right.
+// Over the view: cameras at the left, tools at the right; on phones each group has one button that opens the others.
 
 import { VIEWS } from "../scene/camera.js";
+import { isTiny } from "../shell/layout.js";
 import { disabledReason } from "../state/disabled_reason.js";
-import { h, lock, setAttribute } from "../ui/dom.js";
+import { h, lock, setAttribute, setText } from "../ui/dom.js";
+import { foldedList } from "../ui/folded_list.js";
 import { icon } from "../ui/icons.js";
 import { lookMenu } from "./look_menu.js";
+import { fitNames, NAMES } from "./names_fit.js";
+import { savePicture } from "./picture.js";
+
+/** The row of buttons at the upper edge: worlds are fitted into the space below it. */
+const ROW_PX = 74;
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function viewsPanel(context) {
-  const { text, scene, store, dragController, announce } = context;
+  const { text, scene, dragController, announce, frame } = context;
   const t = text("stage");
   const pageText = text("page");
   /** @param {string} name @param {import("../ui/icons.js").IconName} drawing @param {() => void} act */
@@ -19,45 +26,85 @@ export function viewsPanel(context) {
       icon(drawing, { small: true }),
       h("span", {}, t(`view.${name}`)),
     );
-  const cameras = VIEWS.map((view) => ({ view, element: button(view, view, () => scene.setView(view)) }));
+  const cameras = VIEWS.map((view) => ({
+    view,
+    element: button(view, view, () => {
+      scene.setView(view);
+      closeSheet(cameraList);
+    }),
+  }));
+  const chosen = h("span", {});
+  const cameraOpen = h(
+    "button",
+    { type: "button", class: "btn named", id: "cameras-open" },
+    icon("camera", { small: true }),
+    chosen,
+    icon("caretDown", { small: true }),
+  );
+  const cameraList = h("div", { class: "float-list", id: "camera-list" }, ...cameras.map(({ element }) => element));
   const beams = button("beams", "beams", () => scene.setSensors(!scene.showSensors));
   const move = button("move", "move", () => {
     dragController.setMode(!dragController.mode);
+    closeSheet(toolList);
     if (!dragController.mode) return;
     scene.canvas.focus(); // so that its keys work
     announce(t("move.help"));
   });
-  const picture = button("picture", "picture", () => void save());
+  const picture = button("picture", "picture", () => {
+    closeSheet(toolList);
+    void savePicture(context);
+  });
   const look = lookMenu(context);
-  async function save() {
-    const png = await scene.picture();
-    if (png === null) return store.dispatch({ type: "notice", level: "error", text: t("view.noPicture") });
-    const address = URL.createObjectURL(png);
-    const { simulator, timeNs } = store.state;
-    const name = `${simulator?.playground || "thymio"}-${(timeNs / 1e9).toFixed(1)}s.png`.replace(/[^\w.-]+/g, "_");
-    h("a", { href: address, download: name }).click();
-    URL.revokeObjectURL(address);
-    store.dispatch({ type: "notice", level: "info", text: t("view.pictureSaved", { name }) });
-  }
+  const toolOpen = h(
+    "button",
+    { type: "button", class: "btn icon", id: "tools-open", "aria-label": pageText("more"), title: pageText("more") },
+    icon("more", { small: true }),
+  );
+  const toolList = h("div", { class: "float-list", id: "tool-list" }, move, picture, look.element);
+  const foldCameras = foldedList(cameraOpen, cameraList);
+  const foldTools = foldedList(toolOpen, toolList);
   const element = h(
     "div",
     { class: "view-row" },
-    h(
-      "div",
-      { class: "float", id: "cameras", role: "group", "aria-label": t("view.camera") },
-      ...cameras.map((camera) => camera.element),
-    ),
-    h("div", { class: "float", id: "tools", role: "group", "aria-label": t("view.tools") }, beams, move, picture, look.element),
+    h("div", { class: "float", id: "cameras", role: "group", "aria-label": t("view.camera") }, cameraOpen, cameraList),
+    h("div", { class: "float", id: "tools", role: "group", "aria-label": t("view.tools") }, beams, toolOpen, toolList),
   );
+  const fit = fitNames(
+    element,
+    () => (isTiny(window.innerHeight) ? ["few"] : NAMES),
+    () => element.scrollWidth <= element.clientWidth,
+  );
+  scene.setInsets({ top: ROW_PX });
+  /** @type {boolean | null} */ let isPhone = null;
+  let shownView = "";
   return {
     slot: "views",
     element,
     render({ connection, readOnly }) {
+      if (isPhone !== (frame.layout === "phone")) {
+        isPhone = frame.layout === "phone";
+        foldCameras(isPhone);
+        foldTools(isPhone);
+        fit();
+      }
       lock(/** @type {HTMLButtonElement} */ (move), disabledReason({ connection, readOnly }, pageText));
-      for (const { view, element } of cameras) setAttribute(element, "aria-pressed", String(scene.camera.view === view));
+      const { view } = scene.camera;
+      if (view !== shownView) {
+        shownView = view;
+        for (const camera of cameras) setAttribute(camera.element, "aria-pressed", String(camera.view === view));
+        cameraOpen.firstElementChild?.replaceWith(icon(view, { small: true }));
+        setText(chosen, t(`view.${view}`));
+        setAttribute(cameraOpen, "aria-label", `${t("view.camera")}: ${t(`view.${view}`)}`);
+        if (element.dataset.names === "few") fit(); // the chosen one has its name
+      }
       setAttribute(move, "aria-pressed", String(dragController.mode));
       setAttribute(beams, "aria-pressed", String(scene.showSensors));
       look.render();
     },
   };
+}
+
+/** @param {HTMLElement} list */
+function closeSheet(list) {
+  if (list.matches(":popover-open")) list.hidePopover();
 }

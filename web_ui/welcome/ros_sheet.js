@@ -35,7 +35,7 @@ export function rosSheet({ actions, announce, store, text, scene }, t, button, c
   copy.addEventListener("click", async () => {
     say(t((await copyText(command.textContent ?? "")) ? "ros.copied" : "ros.notCopied"));
   });
-  const tells = h("ul", {});
+  const publishes = h("ul", {});
   const does = h("ul", {});
   const element = h(
     "div",
@@ -58,7 +58,7 @@ export function rosSheet({ actions, announce, store, text, scene }, t, button, c
       "div",
       { class: "welcome-topics" },
       h("div", {}, h("h3", {}, t("ros.does")), does),
-      h("div", {}, h("h3", {}, t("ros.notices")), tells),
+      h("div", {}, h("h3", {}, t("ros.notices")), publishes),
     ),
     h("p", { class: "small" }, h("a", { href: DOCUMENTATION, target: "_blank", rel: "noopener" }, t("ros.docs"))),
   );
@@ -80,15 +80,15 @@ export function rosSheet({ actions, announce, store, text, scene }, t, button, c
       const [speed, ...others] = listensTo(selected);
       lock(send, disabledReason(state, pageText));
       if (!element.matches(":popover-open")) return speed.topic;
-      const told = publishesOf(topics, selected);
-      const key = [selected, ...told].join();
+      const published = publishesOf(topics, selected);
+      const key = [selected, ...published].join();
       if (key !== shown) {
         shown = key;
         setText(command, speedCommand(selected));
         does.replaceChildren(
           ...[speed, ...others].map(({ topic, type }) => h("li", {}, h("code", {}, topic), h("small", { class: "muted" }, type))),
         );
-        tells.replaceChildren(...told.map((topic) => h("li", {}, h("code", {}, topic))));
+        publishes.replaceChildren(...published.map((topic) => h("li", {}, h("code", {}, topic))));
       }
       return speed.topic;
     },

@@ -16,6 +16,8 @@ const PULSE = "welcome-pulse";
 /** The behavior that drives by the robot's own arrow buttons, and stops in front of things. */
 const DRIVE = "thesis_basic";
 const WATCH = "line_follower";
+/** From the lower edge of the scene to the starts. */
+const EDGE_PX = 12;
 /** Height of the greeting's tip above the robot's origin, in meters. */
 const OVER_ROBOT_M = 0.075;
 
@@ -88,6 +90,10 @@ export function startsOver(context, t, slot, close) {
   const hello = h("p", { class: "welcome-hello" }, t("hello"));
   slot.append(hello, element, sheet.element);
   document.body.classList.add(OPEN);
+  /** Fit the playground into what the cards leave free. @param {number} bottom  CSS pixels */
+  const leaveFree = (bottom) => scene.setInsets({ ...scene.camera.insets, bottom });
+  const size = new ResizeObserver(() => leaveFree(element.offsetHeight + EDGE_PX));
+  size.observe(element);
   let transform = "";
   let topic = "";
   return {
@@ -104,6 +110,8 @@ export function startsOver(context, t, slot, close) {
       if (place !== null && place !== transform) hello.style.transform = transform = place;
     },
     destroy() {
+      size.disconnect();
+      leaveFree(0);
       document.body.classList.remove(OPEN);
       for (const each of [hello, element, sheet.element]) each.remove();
       scene.invalidate();

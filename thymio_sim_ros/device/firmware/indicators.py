@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from aseba_vm.machine.data_memory import image, parts_of
 from thymio_sim_ros.device.firmware.indicator_kinds import (
     INDICATORS,
     PROXIMITY_GROUPS,
@@ -29,21 +28,26 @@ ARROW_SOUND, CENTER_SOUND = 2, 3
 """System sounds of the buttons (section 9)."""
 
 
-Spans = list[tuple[int, int]]
-"""Ranges of addresses (begin, end)."""
-Places = Sequence[tuple[int, int]]
-"""Addresses and sizes of variables."""
-
-
-def _memory_spans(places: Iterable[tuple[int, int]]) -> Spans:
-    """Ranges that contain variables (address, size), adjacent variables joined."""
-    spans: Spans = []
+def _memory_spans(places: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Ranges of addresses (begin, end) that contain variables (address, size), adjacent variables joined."""
+    spans: list[tuple[int, int]] = []
     for address, size in sorted(places):
         if spans and spans[-1][1] == address:
             spans[-1] = (spans[-1][0], address + size)
         else:
             spans.append((address, address + size))
     return spans
+
+
+Places = list[tuple[int, int, int]]
+"""For each variable of an indicator the index of the range that contains it, and its begin and end within the range."""
+
+
+def _locate(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[int, int, int]:
+    """Index of the range that contains a variable, and begin and end of the variable within it."""
+    number = next(number for number, (begin, end) in enumerate(spans) if begin <= address < end)
+    offset = address - spans[number][0]
+    return number, offset, offset + size
 
 
 class Indicators:
@@ -67,7 +71,6 @@ class Indicators:
             for number, (begin, end) in enumerate(self._spans)
             if any(begin <= address < end for address in self._buttons)
         )
-        self._parts_in = parts_of(self._spans)
         self._pressed = [0] * len(self._buttons)
         self.reset()
 
@@ -78,16 +81,11 @@ class Indicators:
         self._sound = next(indicator for indicator in indicators if isinstance(indicator, SoundIndicator))
         self._battery = next(indicator for indicator in indicators if isinstance(indicator, BatteryIndicator))
         self._indicators: list[tuple[Indicator, Places, frozenset[int]]] = []
-        """Indicators with address and size of their variables, and the numbers of the ranges that contain these."""
+        """Indicators with the places of their variables, and the numbers of the ranges that contain these."""
         for indicator in indicators:
             if all(name in self._addresses for name in indicator.variables):
-                places = [self._addresses[name] for name in indicator.variables]
-                parts = frozenset(
-                    number
-                    for number, (begin, end) in enumerate(self._spans)
-                    if any(begin <= address < end for address, _ in places)
-                )
-                self._indicators.append((indicator, places, parts))
+                places = [_locate(self._spans, *self._addresses[name]) for name in indicator.variables]
+                self._indicators.append((indicator, places, frozenset(part for part, _, _ in places)))
         self._animated = [
             indicator for indicator, _, _ in self._indicators if not isinstance(indicator, StaticIndicator)
         ]
@@ -101,7 +99,7 @@ class Indicators:
         """Indicators whose variables were not measured since the reset."""
         self._shown: dict[str, tuple[int, ...]] = {}
         self._claimed_groups: set[str] = set()
-        self._last: tuple[bytes, ...] | None = None
+        self._last: list[Sequence[int]] | None = None
         self.is_animated = True
         """Whether levels may change at the next update although the variables stay the same."""
         self._is_muted = False
@@ -143,7 +141,7 @@ class Indicators:
 
     def update(self, memory: Sequence[int]) -> Sequence[Command]:
         """Return commands for changed lights, and sounds for touched buttons; `memory` has all words (int16)."""
-        parts = self._parts_in(image(memory))
+        parts = [memory[begin:end] for begin, end in self._spans]
         if parts == self._last and not self.is_animated and not self._without_data:
             return ()
         changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
@@ -151,25 +149,24 @@ class Indicators:
         commands: list[Command] = []
         for indicator, places, used in self._indicators:
             if indicator in self._without_data:
-                self._update_first(indicator, places, memory, commands)
+                self._update_first(indicator, places, commands)
             elif not used.isdisjoint(changed) or indicator.is_animated:
-                self._update_one(indicator, places, memory, commands)
+                self._update_one(indicator, places, commands)
         if not self._button_parts.isdisjoint(changed):
             commands += self._button_sounds(memory)
         self.is_animated = any(indicator.is_animated for indicator in self._animated)
         return commands
 
-    def _update_first(
-        self, indicator: Indicator, places: Places, memory: Sequence[int], commands: list[Command]
-    ) -> None:
+    def _update_first(self, indicator: Indicator, places: Places, commands: list[Command]) -> None:
         """Update an indicator that had no data, if its variables have been measured since the reset."""
         addresses = [self._addresses[name][0] for name in indicator.variables]
         if not addresses or any(map(self._is_measured, addresses)):
             self._without_data.discard(indicator)
-            self._update_one(indicator, places, memory, commands)
+            self._update_one(indicator, places, commands)
 
-    def _update_one(self, indicator: Indicator, places: Places, memory: Sequence[int], commands: list[Command]) -> None:
-        words = [memory[address : address + size] for address, size in places]
+    def _update_one(self, indicator: Indicator, places: Places, commands: list[Command]) -> None:
+        assert self._last is not None
+        words = [self._last[part][begin:end] for part, begin, end in places]
         for group, levels in indicator.levels(words).items():
             if group not in self._claimed_groups and levels != self._shown.get(group, (0,) * len(levels)):
                 self._shown[group] = levels

@@ -61,9 +61,6 @@ class Timers:
         if self._next_ms is None:
             self._at_ms = self._clock_ms = now_ms
             return ()
-        if self._at_ms == self._clock_ms and now_ms - self._at_ms <= MAX_LAG_MS:
-            self._clock_ms = now_ms
-            return ()
         missed = self._count(self._clock_ms - self._at_ms)
         self._clock_ms = now_ms
         early = self._count(max(0, self.lag_ms - MAX_LAG_MS))
@@ -108,8 +105,5 @@ class Timers:
         return tuple(fired)
 
     def _find_next(self) -> None:
-        next_ms = None
-        for fires_ms, period in zip(self._fires_ms, self._periods, strict=True):
-            if period > 0 and (next_ms is None or fires_ms < next_ms):
-                next_ms = fires_ms
-        self._next_ms = next_ms
+        running = [fires_ms for fires_ms, period in zip(self._fires_ms, self._periods, strict=True) if period > 0]
+        self._next_ms = min(running) if running else None

@@ -73,7 +73,7 @@ class ProximityParams:
 class SimulatorParams:
     """Parameters of the simulator node."""
 
-    playground: str = param("line", "Playground: a shipped name, a file, or the JSON text itself")
+    playground: str = param("desk", "Playground: a shipped name, a file, or the JSON text itself")
     seed: int = param(
         0, "Seed of all noise; the same seed gives the same run. A new seed restarts the world", low=0, high=2**31 - 1
     )

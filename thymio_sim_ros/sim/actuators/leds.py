@@ -150,7 +150,6 @@ def _update(state: LedState, view: ActuatorView, _dt_s: float) -> None:
         state.show(state.gesture.group, state.gesture.levels(view.now_ns))
 
 
-@lru_cache(maxsize=1024)
 def _limited(group: str, levels: tuple[int, ...]) -> tuple[int, ...]:
     size = LED_GROUPS.get(group)
     if size is None or len(levels) != size:
