@@ -60,6 +60,11 @@ export function edited(document, code) {
   return { ...document, text: withCode(document.text, document.node, code) };
 }
 
+/** The document with another text of the whole file. @param {Document} document @param {string} text @returns {Document} */
+export function rewritten(document, text) {
+  return { ...document, text, node: Math.min(document.node, Math.max(readAesl(text).nodes.length - 1, 0)) };
+}
+
 /**
  * @param {Document} document
  * @param {"event" | "constant"} kind

@@ -2,6 +2,7 @@
 // variables.
 
 import { trySetItem } from "../browser/local_storage.js";
+import { readToolbox, WHOLE, writeToolbox } from "../program_tab/toolbox_file.js";
 import { History } from "./history.js";
 import { INITIAL, reduce } from "./state.js";
 import { FileStore } from "./file_store.js";
@@ -9,6 +10,7 @@ import { Workspace } from "./workspace.js";
 
 const WATCHED_KEY = "editor.watched";
 const SIZE_KEY = "editor.fontSize";
+const TOOLBOX_KEY = "program.toolbox";
 const SIZES = [10, 11, 12, 13, 14, 16, 18, 20, 24, 28, 32]; // pixels
 
 export class EditorSession {
@@ -26,6 +28,8 @@ export class EditorSession {
     /** @type {() => void} */ this.onText = () => {};
     this.workspace = new Workspace({ fileStore: new FileStore(storage), now, changed: () => this.onText() });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));
+    /** @type {import("../program_tab/toolbox_file.js").Toolbox} what a teacher's file hides */
+    this.toolbox = readToolbox(storage.getItem(TOOLBOX_KEY) ?? "").toolbox ?? WHOLE;
     this.fontSize = Number(storage.getItem(SIZE_KEY)) || 14;
   }
 
@@ -59,6 +63,13 @@ export class EditorSession {
       const owner = name.endsWith(")") ? eventKey(name.replace(/\(\d+\)$/, "")) : name.replace(/\[\d+\]$/, "");
       if (!this.watched.has(owner)) this.history.series.delete(name);
     }
+  }
+
+  /** Limit the blocks, in this browser, until that is taken back. @param {import("../program_tab/toolbox_file.js").Toolbox} toolbox */
+  setToolbox(toolbox) {
+    this.toolbox = toolbox;
+    if (toolbox === WHOLE) this.storage.removeItem(TOOLBOX_KEY);
+    else trySetItem(this.storage, TOOLBOX_KEY, writeToolbox(toolbox));
   }
 
   /** @param {number} step  +1 or -1 */

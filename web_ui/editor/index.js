@@ -7,6 +7,7 @@
 //   debugRow, toolbox, foot   line by line, values beside the text, room left
 
 import PHRASES from "../i18n/codemirror.texts.js";
+import { skeletonText } from "../program_tab/skeletons.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { faultMessage } from "../state/program_status.js";
 import { h } from "../ui/dom.js";
@@ -33,7 +34,7 @@ import "./editor.css";
 class TextView {
   /** @param {Parts} parts */
   constructor(parts) {
-    const { t, context, session, selection, commands, redraw } = parts;
+    const { t, context, session, choice, selection, commands, redraw } = parts;
     const { workspace } = session;
     const { announce, language } = context;
     const { runtime } = context.actions;
@@ -57,6 +58,7 @@ class TextView {
       label: t("editor.code"),
       phrases: PHRASES[language] ?? {},
       vocabulary: () => this.#vocabulary(),
+      isReadOnly: () => choice.isReadOnly,
       changed: (content) => {
         workspace.edit(content);
         this.guide.typed();
@@ -92,6 +94,7 @@ class TextView {
       announce,
       redraw,
       insert(words) {
+        if (view.state.readOnly) return;
         view.dispatch(view.state.replaceSelection(words));
         view.focus();
       },
@@ -259,4 +262,9 @@ function memoriesOf(values, use) {
 /** @param {Parts} parts @returns {ProgramView} */
 export function createView(parts) {
   return new TextView(parts);
+}
+
+/** One of the programs to begin with; "" is an empty page. @param {string} name @param {import("../i18n/index.js").Translate} t */
+export function sampleText(name, t) {
+  return name === "empty" ? "" : skeletonText(name, t);
 }

@@ -61,6 +61,7 @@ const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldS
  * @param {string} options.label
  * @param {Record<string, string>} options.phrases   CodeMirror's own texts, translated
  * @param {() => Omit<Vocabulary, "definitions">} options.vocabulary
+ * @param {() => boolean} options.isReadOnly         whether the text that is shown next cannot be changed
  * @param {(code: string) => void} options.changed   called when the user changed the text
  * @param {(line: number) => void} options.toggleBreakpoint
  * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairLabel  label of a repair button
@@ -68,7 +69,7 @@ const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldS
  * @param {import("@codemirror/state").Extension[]} options.extensions   of other modules
  */
 export function createText(options) {
-  const { parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint, repairLabel, correct } = options;
+  const { parent, kept, label, phrases, vocabulary, isReadOnly, changed, toggleBreakpoint, repairLabel, correct } = options;
   /** @param {EditorState} state @returns {Vocabulary} */
   const words = (state) => ({
     ...vocabulary(),
@@ -145,6 +146,8 @@ export function createText(options) {
       indentWithTab,
     ]),
   ];
+  const readOnly = [EditorState.readOnly.of(true), EditorView.editorAttributes.of({ class: "cm-read-only" })];
+  const all = () => [extensions, isReadOnly() ? readOnly : []];
   /** @type {string | null} */ let key = null;
   const view = new EditorView({ parent, state: EditorState.create({ extensions }) });
   const keep = () => {
@@ -164,7 +167,7 @@ export function createText(options) {
       const known = kept.get(next);
       const same = known !== undefined && known.doc === code;
       view.setState(
-        same ? EditorState.fromJSON(known, { extensions }, KEPT) : EditorState.create({ doc: code, extensions }),
+        same ? EditorState.fromJSON(known, { extensions: all() }, KEPT) : EditorState.create({ doc: code, extensions: all() }),
       );
       if (same) view.dispatch({ scrollIntoView: true });
     },
@@ -197,7 +200,7 @@ export function createText(options) {
      * @param {import("./checking.js").Repair} repair
      */
     repair(checked, { from, to, insert }) {
-      if (view.state.doc.toString() !== checked) return false;
+      if (view.state.readOnly || view.state.doc.toString() !== checked) return false;
       const anchor = from + insert.length;
       view.dispatch({
         changes: { from, to, insert },

@@ -1,7 +1,7 @@
 // The open programs, one per tab: which robot runs which, and the drafts in browser storage. No DOM.
 
 import { AeslError, readAesl } from "./aesl.js";
-import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined } from "./documents.js";
+import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined, rewritten } from "./documents.js";
 
 /** @typedef {import("./documents.js").Document} Document */
 /** @typedef {import("./state.js").ProgramInfo} ProgramInfo */
@@ -81,6 +81,11 @@ export class Workspace {
     this.#replace(this.tab, { ...blank(), own: true });
   }
 
+  /** Begin with a program of the page, which needs no place among the last programs. @param {string} name @param {string} text */
+  begin(name, text) {
+    this.#replace(this.tab, opened(fileName(name), text));
+  }
+
   /**
    * Open a file; nothing changes if it is rejected.
    *
@@ -102,6 +107,17 @@ export class Workspace {
   /** Set the code of the shown text. @param {string} code */
   edit(code) {
     this.#set(edited(this.current, code));
+  }
+
+  /** Set the whole file as one edit: for a language that owns more than the code. @param {string} text */
+  replaceText(text) {
+    this.#set(rewritten(this.current, text));
+  }
+
+  /** Keep the current text among the last programs: something is about to be removed from it. */
+  keep() {
+    const { name, text } = this.current;
+    this.fileStore.addRecent({ name, text, time: this.now(), unsaved: true });
   }
 
   /** @param {"event" | "constant"} kind @param {string} name @param {number | null} value */

@@ -27,6 +27,11 @@ const FIRST = ["thesis_basic", "line_follower", "thesis_explorer"];
 /** What is no program to look at. */
 const LAST = [WELCOME, "menu"];
 
+/** The language of programs in which a behavior is written. @param {string} _name */
+export function languageOf(_name) {
+  return "text"; // all of them: the runtime reads text
+}
+
 /**
  * The displayed name; behaviors added by a plug-in or a teacher keep their own.
  *
@@ -80,8 +85,9 @@ export function isExample(program, example) {
  * @param {object} options
  * @param {Translate} options.t  texts of the examples
  * @param {(name: string) => void} options.choose
+ * @param {(name: string) => HTMLElement | null} [options.signOf]   shows the language of an example
  */
-export function exampleList({ t, choose }) {
+export function exampleList({ t, choose, signOf = () => null }) {
   const element = h("ul", { class: "examples", "aria-label": t("behavior.choose") });
   /** @type {readonly Behavior[] | null} */ let listed = null;
 
@@ -94,7 +100,8 @@ export function exampleList({ t, choose }) {
     const title = h("b", {}, titleOf(name, t));
     const words = h("span", { class: "example-words" }, title, " ", h("small", {}, aboutOf(behavior, t)));
     const attributes = { type: "button", class: "example", "data-example": name, onclick: () => choose(name) };
-    return h("li", {}, h("button", attributes, swatch, words));
+    const sign = signOf(name);
+    return h("li", {}, h("button", attributes, swatch, words, ...(sign === null ? [] : [sign])));
   };
 
   return {

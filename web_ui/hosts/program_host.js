@@ -1,17 +1,24 @@
-// Integrates the tab "Program": loads it and the chosen language on demand, and forwards messages while it is shown.
+// Integrates the tab "Program": loads it and the language of the document on demand, and forwards messages while it is
+// shown.
 //
 // One document, several views. The document (an .aesl file with all its parts, its draft, which robot has it) belongs
 // to the session, in `editor/workspace.js`; it outlives views. `program_tab/tab.js` has what all languages share: run,
-// stop, files, badge, new programs. A language is a view of the open document, in a module of its own.
+// stop, files, badge, new programs. A language is a view of the open document, in a module of its own. The file decides
+// which one: a picture or blocks in it belong to their language, every other file is text.
 
+import { textOf } from "../browser/text_file.js";
 import { localStore } from "../browser/local_storage.js";
+import { LanguageChoice, TEXT } from "../program_tab/language_choice.js";
+import { looksLikeToolbox } from "../program_tab/toolbox_file.js";
 import { CONNECTION } from "../state/index.js";
 
 /** @typedef {import("../editor/editor_session.js").EditorSession} EditorSession */
 /** @typedef {import("../program_tab/tab.js").ProgramTab} ProgramTab */
 /** @typedef {import("../shell/context.js").Context} Context */
 /**
- * A language's view of the open document. It edits by `session.workspace.edit(code)` and draws what the session holds.
+ * A language's view of the open document. It edits by `session.workspace.edit(code)` or, if the language owns more than
+ * the text, `session.workspace.replaceText(text)`; it draws what the session holds. A teacher's file may hide blocks
+ * (`session.toolbox`).
  *
  * @typedef {object} ProgramView
  * @property {HTMLElement} element            fills the tab below the head
@@ -28,22 +35,46 @@ import { CONNECTION } from "../state/index.js";
  * @property {() => void} destroy
  */
 /** @typedef {(parts: import("../program_tab/tab.js").Parts) => ProgramView} CreateView */
+/** @typedef {import("../ui/icons.js").IconName} IconName */
 /**
- * @typedef {object} Language   its name is the text `language.<id>`
+ * @typedef {object} LanguageModule
+ * @property {CreateView} createView
+ * @property {(name: string, t: import("../i18n/index.js").Translate) => string} sampleText   of one of its samples
+ * @property {(text: string) => string} [withoutPicture]   the file as text: without the picture or the blocks
+ */
+/** @typedef {{ name: string, key: string, icon: IconName }} Sample   texts: `new.<key>` and `new.<key>.text` */
+/**
+ * @typedef {object} Language   its name is the text `language.<id>`, `language.<id>.text` says what it is
  * @property {string} id
- * @property {import("../ui/icons.js").IconName} icon
- * @property {() => Promise<{ createView: CreateView }>} load
+ * @property {IconName} icon
+ * @property {(text: string) => boolean} holds    whether a file is a program of this language, cheaply; the first one
+ *   that does counts
+ * @property {readonly Sample[]} samples          programs to begin with
+ * @property {() => Promise<LanguageModule>} load
+ * @property {() => Promise<readonly string[]>} [toolboxNames]   what a teacher's file can hide, and modes
  */
 
 /** The languages of programs, in display order. To add one: a line here. @type {readonly Language[]} */
-export const LANGUAGES = [{ id: "text", icon: "text", load: () => import("../editor/index.js") }];
+export const LANGUAGES = [
+  {
+    id: TEXT,
+    icon: "text",
+    holds: () => true,
+    samples: [
+      { name: "button", key: "button", icon: "pad" },
+      { name: "avoid", key: "avoid", icon: "beams" },
+      { name: "line", key: "line", icon: "track" },
+      { name: "empty", key: "empty", icon: "file" },
+    ],
+    load: () => import("../editor/index.js"),
+  },
+];
 
 const TOPIC = /^\/(?:[^/]+\/)?_aseba\/(?:target|variables|events)$|^\/aseba_runtime\/_behaviours$/;
 
 export class ProgramHost {
   /** @type {typeof import("../program_tab/tab.js") | null} */ #module = null;
-  /** @type {CreateView | null} of the chosen language */ #createView = null;
-  #language = LANGUAGES[0].id;
+  /** The language whose view is wanted: loading it takes a while. */ #wanted = "";
   /** @type {{ name: string, text: string } | null} opened when the tab is shown */ #kept = null;
 
   /**
@@ -57,6 +88,7 @@ export class ProgramHost {
     /** Whether the tab is shown. */
     this.isOpen = false;
     /** @type {EditorSession | null} */ this.session = null;
+    /** @type {LanguageChoice | null} */ this.choice = null;
     /** @type {ProgramTab | null} stays alive while other tabs are shown */ this.tab = null;
     /** @type {Context | null} */ this.context = null;
   }
@@ -113,11 +145,17 @@ export class ProgramHost {
     (await this.#selected())?.commands.newFile();
   }
 
-  /** Show the open document in another language. @param {string} id */
-  async chooseLanguage(id) {
-    this.#language = id;
-    this.#createView = null;
-    if (await this.#load()) this.#setView();
+  /**
+   * Open a teacher's list of blocks that was dropped while the tab is shown. Returns whether the file was one.
+   *
+   * @param {File} file
+   */
+  async openToolbox(file) {
+    if (!this.isOpen || !/\.json$/i.test(file.name)) return false;
+    const text = await textOf(file);
+    if (text === null || !looksLikeToolbox(text)) return false;
+    await this.tab?.commands.openToolbox(file.name, text);
+    return true;
   }
 
   async #selected() {
@@ -134,37 +172,56 @@ export class ProgramHost {
     return this.tab;
   }
 
-  /** Load the modules; returns whether they are there. */
+  /** Load the tab; returns whether it is there. */
   async #load() {
-    const language = LANGUAGES.find(({ id }) => id === this.#language) ?? LANGUAGES[0];
-    try {
-      const [tab, view] = await Promise.all([import("../program_tab/tab.js"), language.load()]);
-      this.#module ??= tab;
-      this.#createView ??= view.createView;
-    } catch {
-      const { store, text } = /** @type {Context} */ (this.context);
-      store.dispatch({ type: "notice", level: "error", text: text("page")("app.notLoaded"), cause: CONNECTION });
-      return false;
-    }
-    this.session ??= new this.#module.EditorSession(localStore, Date.now);
+    const module = await this.#imported(() => import("../program_tab/tab.js"));
+    if (module === null) return false;
+    this.#module ??= module;
+    this.session ??= new module.EditorSession(localStore, Date.now);
+    this.choice ??= new LanguageChoice({ workspace: this.session.workspace, languages: LANGUAGES });
     return true;
   }
 
+  /**
+   * A module that is loaded now; null if there is no connection.
+   *
+   * @template T
+   * @param {() => Promise<T>} load
+   * @returns {Promise<T | null>}
+   */
+  async #imported(load) {
+    try {
+      return await load();
+    } catch {
+      const { store, text } = /** @type {Context} */ (this.context);
+      store.dispatch({ type: "notice", level: "error", text: text("page")("app.notLoaded"), cause: CONNECTION });
+      return null;
+    }
+  }
+
   #build() {
-    if (this.#module === null || this.session === null || this.context === null) return;
+    if (this.#module === null || this.session === null || this.choice === null || this.context === null) return;
     this.tab?.destroy();
     this.tab = new this.#module.ProgramTab({
       session: this.session,
+      choice: this.choice,
       context: this.context,
       languages: LANGUAGES,
-      choose: (id) => void this.chooseLanguage(id),
+      load: (language) => this.#imported(language.load),
+      show: (id) => void this.#show(id),
     });
     this.slot.append(this.tab.element);
     this.tab.setShown(this.isOpen);
-    this.#setView();
+    void this.#show(this.choice.shown);
   }
 
-  #setView() {
-    if (this.#createView !== null) this.tab?.setView(this.#language, this.#createView);
+  /** Show the document in a language. @param {string} id */
+  async #show(id) {
+    this.#wanted = id;
+    const { tab } = this;
+    const language = LANGUAGES.find((each) => each.id === id);
+    if (language === undefined) return;
+    const module = await this.#imported(language.load);
+    if (module !== null && this.#wanted === id && this.tab === tab) tab?.setView(id, module.createView);
   }
 }

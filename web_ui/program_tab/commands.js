@@ -6,6 +6,7 @@ import { download } from "../editor/download.js";
 import { LARGEST_PROGRAM } from "../input/actions.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
+import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "./toolbox_file.js";
 
 const THYMIO = "thymio-II";
 
@@ -18,17 +19,24 @@ export class ProgramCommands {
    * @param {import("../i18n/index.js").Translate} options.pageText
    * @param {string} options.language
    * @param {import("../editor/editor_session.js").EditorSession} options.session
+   * @param {import("./language_choice.js").LanguageChoice} options.choice
+   * @param {readonly import("../hosts/program_host.js").Language[]} options.languages
+   * @param {(language: import("../hosts/program_host.js").Language) => Promise<import("../hosts/program_host.js").LanguageModule | null>} options.load
    * @param {import("../input/actions.js").Actions} options.actions
    * @param {import("../editor/robot_selection.js").RobotSelection} options.selection
    * @param {() => import("../hosts/program_host.js").ProgramView | null} options.view  of the chosen language
    * @param {(text: string, kind: "good" | "warning" | "error") => void} options.report
    * @param {() => void} options.redraw
    */
-  constructor({ t, pageText, language, session, actions, selection, view, report, redraw }) {
+  constructor(options) {
+    const { t, pageText, language, session, choice, languages, load, actions, selection, view, report, redraw } = options;
     this.t = t;
     this.pageText = pageText;
     this.language = language;
     this.session = session;
+    this.choice = choice;
+    this.languages = languages;
+    this.loadLanguage = load;
     this.workspace = session.workspace;
     this.actions = actions;
     this.runtime = actions.runtime;
@@ -51,10 +59,50 @@ export class ProgramCommands {
     this.view()?.focus();
   }
 
-  /** Begin with an empty page. */
-  empty() {
-    this.workspace.newFile();
+  /**
+   * Begin with a program of a language.
+   *
+   * @param {import("../hosts/program_host.js").Language} language
+   * @param {string} name  of one of its samples
+   */
+  async begin(language, name) {
+    const module = await this.loadLanguage(language);
+    if (module === null) return;
+    const text = module.sampleText(name, this.t);
+    this.choice.forget();
+    if (text === "") this.workspace.newFile();
+    else this.workspace.begin(`${name}.aesl`, text);
     this.back();
+  }
+
+  /** Make the document a text: its picture or blocks leave the file. */
+  async detach() {
+    const language = this.languages.find(({ id }) => id === this.choice.made);
+    const module = language === undefined ? null : await this.loadLanguage(language);
+    if (!module?.withoutPicture) return;
+    this.choice.detach(module.withoutPicture);
+    this.session.onText();
+    this.view()?.focus();
+  }
+
+  /** Limit the blocks by a teacher's file. @param {string} name @param {string} content */
+  async openToolbox(name, content) {
+    const { t } = this;
+    const { toolbox, problem } = readToolbox(content);
+    if (toolbox === null) return this.report(`${name}: ${t(problem.key, problem.values)}`, "error");
+    const known = await Promise.all(this.languages.map((language) => language.toolboxNames?.() ?? []));
+    const unknown = unknownNames(toolbox, known.flat());
+    this.session.setToolbox(toolbox);
+    this.redraw();
+    if (unknown.length > 0) return this.report(t("toolbox.unknown", { found: unknown.join(", ") }), "warning");
+    this.report(t("toolbox.used", { name }), "good");
+  }
+
+  /** Show all blocks again. */
+  showAllBlocks() {
+    this.session.setToolbox(WHOLE);
+    this.redraw();
+    this.report(this.t("toolbox.all"), "good");
   }
 
   /** @param {File} chosen */
@@ -62,11 +110,13 @@ export class ProgramCommands {
     if (chosen.size > LARGEST_PROGRAM) return this.report(this.t("editor.tooLarge", { name: chosen.name }), "error");
     const content = await textOf(chosen);
     if (content === null) return this.report(this.pageText("file.notText", { name: chosen.name }), "error");
+    if (looksLikeToolbox(content)) return this.openToolbox(chosen.name, content);
     this.openText(chosen.name, content);
   }
 
   /** @param {string} name @param {string} content */
   openText(name, content) {
+    this.choice.forget();
     const refusal = this.workspace.open(name, content);
     if (refusal !== null) this.report(this.t("editor.refused", { ...refusal }), "error");
     this.back();
@@ -75,6 +125,7 @@ export class ProgramCommands {
   /** Open one of the last programs. @param {import("../editor/file_store.js").StoredFile} recent */
   openRecent(recent) {
     if (!recent.unsaved) return this.openText(recent.name, recent.text);
+    this.choice.forget();
     this.workspace.restore(recent);
     this.back();
   }

@@ -3,6 +3,7 @@
 import { buttonOf, fileButton, h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { makeSheet } from "../ui/sheet.js";
+import { WHOLE } from "./toolbox_file.js";
 
 /**
  * @param {object} options
@@ -58,12 +59,13 @@ export function fileMenu({ t, session, commands, redraw }) {
     id: "editor-file",
     label: t("file.open"),
     help: t("file.open"),
-    accept: ".aesl,.aseba,.txt",
+    accept: ".aesl,.aseba,.txt,.json",
     open: (file) => void commands.open(file),
     look: "btn",
   });
   buttonOf(open).addEventListener("click", close);
   const load = entry("load", "give", "file.load", "", () => void commands.put());
+  const allBlocks = entry("all-blocks", "blocks", "toolbox.showAll", "", () => commands.showAllBlocks());
   const own = h("div", { class: "program-entries" });
   sheet.append(
     h("label", { class: "field" }, h("span", { class: "small muted" }, t("file.name")), name),
@@ -73,6 +75,7 @@ export function fileMenu({ t, session, commands, redraw }) {
     entry("save", "save", "file.save", "Ctrl+S", () => commands.save()),
     load,
     entry("examples", "list", "file.examples", "", () => commands.newFile()),
+    allBlocks,
     own,
   );
   makeSheet(button, sheet);
@@ -90,6 +93,7 @@ export function fileMenu({ t, session, commands, redraw }) {
       setText(shownName, current.name);
       setAttribute(button, "aria-label", `${t("file")}: ${current.name}`);
       unsaved.hidden = !isUnsaved;
+      allBlocks.hidden = session.toolbox === WHOLE;
       lock(load, reason || (hasMistake ? t("editor.runBlocked") : ""));
       if (name !== document.activeElement && name.value !== current.name) name.value = current.name;
       const names = file.nodes.map((node) => `${node.name} ${node.id}`);

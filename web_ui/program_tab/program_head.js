@@ -44,17 +44,15 @@ export function programHead({ t, languages, choose, commands }) {
     element: h("div", { class: "program-head" }, language, place, h("span", { class: "grow" }), run, stop),
     /** Where the menu of the file is in a narrow tab. */
     place,
-    /** @param {string} id */
-    setLanguage(id) {
-      for (const choice of choices) setAttribute(choice, "aria-pressed", String(choice.dataset.language === id));
-    },
     /**
      * @param {object} facts
      * @param {string} facts.reason       why robots cannot be controlled; empty: they can
      * @param {boolean} facts.hasMistake
      * @param {boolean} facts.isStart     whether no program is shown, but the ways to begin one
+     * @param {string} facts.shown        the language of the view
      */
-    render({ reason, hasMistake, isStart }) {
+    render({ reason, hasMistake, isStart, shown }) {
+      for (const each of choices) setAttribute(each, "aria-pressed", String(!isStart && each.dataset.language === shown));
       lock(run, reason || (isStart ? t("new.title") : hasMistake ? t("editor.runBlocked") : ""));
       lock(stop, reason || (commands.can("stop") ? "" : t("editor.unavailable")));
     },

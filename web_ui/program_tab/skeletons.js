@@ -6,9 +6,9 @@ import FILES from "./skeletons.texts.js";
 export const SKELETONS = /** @type {const} */ (["button", "avoid", "line"]);
 
 /**
- * @param {typeof SKELETONS[number]} name
+ * @param {string} name
  * @param {import("../i18n/index.js").Translate} t
  */
 export function skeletonText(name, t) {
-  return FILES[name].replace(/\{([\w.]+)\}/g, (_all, key) => t(key));
+  return FILES[/** @type {typeof SKELETONS[number]} */ (name)].replace(/\{([\w.]+)\}/g, (_all, key) => t(key));
 }

@@ -1,14 +1,12 @@
-// How to begin a program: a skeleton with comments, an empty page, an example, or one of the last programs.
+// How to begin a program: one of the samples of a language, an example, or one of the last programs.
 
-import { exampleList } from "../examples/index.js";
+import { exampleList, languageOf } from "../examples/index.js";
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
-import { SKELETONS, skeletonText } from "./skeletons.js";
-
-/** @type {Readonly<Record<string, import("../ui/icons.js").IconName>>} */
-const SIGNS = { button: "pad", avoid: "beams", line: "track", empty: "file" };
+import { TEXT } from "./language_choice.js";
 
 /** @typedef {import("../editor/file_store.js").StoredFile} StoredFile */
+/** @typedef {import("../hosts/program_host.js").Language} Language */
 
 /**
  * @param {object} options
@@ -16,25 +14,47 @@ const SIGNS = { button: "pad", avoid: "beams", line: "track", empty: "file" };
  * @param {import("../i18n/index.js").Translate} options.exampleText
  * @param {(kept: StoredFile) => string} options.draftLabel
  * @param {import("./commands.js").ProgramCommands} options.commands
+ * @param {readonly Language[]} options.languages
  */
-export function startPage({ t, exampleText, draftLabel, commands }) {
-  /** @param {string} name @param {() => void} act */
-  const card = (name, act) =>
+export function startPage({ t, exampleText, draftLabel, commands, languages }) {
+  /** @param {Language} language @param {import("../hosts/program_host.js").Sample} sample */
+  const card = (language, { name, key, icon: sign }) =>
     h(
       "li",
       {},
       h(
         "button",
-        { type: "button", class: "program-card", "data-new": name, onclick: act },
-        icon(SIGNS[name]),
-        h("span", {}, h("b", {}, t(`new.${name}`)), " ", h("small", {}, t(`new.${name}.text`))),
+        {
+          type: "button",
+          class: "program-card",
+          "data-new": language.id === TEXT ? name : `${language.id}-${name}`,
+          onclick: () => void commands.begin(language, name),
+        },
+        icon(sign),
+        h("span", {}, h("b", {}, t(`new.${key}`)), " ", h("small", {}, t(`new.${key}.text`))),
       ),
     );
-  const cards = [
-    ...SKELETONS.map((name) => card(name, () => commands.openText(`${name}.aesl`, skeletonText(name, t)))),
-    card("empty", () => commands.empty()),
-  ];
-  const examples = exampleList({ t: exampleText, choose: (name) => void commands.openExample(name) });
+  /** The samples of a language, below its name if there are several languages. @param {Language} language */
+  const sectionOf = (language) => {
+    const title = h("h3", { id: `start-${language.id}` }, icon(language.icon, { small: true }), t(`language.${language.id}`));
+    const words = h("small", { class: "muted" }, t(`language.${language.id}.text`));
+    const cards = h("ul", { class: "program-cards" }, ...language.samples.map((sample) => card(language, sample)));
+    return h(
+      "section",
+      { class: "program-samples", "data-language": language.id, "aria-labelledby": `start-${language.id}` },
+      h("div", { class: "program-samples-head", hidden: languages.length < 2 }, title, words),
+      cards,
+    );
+  };
+  const sections = languages.map(sectionOf);
+  const samples = h("div", { class: "program-languages" }, ...sections);
+  /** @param {string} name  of an example */
+  const signOf = (name) => {
+    const language = languages.find(({ id }) => id === languageOf(name));
+    if (language === undefined || languages.length < 2) return null;
+    return h("span", { class: "program-sign-of" }, icon(language.icon, { small: true }), t(`language.${language.id}`));
+  };
+  const examples = exampleList({ t: exampleText, choose: (name) => void commands.openExample(name), signOf });
   const files = h("ul", { class: "program-files" });
   const recentPart = h(
     "section",
@@ -51,14 +71,14 @@ export function startPage({ t, exampleText, draftLabel, commands }) {
   const back = h(
     "button",
     { type: "button", class: "btn line", "data-new": "back", onclick: () => commands.back() },
-    icon("text", { small: true }),
+    icon("back", { small: true }),
     t("new.back"),
   );
   const element = h(
     "div",
     { class: "program-start", hidden: true },
     h("div", { class: "program-start-head" }, h("h2", {}, t("new.title")), back),
-    h("ul", { class: "program-cards" }, ...cards),
+    samples,
     examplePart,
     recentPart,
   );
@@ -66,6 +86,12 @@ export function startPage({ t, exampleText, draftLabel, commands }) {
   let listed = "";
   return {
     element,
+    /** Show the samples of a language first. @param {string} id */
+    prefer(id) {
+      const first = sections.filter((section) => section.dataset.language === id);
+      samples.replaceChildren(...first, ...sections.filter((section) => !first.includes(section)));
+      element.scrollTop = 0;
+    },
     focus() {
       /** @type {HTMLElement | null} */ (element.querySelector(".program-card"))?.focus();
     },

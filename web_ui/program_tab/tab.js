@@ -14,6 +14,7 @@ import { h, setAttribute } from "../ui/dom.js";
 import { ProgramCommands } from "./commands.js";
 import { draftBar } from "./draft_bar.js";
 import { fileMenu } from "./file_menu.js";
+import { languageBar } from "./language_bar.js";
 import { watchKeys } from "./keys.js";
 import { programBadge } from "./program_badge.js";
 import { programHead } from "./program_head.js";
@@ -32,6 +33,7 @@ const WIDE_PX = 640;
  * @property {import("../i18n/index.js").Translate} t
  * @property {import("../shell/context.js").Context} context
  * @property {import("../editor/editor_session.js").EditorSession} session
+ * @property {import("./language_choice.js").LanguageChoice} choice   whether the text is made from a picture
  * @property {RobotSelection} selection
  * @property {ProgramCommands} commands
  * @property {() => void} redraw
@@ -40,19 +42,25 @@ const WIDE_PX = 640;
 export class ProgramTab {
   #isScheduled = false;
   /** @type {ProgramView | null} */ #view = null;
+  /** The language of the view, or of the one that is being loaded. */ #language = "";
   #isStartShown = false;
+  #wasShown = false;
 
   /**
    * @param {object} options
    * @param {import("../editor/editor_session.js").EditorSession} options.session
    * @param {import("../shell/context.js").Context} options.context
    * @param {readonly import("../hosts/program_host.js").Language[]} options.languages
-   * @param {(id: string) => void} options.choose   shows the program in another language
+   * @param {import("./language_choice.js").LanguageChoice} options.choice
+   * @param {(language: import("../hosts/program_host.js").Language) => Promise<import("../hosts/program_host.js").LanguageModule | null>} options.load
+   * @param {(id: string) => void} options.show   shows the document in a language, by `setView`
    */
-  constructor({ session, context, languages, choose }) {
+  constructor({ session, choice, context, languages, load, show }) {
     const { store, language, actions, announce } = context;
     const t = translator(language, WORDS);
     this.session = session;
+    this.choice = choice;
+    this.show = show;
     this.context = context;
     this.t = t;
     this.pageText = context.text("page");
@@ -65,6 +73,9 @@ export class ProgramTab {
       pageText: this.pageText,
       language,
       session,
+      choice,
+      languages,
+      load,
       actions,
       selection: this.selection,
       view: () => this.#view,
@@ -77,13 +88,19 @@ export class ProgramTab {
     const { commands } = this;
     /** @param {import("../editor/file_store.js").StoredFile} kept */
     const draftLabel = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
-    this.head = programHead({ t, languages, choose, commands });
+    this.head = programHead({ t, languages, choose: (id) => this.#choose(id), commands });
     this.file = fileMenu({ t, session, commands, redraw });
     this.badge = programBadge(context.text("program"));
     this.draft = draftBar({ t, draftLabel, workspace: session.workspace, redraw });
-    this.start = startPage({ t, exampleText: this.exampleText, draftLabel, commands });
+    this.languageBar = languageBar({
+      t,
+      choice,
+      detach: () => void commands.detach(),
+      changed: () => this.#follow(),
+    });
+    this.start = startPage({ t, exampleText: this.exampleText, draftLabel, commands, languages });
     this.bar = h("div", { class: "program-row" }, h("span", { class: "grow" }), this.badge.element);
-    this.place = h("div", { class: "program-view" }, this.bar);
+    this.place = h("div", { class: "program-view" }, this.languageBar.element, this.bar);
     this.element = h(
       "section",
       { class: "program", "aria-label": t("editor") },
@@ -95,10 +112,7 @@ export class ProgramTab {
     this.removeKeys = watchKeys(this.element, commands);
     this.sizes = new ResizeObserver(() => this.#placeFileMenu());
     this.sizes.observe(this.element);
-    session.onText = () => {
-      this.#view?.show();
-      this.redraw();
-    };
+    session.onText = () => this.#follow();
   }
 
   /**
@@ -109,16 +123,40 @@ export class ProgramTab {
    */
   setView(id, createView) {
     this.#view?.destroy();
-    const { t, context, session, selection, commands } = this;
-    const view = createView({ t, context, session, selection, commands, redraw: () => this.redraw() });
+    const { t, context, session, choice, selection, commands } = this;
+    const view = createView({ t, context, session, choice, selection, commands, redraw: () => this.redraw() });
     this.#view = view;
+    this.#language = id;
     if (view.bar !== null) this.bar.prepend(view.bar);
     this.place.append(view.element);
-    this.head.setLanguage(id);
     this.file.setEntries(view.entries);
     view.show();
     this.#render();
-    this.#focus();
+    const { activeElement } = document;
+    const isFree = activeElement === document.body || this.element.contains(activeElement);
+    if (isFree || !this.#wasShown) this.#focus();
+    this.#wasShown = true;
+  }
+
+  /** Another document is shown, or it is in another language now. */
+  #follow() {
+    const { shown } = this.choice;
+    if (shown !== this.#language || this.#view === null) {
+      this.#view?.destroy(); // it must not see a document that it cannot read
+      this.#view = null;
+      this.#language = shown;
+      this.show(shown);
+    } else this.#view?.show();
+    this.redraw();
+  }
+
+  /** Show the document in a language, or begin a program in it. @param {string} id */
+  #choose(id) {
+    const isNew = this.#isStartShown || this.choice.choose(id) === "new";
+    if (!isNew) return this.#follow();
+    this.start.prefer(id);
+    this.commands.newFile();
+    this.start.focus();
   }
 
   /** Call when the tab is opened or left. @param {boolean} isShown */
@@ -189,7 +227,7 @@ export class ProgramTab {
     const { status } = selection;
     this.#showStart(session.isChoosing || this.#isBeginning);
     const hasMistake = this.#view?.hasMistake() ?? false;
-    this.head.render({ reason, hasMistake, isStart: this.#isStartShown });
+    this.head.render({ reason, hasMistake, isStart: this.#isStartShown, shown: this.choice.shown });
     this.file.render({ reason, isUnsaved: isUnsaved(current), hasMistake });
     this.badge.render({
       values: status?.values ?? {},
@@ -199,6 +237,7 @@ export class ProgramTab {
       wasInRobot: current.loaded !== null && current.own,
     });
     this.draft.render();
+    this.languageBar.render();
     if (this.#isStartShown) {
       this.start.render({ state, reason, recent: workspace.fileStore.recent(), canGoBack: !this.#isBeginning });
     } else this.#view?.redraw();

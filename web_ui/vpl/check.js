@@ -1,0 +1,42 @@
+// The checks of a VPL program: the first error, from top to bottom, as VPL reports it.
+
+import { isEmptyRow, sameEvent } from "./program.js";
+
+/** @typedef {import("./program.js").Program} Program */
+/**
+ * An error, or a hint where all rows below are empty: the row is still being built. Neither program can be run.
+ *
+ * @typedef {object} Refusal
+ * @property {string} key
+ * @property {Record<string, number>} values  numbers of rows as pupils count them, from 1
+ * @property {"missing-event" | "missing-action" | "same-event-twice"} kind
+ * @property {boolean} hint
+ * @property {number} row          from 0
+ * @property {"event" | "actions"} slot  where the row lacks a block, or has the wrong one
+ * @property {number | null} other  the other row with the same event
+ */
+
+/**
+ * The first refusal of a program, or null if it can be run.
+ *
+ * @param {Program} program
+ * @returns {Refusal | null}
+ */
+export function check({ rows }) {
+  for (const [index, row] of rows.entries()) {
+    if (isEmptyRow(row)) continue;
+    if (row.event === null || row.actions.length === 0) {
+      const hint = rows.slice(index + 1).every(isEmptyRow);
+      const missing = row.event === null ? "event" : "action";
+      const key = `check.${hint ? "add" : "missing"}.${missing}`;
+      const slot = missing === "event" ? missing : "actions";
+      return { key, values: { row: index + 1 }, kind: `missing-${missing}`, hint, row: index, slot, other: null };
+    }
+    const other = rows.findIndex((each) => sameEvent(each, row));
+    if (other < index) {
+      const values = { row: index + 1, other: other + 1 };
+      return { key: "check.same", values, kind: "same-event-twice", hint: false, row: index, slot: "event", other };
+    }
+  }
+  return null;
+}

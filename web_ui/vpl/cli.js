@@ -1,0 +1,85 @@
+// Command: prints the Aseba text that is generated for the VPL program of a file (docs/vpl.md).
+
+import { readFileSync, realpathSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+
+import { LANGUAGES, translator } from "../i18n/index.js";
+import texts from "../i18n/vpl.texts.js";
+import { compareText } from "./compare.js";
+import { VplError } from "./errors.js";
+import { readVpl } from "./file.js";
+import { generate } from "./generator.js";
+
+/** @typedef {import("./program.js").Finding} Finding */
+/** @typedef {{ output: string, errors: string, exit: 0 | 1 | 2 }} Answer */
+
+const USAGE = `usage: node web_ui/vpl/cli.js [--compare] [--lang CODE] FILE
+
+Print the Aseba text that is generated for the VPL program of an .aesl file; '-' is the standard input.
+
+options:
+  --compare    instead, print where the text of the file comes from, and what changes when it is generated anew
+  --lang CODE  language of messages: ${Object.keys(LANGUAGES).join(", ")}; default: en
+
+exit codes: 0 printed, 1 the program has an error, 2 wrong usage, or a file that cannot be read as VPL
+`;
+
+/**
+ * @param {string[]} command  arguments
+ * @param {(path: string) => string} [read]
+ * @returns {Answer}
+ */
+export function run(command, read = readText) {
+  const options = parseArguments(command);
+  if (options === null) return { output: "", errors: USAGE, exit: 2 };
+  const { path, compare, language } = options;
+  if (path === null) return { output: USAGE, errors: "", exit: 0 };
+  const t = translator(language, texts);
+  /** @param {Finding} finding */
+  const line = ({ key, values }) => `${path}: ${t(key, values)}\n`;
+  try {
+    const file = readVpl(read(path));
+    const warnings = file.warnings.map(line).join("");
+    const { source, refusal } = generate(file.program);
+    if (compare) {
+      const { message, changes } = compareText(file);
+      const about = [message, ...(refusal === null ? [] : [refusal]), ...changes];
+      return { output: about.map(line).join(""), errors: warnings, exit: 0 };
+    }
+    if (source === null) return { output: "", errors: warnings + line(refusal), exit: 1 };
+    return { output: source.text, errors: warnings, exit: 0 };
+  } catch (error) {
+    if (error instanceof VplError) return { output: "", errors: line(error), exit: 2 };
+    if (error instanceof Error && "code" in error)
+      return { output: "", errors: `${path}: ${error.message}\n`, exit: 2 };
+    throw error;
+  }
+}
+
+/** @param {string[]} command  @returns {{ path: string | null, compare: boolean, language: string } | null} */
+function parseArguments(command) {
+  const rest = [...command];
+  const options = { compare: false, language: "en" };
+  /** @type {string[]} */ const paths = [];
+  while (rest.length > 0) {
+    const word = /** @type {string} */ (rest.shift());
+    if (word === "-h" || word === "--help") return { path: null, ...options };
+    if (word === "--compare") options.compare = true;
+    else if (word === "--lang") options.language = rest.shift() ?? "";
+    else if (word.startsWith("-") && word !== "-") return null;
+    else paths.push(word);
+  }
+  return paths.length === 1 && options.language in LANGUAGES ? { path: paths[0], ...options } : null;
+}
+
+/** @param {string} path */
+function readText(path) {
+  return readFileSync(path === "-" ? 0 : path, "utf8");
+}
+
+if (process.argv[1] !== undefined && import.meta.url === pathToFileURL(realpathSync(process.argv[1])).href) {
+  const { output, errors, exit } = run(process.argv.slice(2));
+  process.stdout.write(output);
+  process.stderr.write(errors);
+  process.exitCode = exit;
+}
