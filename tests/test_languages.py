@@ -114,6 +114,7 @@ PARTS = {
 }
 """Folders and modules of the page, and the file of texts that `t` means there; elsewhere it is page.json."""
 OTHER_FILES = {
+    "editorText": "editor",
     "exampleText": "examples",
     "keysText": "keys",
     "pageText": "page",

@@ -241,7 +241,7 @@ async function main() {
     opened.note(file, place);
     if (creator.isOpen && !isProgram(file)) creator.openFile(file, place);
     else if (program.isOpen && isProgram(file)) void program.openFile(file);
-    else void program.openToolbox(file).then((isToolbox) => (isToolbox ? undefined : actions.loadFile(file, refuse)));
+    else void program.openOther(file).then((isOpened) => (isOpened ? undefined : actions.loadFile(file, refuse)));
   });
   window.addEventListener("keydown", ({ key }) => {
     if (key !== "Escape" || isSomethingOpen()) return; // it closes what is open first

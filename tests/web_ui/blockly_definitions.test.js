@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { BLOCKS } from "../../web_ui/blockly/blocks/index.js";
 import { definitions } from "../../web_ui/blockly/definitions.js";
 import { generate } from "../../web_ui/blockly/generator.js";
-import { readLimits } from "../../web_ui/blockly/limits.js";
+import { LOOKS, NAMES, lookOf, offeredLooks } from "../../web_ui/blockly/looks.js";
 import { injectOptions } from "../../web_ui/blockly/options.js";
 import { allBlocks } from "../../web_ui/blockly/state.js";
 import { theme } from "../../web_ui/blockly/themes.js";
@@ -20,11 +20,9 @@ import {
 import texts from "../../web_ui/i18n/blockly.texts.js";
 import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
 import { Blockly } from "./blockly_dom.js";
-import { PROGRAMS, golden, stateOf } from "./blockly_support.js";
+import { PROGRAMS, golden, stateOf, workspace } from "./blockly_support.js";
 
 const t = translator("en", texts);
-const LOOKS = /** @type {const} */ (["blockly", "scratch"]);
-
 const ColorField = class extends Blockly.FieldTextInput {};
 ColorField.fromJson = (/** @type {Record<string, string>} */ options) =>
   Reflect.construct(ColorField, [Object.values(options).find((value) => value.startsWith("#"))]);
@@ -136,9 +134,7 @@ test("the flyout of variables has a getter for each, that of subroutines a call 
 });
 
 test("a teacher's file hides blocks and categories", () => {
-  const file = { format: 1, hide: ["thymio_led", "category:math", "variables_get"] };
-  const { hidden, problems } = readLimits(JSON.stringify(file));
-  assert.deepEqual(problems, []);
+  const hidden = new Set(["thymio_led", "category:math", "variables_get"]);
   const shown = JSON.stringify(toolbox("blockly", t, hidden));
   assert.doesNotMatch(shown, /"thymio_led"|"math"/);
   assert.match(shown, /"thymio_led_rgb"/);
@@ -146,17 +142,24 @@ test("a teacher's file hides blocks and categories", () => {
 });
 
 test("a category without blocks is left out", () => {
-  const hide = ["controls_repeat", "controls_whileUntil", "thymio_for"];
-  const { hidden } = readLimits(JSON.stringify({ format: 1, hide }));
+  const hidden = new Set(["controls_repeat", "controls_whileUntil", "thymio_for"]);
   assert.doesNotMatch(JSON.stringify(toolbox("blockly", t, hidden)), /"loops"/);
 });
 
-test("a wrong teacher's file hides nothing and says why", () => {
-  const keys = (/** @type {string} */ text) => readLimits(text).problems.map(({ key }) => key);
-  assert.deepEqual(keys("{"), ["notJson"]);
-  assert.deepEqual(keys("null"), ["format"]);
-  assert.deepEqual(keys('{"format": 2, "hide": []}'), ["format"]);
-  assert.deepEqual(keys('{"format": 1, "hide": ["nothing"]}'), ["unknown"]);
+test("a teacher's file limits the looks, unless it names none", () => {
+  assert.deepEqual(offeredLooks({ modes: null }), LOOKS);
+  assert.deepEqual(offeredLooks({ modes: ["basic"] }), LOOKS);
+  assert.deepEqual(offeredLooks({ modes: ["scratch"] }), ["scratch"]);
+  for (const name of ["thymio_led", "category:loops", "category:motion", "control_wait", "scratch"]) {
+    assert.ok(NAMES.includes(name), name);
+  }
+});
+
+test("a program has the look to which its blocks belong", () => {
+  assert.equal(lookOf(stateOf(golden("follow_line.xml"))), "blockly");
+  assert.equal(lookOf(stateOf(golden("scratch_square.xml"))), "scratch");
+  assert.equal(lookOf(workspace({ type: "variables_set" })), null);
+  assert.equal(lookOf(workspace()), null);
 });
 
 test("an editor takes nothing from other hosts, and blocks snap to the grid", () => {

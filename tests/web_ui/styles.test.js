@@ -7,6 +7,7 @@ import { test } from "node:test";
 const ROOT = new URL("../../web_ui/", import.meta.url);
 /** Lazily loaded parts: their sheet, and the files and folders that belong to them. */
 const PARTS = [
+  { sheet: "blockly/view/blocks.css", own: ["blockly/view/"] },
   { sheet: "editor/editor.css", own: ["editor/", "hosts/program_host.js"] },
   { sheet: "program_tab/program.css", own: ["program_tab/", "hosts/program_host.js"] },
   { sheet: "class_tab/class_tab.css", own: ["class_tab/", "hosts/class_host.js"] },

@@ -28,6 +28,8 @@ TYPES = {
     ".json": "application/json",
     ".svg": "image/svg+xml",
     ".png": "image/png",
+    ".gif": "image/gif",
+    ".cur": "image/x-icon",
     ".ico": "image/x-icon",
     ".wasm": "application/wasm",
     ".woff2": "font/woff2",

@@ -9,7 +9,7 @@ import { definitions } from "./definitions.js";
 import { injectOptions } from "./options.js";
 import { allBlocks } from "./state.js";
 import { theme } from "./themes.js";
-import { NEW_VARIABLE, subroutineFlyout, subroutineNames, variableFlyout } from "./toolbox.js";
+import { NEW_VARIABLE, subroutineFlyout, subroutineNames, toolbox, variableFlyout } from "./toolbox.js";
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 /** @typedef {import("./toolbox.js").Look} Look */
@@ -45,21 +45,52 @@ export async function defineBlocks(language, t) {
 }
 
 /**
- * Show an editor of blocks in an element. Blocks must be defined.
+ * Show an editor of blocks in an element of the page. Blocks must be defined.
  *
  * @param {HTMLElement} element
  * @param {Look} look
  * @param {import("./options.js").EditorOptions} options
  * @returns {Blockly.WorkspaceSvg}
  */
-export function openWorkspace(element, look, { t, media, hidden = new Set(), readOnly = false }) {
+export function openWorkspace(element, look, options) {
+  const { t, hidden = new Set() } = options;
   const { base, ...colors } = theme(look);
   const parent = base === "zelos" ? Blockly.Themes.Zelos : Blockly.Themes.Classic;
-  const options = injectOptions(look, { t, media, hidden, readOnly });
   const workspace = Blockly.inject(element, {
-    ...options,
-    theme: Blockly.Theme.defineTheme(colors.name, { ...colors, base: parent }),
+    ...injectOptions(look, options),
+    theme: Blockly.Theme.defineTheme(colors.name, {
+      ...colors,
+      base: parent,
+      fontStyle: { family: getComputedStyle(element).fontFamily }, // texts are measured with it
+    }),
   });
+  workspace.registerButtonCallback(NEW_VARIABLE, () => Blockly.Variables.createVariableButtonHandler(workspace));
+  fillCategories(workspace, look, t, hidden);
+  return workspace;
+}
+
+/**
+ * Offer other blocks than before.
+ *
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Look} look
+ * @param {Translate} t
+ * @param {ReadonlySet<string>} hidden
+ */
+export function offerBlocks(workspace, look, t, hidden) {
+  fillCategories(workspace, look, t, hidden);
+  workspace.updateToolbox(toolbox(look, t, hidden));
+}
+
+/**
+ * The categories whose content depends on the program.
+ *
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Look} look
+ * @param {Translate} t
+ * @param {ReadonlySet<string>} hidden
+ */
+function fillCategories(workspace, look, t, hidden) {
   workspace.registerToolboxCategoryCallback("variables", () => {
     const variables = workspace.getVariableMap().getAllVariables();
     return variableFlyout(
@@ -72,8 +103,6 @@ export function openWorkspace(element, look, { t, media, hidden = new Set(), rea
   workspace.registerToolboxCategoryCallback("subroutines", () =>
     subroutineFlyout(subroutineNames(allBlocks(saveState(workspace))), hidden),
   );
-  workspace.registerButtonCallback(NEW_VARIABLE, () => Blockly.Variables.createVariableButtonHandler(workspace));
-  return workspace;
 }
 
 /** Replace what is in a workspace. @param {Blockly.WorkspaceSvg} workspace @param {WorkspaceState} state */

@@ -16,6 +16,3 @@ export const fileProblemText = ({ key, values }, t) => t(`file.${key}`, values);
  * @param {Translate} t
  */
 export const scratchText = ({ key, values }, t) => t(`scratch.${key}`, values);
-
-/** A problem of a teacher's file. @param {Message} problem @param {Translate} t */
-export const limitText = ({ key, values }, t) => t(`limits.${key}`, values);

@@ -40,6 +40,21 @@ const AS_SCRATCH = {
 /** Blocks without anything above them, whose upper edge is rounded in the Scratch look. */
 const HATS = ["event", "scratch_event", "procedure"];
 
+/** Everything but blocks has the colors of the page, which follow its theme by themselves. */
+const COMPONENTS = {
+  workspaceBackgroundColour: "var(--card)",
+  toolboxBackgroundColour: "var(--sunk)",
+  toolboxForegroundColour: "var(--ink)",
+  flyoutBackgroundColour: "var(--sunk)",
+  flyoutForegroundColour: "var(--ink)",
+  flyoutOpacity: 1,
+  scrollbarColour: "var(--edge)",
+  insertionMarkerColour: "var(--you)",
+  insertionMarkerOpacity: 0.4,
+  cursorColour: "var(--you)",
+  selectedGlowColour: "var(--you)",
+};
+
 /**
  * What `Blockly.Theme.defineTheme` gets.
  *
@@ -65,6 +80,7 @@ export function theme(look) {
     categoryStyles: Object.fromEntries(
       colors.map(([name, color]) => [`${name}_category`, { colour: color }]), // codespell:ignore colour
     ),
+    componentStyles: COMPONENTS,
     startHats: false,
   };
 }

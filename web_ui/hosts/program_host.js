@@ -6,9 +6,10 @@
 // stop, files, badge, new programs. A language is a view of the open document, in a module of its own. The file decides
 // which one: a picture or blocks in it belong to their language, every other file is text.
 
+import { BLOCKS, looksLikeBlocks } from "../blockly/language.js";
 import { textOf } from "../browser/text_file.js";
 import { localStore } from "../browser/local_storage.js";
-import { LanguageChoice, TEXT } from "../program_tab/language_choice.js";
+import { importerOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
 import { looksLikeToolbox } from "../program_tab/toolbox_file.js";
 import { CONNECTION } from "../state/index.js";
 
@@ -41,7 +42,9 @@ import { CONNECTION } from "../state/index.js";
  * @property {CreateView} createView
  * @property {(name: string, t: import("../i18n/index.js").Translate) => string} sampleText   of one of its samples
  * @property {(text: string) => string} [withoutPicture]   the file as text: without the picture or the blocks
+ * @property {(bytes: Uint8Array, language: string) => Promise<Imported>} [importFile]   a file of another program
  */
+/** @typedef {import("../blockly/import.js").Imported} Imported */
 /** @typedef {{ name: string, key: string, icon: IconName }} Sample   texts: `new.<key>` and `new.<key>.text` */
 /**
  * @typedef {object} Language   its name is the text `language.<id>`, `language.<id>.text` says what it is
@@ -50,12 +53,15 @@ import { CONNECTION } from "../state/index.js";
  * @property {(text: string) => boolean} holds    whether a file is a program of this language, cheaply; the first one
  *   that does counts
  * @property {readonly Sample[]} samples          programs to begin with
+ * @property {readonly { name: string, key: string }[]} [more]   further samples, which have a title only
+ * @property {readonly string[]} [imports]        endings of files of other programs, such as ".sb3"
  * @property {() => Promise<LanguageModule>} load
  * @property {() => Promise<readonly string[]>} [toolboxNames]   what a teacher's file can hide, and modes
  */
 
 /** The languages of programs, in display order. To add one: a line here. @type {readonly Language[]} */
 export const LANGUAGES = [
+  BLOCKS,
   {
     id: TEXT,
     icon: "text",
@@ -146,12 +152,19 @@ export class ProgramHost {
   }
 
   /**
-   * Open a teacher's list of blocks that was dropped while the tab is shown. Returns whether the file was one.
+   * Open a file that was dropped while the tab is shown and that may belong to another part of the page: a teacher's
+   * list of blocks, or a program of another program. Returns whether it was one.
    *
    * @param {File} file
    */
-  async openToolbox(file) {
-    if (!this.isOpen || !/\.json$/i.test(file.name)) return false;
+  async openOther(file) {
+    if (!this.isOpen) return false;
+    if (importerOf(file, LANGUAGES) !== null) {
+      if (/\.xml$/i.test(file.name) && !looksLikeBlocks(new Uint8Array(await file.arrayBuffer()))) return false;
+      await this.openFile(file);
+      return true;
+    }
+    if (!/\.json$/i.test(file.name)) return false;
     const text = await textOf(file);
     if (text === null || !looksLikeToolbox(text)) return false;
     await this.tab?.commands.openToolbox(file.name, text);

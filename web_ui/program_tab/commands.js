@@ -6,9 +6,12 @@ import { download } from "../editor/download.js";
 import { LARGEST_PROGRAM } from "../input/actions.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
+import { importerOf } from "./language_choice.js";
 import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "./toolbox_file.js";
 
 const THYMIO = "thymio-II";
+/** Projects of other programs hold pictures and sounds, too. */
+const LARGEST_IMPORT = 20_000_000;
 
 /** @typedef {import("../input/runtime_client.js").Verb} Verb */
 
@@ -105,13 +108,36 @@ export class ProgramCommands {
     this.report(this.t("toolbox.all"), "good");
   }
 
+  /** Endings of files of other programs. */
+  get imports() {
+    return this.languages.flatMap(({ imports = [] }) => imports);
+  }
+
   /** @param {File} chosen */
   async open(chosen) {
+    const importer = importerOf(chosen, this.languages);
+    if (importer !== null) return this.#import(chosen, importer);
     if (chosen.size > LARGEST_PROGRAM) return this.report(this.t("editor.tooLarge", { name: chosen.name }), "error");
     const content = await textOf(chosen);
     if (content === null) return this.report(this.pageText("file.notText", { name: chosen.name }), "error");
     if (looksLikeToolbox(content)) return this.openToolbox(chosen.name, content);
     this.openText(chosen.name, content);
+  }
+
+  /** Open a file of another program. @param {File} chosen @param {import("../hosts/program_host.js").Language} language */
+  async #import(chosen, language) {
+    const { name } = chosen;
+    if (chosen.size > LARGEST_IMPORT) return this.report(this.t("editor.tooLarge", { name }), "error");
+    const module = await this.loadLanguage(language);
+    if (!module?.importFile) return;
+    const { text, problem, leftOut } = await module.importFile(new Uint8Array(await chosen.arrayBuffer()), this.language);
+    if (problem !== "") {
+      this.report(`${name}: ${problem}`, "error");
+      return this.back();
+    }
+    this.session.imported = { text, leftOut };
+    this.openText(name.replace(/\.\w+$/, ""), text);
+    if (leftOut.length > 0) this.report(this.t("import.leftOut", { name, count: leftOut.length }), "warning");
   }
 
   /** @param {string} name @param {string} content */

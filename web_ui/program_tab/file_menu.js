@@ -59,7 +59,7 @@ export function fileMenu({ t, session, commands, redraw }) {
     id: "editor-file",
     label: t("file.open"),
     help: t("file.open"),
-    accept: ".aesl,.aseba,.txt,.json",
+    accept: [".aesl", ".aseba", ".txt", ".json", ...commands.imports].join(),
     open: (file) => void commands.open(file),
     look: "btn",
   });

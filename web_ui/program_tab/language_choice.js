@@ -36,6 +36,17 @@ export function languageOf(text, languages) {
   return languages.find(({ holds }) => holds(text))?.id ?? TEXT;
 }
 
+/**
+ * The language that opens files of another program with this ending; null: none does.
+ *
+ * @template {Pick<Language, "imports">} L
+ * @param {{ name: string }} file
+ * @param {readonly L[]} languages
+ */
+export function importerOf({ name }, languages) {
+  return languages.find(({ imports = [] }) => imports.some((ending) => name.toLowerCase().endsWith(ending))) ?? null;
+}
+
 export class LanguageChoice {
   /** The document whose generated text is shown. */
   #asText = "";

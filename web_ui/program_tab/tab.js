@@ -80,7 +80,9 @@ export class ProgramTab {
       selection: this.selection,
       view: () => this.#view,
       report: (text, kind) => {
-        this.#view?.report(text, kind);
+        const level = kind === "error" ? "error" : "info";
+        if (this.#isStartShown && kind !== "good") store.dispatch({ type: "notice", level, text, cause: "program" });
+        else this.#view?.report(text, kind);
         announce(text);
       },
       redraw,

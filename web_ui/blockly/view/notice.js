@@ -1,0 +1,56 @@
+// What the user should know about the open file, above the blocks: its text is another one, it cannot be shown, or parts
+// of it were left out.
+
+import { h } from "../../ui/dom.js";
+import { icon } from "../../ui/icons.js";
+import { fileProblemText } from "../messages.js";
+
+/** @typedef {import("../../i18n/index.js").Translate} Translate */
+/** @typedef {import("./document.js").BlocksDocument} BlocksDocument */
+
+/**
+ * @param {object} options
+ * @param {Translate} options.t      of blockly.json
+ * @param {() => void} options.adopt   makes the text from the blocks
+ */
+export function fileNotice({ t, adopt }) {
+  const element = h("div", { class: "blocks-notice", role: "status", hidden: true });
+
+  /** @param {string} text @param {readonly Node[]} more @param {readonly string[]} details */
+  const show = (text, more, details) => {
+    const list = h("ul", {}, ...details.map((each) => h("li", {}, each)));
+    const unfolded = h("details", { class: "blocks-more" }, h("summary", {}, t("view.more", { count: details.length })), list);
+    element.replaceChildren(
+      icon("warning", { small: true }),
+      h("div", { class: "grow" }, h("p", {}, text), ...(details.length === 0 ? [] : [unfolded])),
+      ...more,
+    );
+    element.hidden = false;
+  };
+  /** @param {string} name @param {string} text @param {string} look @param {() => void} act */
+  const button = (name, text, look, act) =>
+    h("button", { type: "button", class: `btn note ${look}`, "data-notice": name, onclick: act }, text);
+
+  return {
+    element,
+    /**
+     * @param {BlocksDocument} document
+     * @param {readonly string[]} leftOut   what an import left out
+     */
+    render(document, leftOut) {
+      const { file, difference } = document;
+      const [problem] = file.problems;
+      element.hidden = true;
+      if (problem !== undefined) {
+        const { line, column } = problem;
+        const details = file.problems.map((each) => t("view.at", { line: each.line, column: each.column, text: fileProblemText(each, t) }));
+        const text = t("view.at", { line, column, text: fileProblemText(problem, t) });
+        show(`${t("view.unknown")} ${text}`, [], details.slice(1));
+      } else if (difference !== null) {
+        show(t("view.other"), [button("adopt", t("view.adopt"), "line", adopt)], [t("view.difference", difference)]);
+      } else if (leftOut.length > 0) {
+        show(t("view.leftOut"), [button("close", t("view.ok"), "", () => (element.hidden = true))], leftOut);
+      }
+    },
+  };
+}
