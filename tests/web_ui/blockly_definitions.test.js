@@ -18,8 +18,9 @@ import {
   variableFlyout,
 } from "../../web_ui/blockly/toolbox.js";
 import texts from "../../web_ui/i18n/blockly.texts.js";
+import coreTexts from "../../web_ui/i18n/blockly_core.texts.js";
 import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
-import { Blockly } from "./blockly_dom.js";
+import { Blockly, ENGLISH } from "./blockly_dom.js";
 import { PROGRAMS, golden, stateOf, workspace } from "./blockly_support.js";
 
 const t = translator("en", texts);
@@ -56,6 +57,15 @@ for (const language of Object.keys(LANGUAGES)) {
     }
   });
 }
+
+test("texts that Blockly lacks in a language are those of its English ones", () => {
+  for (const [key, text] of Object.entries(coreTexts.en)) assert.equal(ENGLISH[key], text, key);
+  for (const [language, table] of Object.entries(coreTexts)) {
+    for (const [key, text] of Object.entries(table)) {
+      assert.deepEqual(text.match(/%\d/g)?.sort(), ENGLISH[key].match(/%\d/g)?.sort(), `${language} ${key}`);
+    }
+  }
+});
 
 test("blocks have the fields and inputs of their descriptions", () => {
   define("en");

@@ -87,6 +87,8 @@ const folder = new URL("../../web_ui/node_modules/", import.meta.url).pathname;
 /** Blockly with its own blocks. @type {any} */
 export const Blockly = require(`${folder}blockly/blockly_compressed.js`);
 require(`${folder}blockly/blocks_compressed.js`);
+/** Its English texts. @type {Record<string, string>} */
+export const ENGLISH = require(`${folder}blockly/msg/en.js`);
 Blockly.utils.xml.injectDependencies({ document, DOMParser: class {}, XMLSerializer: class {} });
 Blockly.setLocale(require(`${folder}blockly/msg/en.js`));
 Blockly.Events.disable(); // they are sent later, on a timer

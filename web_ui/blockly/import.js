@@ -26,7 +26,9 @@ const ZIP = "PK";
 export async function importFile(bytes, t) {
   if (new TextDecoder("latin1").decode(bytes.subarray(0, ZIP.length)) === ZIP) {
     const { state, error, leftOut } = await importSb3(bytes);
-    return error === null ? imported(state, leftOut.map((each) => scratchText(each, t))) : refused(scratchText(error, t));
+    if (error !== null) return refused(scratchText(error, t));
+    const texts = leftOut.map((each) => scratchText(each, t));
+    return imported(state, texts);
   }
   const file = readFile(textOf(bytes));
   const [problem] = file.problems;

@@ -5,6 +5,7 @@ import * as Blockly from "blockly/core";
 import "blockly/blocks";
 import { registerFieldColour } from "@blockly/field-colour";
 
+import OWN_MESSAGES from "../i18n/blockly_core.texts.js";
 import { definitions } from "./definitions.js";
 import { injectOptions } from "./options.js";
 import { allBlocks } from "./state.js";
@@ -28,16 +29,21 @@ const MESSAGES = {
 };
 
 /**
- * Define all blocks in a language. Workspaces that exist keep the texts they have, so they are created again afterward.
+ * Define all blocks in a language. Blockly's own texts are completed: some of them are not translated yet. Workspaces that exist keep the texts they have, so they are created again afterward.
  *
  * @param {string} language
  * @param {Translate} t  of blockly.json
  */
 export async function defineBlocks(language, t) {
   const { default: nested, ...messages } = await (MESSAGES[language] ?? MESSAGES.en)();
-  Blockly.setLocale(/** @type {Record<string, string>} */ (nested ?? messages));
-  // Blockly would give each definition that has no comment this one, and so change a file that is opened.
-  Blockly.setLocale({ PROCEDURES_DEFNORETURN_COMMENT: "" });
+  const own = /** @type {Record<string, string>} */ (nested ?? messages);
+  const addresses = Object.keys(own).filter((key) => key.endsWith("_HELPURL"));
+  Blockly.setLocale(own);
+  Blockly.setLocale({
+    ...OWN_MESSAGES[language],
+    ...Object.fromEntries(addresses.map((key) => [key, ""])), // nothing opens a page of another host
+    PROCEDURES_DEFNORETURN_COMMENT: "", // each definition without a comment would get this one: a file would change
+  });
   if (!Blockly.registry.hasItem(Blockly.registry.Type.FIELD, "field_colour")) registerFieldColour();
   const all = definitions(t);
   for (const { type } of all) delete Blockly.Blocks[type];

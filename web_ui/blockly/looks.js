@@ -1,5 +1,5 @@
-// The two looks of blocks: those of Blockly, and those of Scratch with the blocks of its Thymio extension. A program has
-// no look of its own: what it is made of decides, and the user can choose the other one.
+// The two looks of blocks: that of Blockly, and that of Scratch with the blocks of its Thymio extension. A program has no
+// look of its own: what it is made of decides, and the user can choose the other one.
 
 import { allBlocks } from "./state.js";
 import { CATEGORIES, offered } from "./toolbox.js";
@@ -12,7 +12,10 @@ export const LOOKS = /** @type {readonly Look[]} */ (Object.keys(CATEGORIES));
 export const NAMES = [...new Set([...LOOKS.flatMap(offered), ...LOOKS])];
 
 /** Blocks that only one look offers. @type {(look: Look) => readonly string[]} */
-const ownOf = (look) => offered(look).filter((type) => LOOKS.every((each) => each === look || !offered(each).includes(type)));
+const ownOf = (look) => {
+  const others = LOOKS.filter((each) => each !== look).flatMap(offered);
+  return offered(look).filter((type) => !others.includes(type));
+};
 
 /**
  * The look to which most blocks of a program belong; null if they are in both, or if there are none.

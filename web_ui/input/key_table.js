@@ -68,6 +68,23 @@ export const KEY_TABLE = [
     ],
   },
   {
+    name: "blocks",
+    note: "blocks.note",
+    rows: [
+      { keys: ["t"], text: "blocks.toolbox" },
+      { keys: ["w"], text: "blocks.workspace" },
+      { keys: ARROWS, text: "blocks.go" },
+      { keys: ["Enter"], text: "blocks.change" },
+      { keys: ["m"], text: "blocks.move" },
+      { keys: ["x"], text: "blocks.detach" },
+      { keys: ["d"], text: "blocks.copy" },
+      { keys: ["n", "b"], text: "blocks.stack" },
+      { keys: ["Delete"], text: "blocks.remove" },
+      { held: CONTROL, keys: ["z"], text: "blocks.undo" },
+      { held: [...CONTROL, ...SHIFT], keys: ["z"], text: "blocks.redo" },
+    ],
+  },
+  {
     name: "build",
     rows: [
       { keys: ["Enter"], text: "build.place" },

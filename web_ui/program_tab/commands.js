@@ -124,13 +124,19 @@ export class ProgramCommands {
     this.openText(chosen.name, content);
   }
 
-  /** Open a file of another program. @param {File} chosen @param {import("../hosts/program_host.js").Language} language */
+  /**
+   * Open a file of another program.
+   *
+   * @param {File} chosen
+   * @param {import("../hosts/program_host.js").Language} language
+   */
   async #import(chosen, language) {
     const { name } = chosen;
     if (chosen.size > LARGEST_IMPORT) return this.report(this.t("editor.tooLarge", { name }), "error");
     const module = await this.loadLanguage(language);
     if (!module?.importFile) return;
-    const { text, problem, leftOut } = await module.importFile(new Uint8Array(await chosen.arrayBuffer()), this.language);
+    const bytes = new Uint8Array(await chosen.arrayBuffer());
+    const { text, problem, leftOut } = await module.importFile(bytes, this.language);
     if (problem !== "") {
       this.report(`${name}: ${problem}`, "error");
       return this.back();

@@ -38,20 +38,23 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
   const row = (language, name, key) => {
     const attributes = { type: "button", class: "btn", "data-new": `${language.id}-${name}` };
     const act = () => void commands.begin(language, name);
-    return h("li", {}, h("button", { ...attributes, onclick: act }, icon(language.icon, { small: true }), t(`new.${key}`)));
+    const sign = icon(language.icon, { small: true });
+    return h("li", {}, h("button", { ...attributes, onclick: act }, sign, t(`new.${key}`)));
   };
   /** The samples of a language, below its name if there are several languages. @param {Language} language */
   const sectionOf = (language) => {
     const title = h("h3", { id: `start-${language.id}` }, icon(language.icon, { small: true }), t(`language.${language.id}`));
     const words = h("small", { class: "muted" }, t(`language.${language.id}.text`));
     const cards = h("ul", { class: "program-cards" }, ...language.samples.map((sample) => card(language, sample)));
-    const more = (language.more ?? []).map(({ name, key }) => row(language, name, key));
+    const rows = (language.more ?? []).map(({ name, key }) => row(language, name, key));
+    const summary = h("summary", {}, t("new.more"), icon("caretDown", { small: true }));
+    const more = h("details", { class: "disc program-more" }, summary, h("ul", { class: "program-files" }, ...rows));
     return h(
       "section",
       { class: "program-samples", "data-language": language.id, "aria-labelledby": `start-${language.id}` },
       h("div", { class: "program-samples-head", hidden: languages.length < 2 }, title, words),
       cards,
-      ...(more.length === 0 ? [] : [h("details", { class: "disc program-more" }, h("summary", {}, t("new.more"), icon("caretDown", { small: true })), h("ul", { class: "program-files" }, ...more))]),
+      ...(rows.length === 0 ? [] : [more]),
     );
   };
   const sections = languages.map(sectionOf);

@@ -15,32 +15,33 @@ import { icon } from "../../ui/icons.js";
  * @param {() => void} options.toggleText
  */
 export function blocksBar({ t, editorText, commands, undo, toggleText }) {
-  /** @param {string} verb @param {IconName} sign @param {string} name @param {string} key @param {() => void} act */
-  const button = (verb, sign, name, key, act) =>
-    h(
-      "button",
-      { type: "button", class: "btn line slim note", "data-verb": verb, title: `${name} (${key})`, "aria-label": name, onclick: act },
-      icon(sign, { small: true }),
-      h("span", { class: "blocks-name" }, name),
-    );
-  /** @param {string} verb @param {IconName} sign @param {string} name @param {string} key @param {() => void} act */
-  const sign = (verb, sign, name, key, act) => {
-    const attributes = { type: "button", class: "btn icon", "data-verb": verb, title: `${name} (${key})`, "aria-label": name };
-    return h("button", { ...attributes, onclick: act }, icon(sign, { small: true }));
+  /**
+   * @param {string} verb @param {IconName} sign @param {string} name @param {string} key  "": none
+   * @param {string} look @param {() => void} act @param {readonly HTMLElement[]} words
+   */
+  const button = (verb, sign, name, key, look, act, words) => {
+    const title = key === "" ? name : `${name} (${key})`;
+    const attributes = { type: "button", class: `btn ${look}`, "data-verb": verb, title, "aria-label": name };
+    return h("button", { ...attributes, onclick: act }, icon(sign, { small: true }), ...words);
   };
-  const back = sign("undo", "undo", t("view.undo"), "Ctrl+Z", () => undo(false));
-  const again = sign("redo", "redo", t("view.redo"), "Ctrl+Y", () => undo(true));
-  const halt = button("pause", "halt", editorText("debug.halt"), "F10", () => void commands.control("pause"));
-  const next = button("step_line", "nextLine", t("view.next"), "F7", () => void commands.control("step_line"));
-  const goOn = button("run-on", "goOn", editorText("debug.go"), "F9", () => void commands.control("run"));
-  const text = h(
-    "button",
-    { type: "button", class: "btn soft slim note", "data-verb": "text", "aria-pressed": "false", "aria-label": t("view.text"), onclick: toggleText },
-    icon("text", { small: true }),
-    h("span", { class: "blocks-name" }, t("view.text")),
-  );
+  /** @param {string} name */
+  const shown = (name) => [h("span", { class: "blocks-name" }, name)];
+  const [haltName, nextName, goName, textName] = [
+    editorText("debug.halt"),
+    t("view.next"),
+    editorText("debug.go"),
+    t("view.text"),
+  ];
+  const slim = "line slim note";
+  const back = button("undo", "undo", t("view.undo"), "Ctrl+Z", "icon", () => undo(false), []);
+  const again = button("redo", "redo", t("view.redo"), "Ctrl+Shift+Z", "icon", () => undo(true), []);
+  const halt = button("pause", "halt", haltName, "F10", slim, () => void commands.control("pause"), shown(haltName));
+  const next = button("step_line", "nextLine", nextName, "F7", slim, () => void commands.control("step_line"), shown(nextName));
+  const goOn = button("run-on", "goOn", goName, "F9", slim, () => void commands.control("run"), shown(goName));
+  const text = button("text", "text", textName, "", "line slim note", toggleText, shown(textName));
+  const tools = [back, again, halt, next, goOn, text];
   return {
-    element: h("div", { class: "blocks-bar", role: "toolbar", "aria-label": t("view.tools") }, back, again, halt, next, goOn, text),
+    element: h("div", { class: "blocks-bar", role: "toolbar", "aria-label": t("view.tools") }, ...tools),
     /**
      * @param {object} facts
      * @param {string} facts.reason      why robots cannot be controlled; empty: they can

@@ -1,4 +1,4 @@
-// Blockly in the page: one workspace, its program as plain data, marks at blocks. Everything asks it through this class.
+// Blockly in the page: one workspace, its program as plain data, and marks at blocks.
 
 import { Blockly, defineBlocks, loadState, offerBlocks, openWorkspace, saveState } from "../library.js";
 import { useDialogs } from "./dialogs.js";

@@ -3,9 +3,9 @@
 /** @typedef {"key" | "number" | "comment" | "event" | "call" | ""} WordKind */
 /** @typedef {{ kind: WordKind, text: string }} Word */
 
-const KEYWORDS = new Set(
-  "var const onevent sub if then elseif else end when do for in step while emit call callsub return and or not abs".split(" "),
-);
+const BRANCHES = "if then elseif else end when do for in step while";
+const OTHERS = "var const onevent sub emit call callsub return and or not abs";
+const KEYWORDS = new Set(`${BRANCHES} ${OTHERS}`.split(" "));
 const WORDS = /(#.*$)|([A-Za-z_À-ÿ][\w.À-ÿ]*)|(\b\d+\b)|([^#A-Za-z_À-ÿ\d]+)/gm;
 
 /** @param {string} line @returns {Word[]} */

@@ -63,7 +63,11 @@ export class BlocksDocument {
     return sameWorkspace(this.state, state);
   }
 
-  /** The workspace as Blockly has it after loading, with ids and fields that the file lacks. @param {WorkspaceState} state */
+  /**
+   * The workspace as Blockly has it after loading, with ids and fields that the file lacks.
+   *
+   * @param {WorkspaceState} state
+   */
   loaded(state) {
     this.file = { ...this.file, state };
     this.#setState(state);

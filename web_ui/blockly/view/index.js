@@ -1,16 +1,15 @@
-// Programs of blocks: a view of the open document (hosts/program_host.js).
+// Programs of blocks: creates the objects of one view (hosts/program_host.js) and draws them.
 //
 //   BlocksDocument   the file as blocks and text
 //   BlocksField      Blockly
 //   ProgramChecker   the compiler's verdict on the text
-//   blocksBar, fileNotice, textPanel, blocksFoot   what is around the blocks
+//   blocksBar, lookChoice, fileNotice, textPanel, blocksFoot   what is around the blocks
 
 import { localStore, trySetItem } from "../../browser/local_storage.js";
 import { ProgramChecker } from "../../editor/program_checker.js";
 import WORDS from "../../i18n/blockly.texts.js";
 import { translator } from "../../i18n/index.js";
 import { disabledReason } from "../../state/disabled_reason.js";
-import { faultMessage, lineOf } from "../../state/program_status.js";
 import { h, setAttribute } from "../../ui/dom.js";
 import { withoutBlocks } from "../file.js";
 import { importFile as importBlocks } from "../import.js";
@@ -24,6 +23,7 @@ import { blocksFoot } from "./foot.js";
 import { lookChoice } from "./look_choice.js";
 import { blockMistakes, summary } from "./mistakes.js";
 import { fileNotice } from "./notice.js";
+import { NOWHERE, runPlace } from "./run_place.js";
 import { textPanel } from "./text_panel.js";
 
 import "./blocks.css";
@@ -34,6 +34,7 @@ export { withoutBlocks as withoutPicture };
 /** @typedef {import("../../program_tab/tab.js").Parts} Parts */
 /** @typedef {import("../../hosts/program_host.js").ProgramView} ProgramView */
 /** @typedef {import("../toolbox.js").Look} Look */
+/** @typedef {import("../state.js").WorkspaceState} WorkspaceState */
 
 const LOOK_KEY = "program.look";
 const TEXT_KEY = "program.blocksText";
@@ -41,15 +42,14 @@ const TEXT_KEY = "program.blocksText";
 /** @implements {ProgramView} */
 class BlocksView {
   /** @type {BlocksDocument} */ #document;
-  /** The look of blocks that the user has chosen for the open document. @type {Look | null} */ #chosen = null;
-  /** @type {import("../../program_tab/toolbox_file.js").Toolbox | null} */ #toolbox = null;
+  /** The look that the user has chosen for the open document. @type {Look | null} */ #chosen = null;
+  /** @type {import("../../program_tab/toolbox_file.js").Toolbox} what Blockly offers */ #toolbox;
   /** @type {import("./mistakes.js").BlockMistake[]} */ #mistakes = [];
-  /** @type {string | null} the selected block */ #selected = null;
-  /** What the running program failed with. */ #fault = "";
-  /** The block in which it failed. @type {string | null} */ #faulty = null;
-  /** Whether the compiler has seen the program. */ #isChecked = false;
+  /** The selected block. @type {string | null} */ #selected = null;
+  #place = NOWHERE;
   #isTextShown = localStore.getItem(TEXT_KEY) === "true";
   /** Whether Blockly shows the document. */ #isLoaded = false;
+  /** Whether the compiler has seen the program. */ #isChecked = false;
   #isAsking = false;
   #isDestroyed = false;
 
@@ -61,10 +61,11 @@ class BlocksView {
     this.parts = parts;
     this.t = t;
     this.#document = new BlocksDocument(session.workspace.current.text);
-    this.place = h("div", { class: "blocks-place" });
+    this.#toolbox = session.toolbox;
+    this.area = h("div", { class: "blocks-place" });
     this.hint = h("p", { class: "blocks-hint", hidden: true }, t("view.empty"));
     this.field = new BlocksField({
-      place: this.place,
+      place: this.area,
       t,
       language,
       changed: () => this.#changed(),
@@ -83,51 +84,45 @@ class BlocksView {
         redraw();
       },
     });
-    this.notice = fileNotice({ t, adopt: () => this.#adopt() });
-    this.panel = textPanel({
-      t,
-      turnText: editorText("detach.turn"),
-      turn: () => void commands.detach(),
-      choose: (line) => {
-        const id = this.#document.blocks[line];
-        if (id) this.field.select(id);
-      },
-    });
-    this.foot = blocksFoot(() => this.showMistake());
-    const bar = blocksBar({
+    this.controls = blocksBar({
       t,
       editorText,
       commands,
       undo: (again) => this.field.undo(again),
-      toggleText: () => {
-        this.#isTextShown = !this.#isTextShown;
-        trySetItem(localStore, TEXT_KEY, String(this.#isTextShown));
-        redraw();
-      },
+      toggleText: () => this.#toggleText(),
     });
-    context.theme.subscribe(redraw);
-    this.controls = bar;
-    this.bar = bar.element;
+    this.notice = fileNotice({ t, adopt: () => this.#write(() => this.#document.adopt()) });
+    this.panel = textPanel({
+      t,
+      turnText: editorText("detach.turn"),
+      turn: () => void commands.detach(),
+      choose: (line) => this.field.select(this.#document.blocks[line] ?? ""),
+    });
+    this.foot = blocksFoot(() => this.showMistake());
     this.looks = lookChoice({ t, choose: (look) => this.#chooseLook(look) });
+    this.bar = this.controls.element;
     this.entries = [this.looks.element];
+    const frame = h("div", { class: "blocks-frame" }, this.area, this.hint);
     this.element = h(
       "div",
       { class: "blocks" },
       this.notice.element,
-      h("div", { class: "blocks-body" }, h("div", { class: "blocks-frame" }, this.place, this.hint), this.panel.element),
+      h("div", { class: "blocks-body" }, frame, this.panel.element),
       this.foot.element,
     );
+    context.theme.subscribe(redraw);
   }
 
   show() {
-    const { current } = this.parts.session.workspace;
-    if (this.#isLoaded && current.text === this.#document.text) return;
-    this.#document = new BlocksDocument(current.text);
-    const { node } = this.#document.file;
+    const { workspace } = this.parts.session;
+    const { text, node } = workspace.current;
+    if (this.#isLoaded && text === this.#document.text) return;
+    this.#document = new BlocksDocument(text);
     this.#chosen = null;
     this.#selected = null;
     this.#isLoaded = false;
-    if (this.#document.canEdit && node !== current.node) return this.parts.session.workspace.chooseNode(node); // shows
+    const { file } = this.#document;
+    if (file.hasWorkspace && file.node !== node) return workspace.chooseNode(file.node); // and this is called again
     this.checker.restart();
     void this.#fill();
   }
@@ -142,8 +137,9 @@ class BlocksView {
 
   showMistake() {
     const [first] = this.#mistakes;
-    if (first?.id) this.field.reveal(first.id);
-    if (first !== undefined) this.parts.context.announce(first.text);
+    if (first === undefined) return;
+    if (first.id !== null) this.field.reveal(first.id);
+    this.parts.context.announce(first.text);
   }
 
   /** @param {string} text @param {"good" | "warning" | "error"} kind */
@@ -168,11 +164,11 @@ class BlocksView {
   redraw() {
     const { session, selection, context } = this.parts;
     const { state } = context.store;
+    const document = this.#document;
     this.checker.retry(state.services);
     this.#offer();
-    setAttribute(this.place, "data-dark", String(context.theme.isDark));
+    setAttribute(this.area, "data-dark", String(context.theme.isDark));
     const values = selection.status?.values ?? {};
-    const isRunning = selection.isTextRunning;
     this.controls.render({
       reason: disabledReason(state, context.text("page")),
       state: values.state ?? "",
@@ -180,21 +176,16 @@ class BlocksView {
       canRedo: this.field.canRedo,
       isTextShown: this.#isTextShown,
     });
-    const line = isRunning && ["paused", "fault"].includes(values.state ?? "") ? lineOf(values) : 0;
-    const running = line > 0 ? (this.#document.blocks[line - 1] ?? null) : null;
-    if (this.#isLoaded) this.field.highlight(running);
-    const fault = isRunning && values.state === "fault" ? faultMessage(values, context.language) : "";
-    if (fault !== this.#fault) {
-      this.#fault = fault;
-      this.#faulty = running;
-      this.#showMistakes();
-    }
+    const before = this.#place.fault;
+    this.#place = selection.isTextRunning ? runPlace(values, document.blocks, context.language) : NOWHERE;
+    if (this.#isLoaded) this.field.highlight(this.#place.block);
+    if (this.#place.fault !== before) this.#showMistakes();
     this.panel.element.hidden = !this.#isTextShown;
     if (this.#isTextShown) {
-      const selected = this.#selected === null ? null : this.#document.linesOf(this.#selected);
-      this.panel.render({ program: session.workspace.code, selected, running: line > 0 ? line - 1 : null });
+      const selected = this.#selected === null ? null : document.linesOf(this.#selected);
+      this.panel.render({ program: session.workspace.code, selected, running: this.#place.line });
     }
-    this.hint.hidden = !this.#isLoaded || !isEmpty(this.#document.state);
+    this.hint.hidden = !this.#isLoaded || !document.canEdit || !isEmpty(document.state);
   }
 
   /** Show the document in Blockly, once that is there. */
@@ -202,15 +193,15 @@ class BlocksView {
     await this.field.ready;
     if (this.#isDestroyed || this.#isLoaded || !this.element.isConnected) return;
     const document = this.#document;
+    const { imported, toolbox } = this.parts.session;
     const look = this.#lookNow();
-    if (this.field.look !== look) this.field.open(look, this.#hidden());
+    if (this.field.look !== look) this.field.open(look, new Set(toolbox.hide));
     this.field.load(document.canEdit ? document.state : {});
     if (document.canEdit) document.loaded(this.field.state);
     this.#isLoaded = true;
-    setAttribute(this.place, "data-known", String(document.canEdit));
-    const { imported, workspace } = this.parts.session;
-    this.notice.render(document, imported?.text === workspace.current.text ? imported.leftOut : []);
-    this.#showLooks();
+    setAttribute(this.area, "data-known", String(document.canEdit));
+    this.notice.render(document, imported?.text === document.text ? imported.leftOut : []);
+    this.looks.render(offeredLooks(toolbox), look);
     this.#showMistakes();
     this.parts.redraw();
   }
@@ -223,45 +214,40 @@ class BlocksView {
 
   /** @param {Look} look */
   #chooseLook(look) {
-    if (look === this.field.look) return;
     this.#chosen = look;
     trySetItem(localStore, LOOK_KEY, look);
     this.#isLoaded = false;
     void this.#fill();
   }
 
-  #showLooks() {
-    this.looks.render(offeredLooks(this.parts.session.toolbox), this.field.look);
+  #toggleText() {
+    this.#isTextShown = !this.#isTextShown;
+    trySetItem(localStore, TEXT_KEY, String(this.#isTextShown));
+    this.parts.redraw();
   }
 
-  /** Offer what a teacher's file leaves. */
+  /** Offer what a teacher's file leaves, if that is another one now. */
   #offer() {
     const { toolbox } = this.parts.session;
     if (toolbox === this.#toolbox) return;
-    const isFirst = this.#toolbox === null;
     this.#toolbox = toolbox;
-    if (isFirst || this.field.look === null) return;
-    this.field.offer(this.#hidden());
-    this.#showLooks();
-  }
-
-  #hidden() {
-    return new Set(this.parts.session.toolbox.hide);
+    this.field.offer(new Set(toolbox.hide));
+    this.looks.render(offeredLooks(toolbox), this.field.look);
   }
 
   /** Blocks were changed. */
   #changed() {
     if (!this.#isLoaded || this.field.isDragging || !this.#document.canEdit) return;
     const { state } = this.field;
-    if (this.#document.isSame(state)) return this.parts.redraw();
-    if (this.#document.isOther) return void this.#decide(state);
-    this.#write(() => this.#document.change(state));
+    if (this.#document.isSame(state)) this.parts.redraw();
+    else if (this.#document.isOther) void this.#decide(state);
+    else this.#write(() => this.#document.change(state));
   }
 
   /**
-   * The program of the file is another one: ask before it is replaced by that of changed blocks.
+   * The program of the file is another one: ask before that of changed blocks takes its place.
    *
-   * @param {import("../state.js").WorkspaceState} state
+   * @param {WorkspaceState} state
    */
   async #decide(state) {
     if (this.#isAsking) return;
@@ -277,16 +263,11 @@ class BlocksView {
     });
   }
 
-  /** Make the text from the blocks, as they are. */
-  #adopt() {
-    this.#write(() => this.#document.adopt());
-  }
-
-  /** Set the text of the file. What only the old one has is kept among the last programs. @param {() => string} change */
-  #write(change) {
+  /** Set the text of the file; what only the old one has is kept among the last programs. @param {() => string} make */
+  #write(make) {
     const { workspace } = this.parts.session;
     if (this.#document.hasOwnText) workspace.keep();
-    workspace.replaceText(change());
+    workspace.replaceText(make());
     this.notice.render(this.#document, []);
     this.#showMistakes();
     this.checker.checkSoon();
@@ -294,24 +275,25 @@ class BlocksView {
   }
 
   #showMistakes() {
-    const { t, parts } = this;
+    const { t, checker, parts } = this;
     const { t: editorText } = parts;
-    const verdict = this.checker.verdict;
-    const before = this.#mistakes.map(({ text }) => text).join();
-    this.#mistakes = blockMistakes(this.#document, verdict, t);
-    const fault = this.#fault === "" ? [] : [{ id: this.#faulty, text: t("view.fault", { text: this.#fault }) }];
-    if (this.#isLoaded) this.field.mark([...this.#mistakes, ...fault]);
-    const words = summary(this.#mistakes, t) || (fault[0]?.text ?? "");
-    if (words === "") this.foot.report(this.#isChecked ? editorText("mistakes.none") : "", this.#isChecked ? "good" : "");
-    else this.foot.report(words, this.hasMistake() || fault.length > 0 ? "error" : "warning");
-    if (words !== "" && this.#mistakes.map(({ text }) => text).join() !== before) parts.context.announce(words);
+    const before = summary(this.#mistakes, t);
+    this.#mistakes = blockMistakes(this.#document, checker.verdict, t);
+    const { fault, block } = this.#place;
+    const faults = fault === "" ? [] : [{ id: block, text: t("view.fault", { text: fault }) }];
+    if (this.#isLoaded) this.field.mark([...this.#mistakes, ...faults]);
+    const words = summary(this.#mistakes, t);
+    if (words !== "") this.foot.report(words, this.hasMistake() ? "error" : "warning");
+    else if (faults.length > 0) this.foot.report(faults[0].text, "error");
+    else this.foot.report(this.#isChecked ? editorText("mistakes.none") : "", this.#isChecked ? "good" : "");
+    if (words !== "" && words !== before) parts.context.announce(words);
   }
 }
-
-/** Open a file of another program. @param {Uint8Array} bytes @param {string} language */
-export const importFile = (bytes, language) => importBlocks(bytes, translator(language, WORDS));
 
 /** @param {Parts} parts @returns {ProgramView} */
 export function createView(parts) {
   return new BlocksView(parts);
 }
+
+/** A file of another program as one of blocks. @param {Uint8Array} bytes @param {string} language */
+export const importFile = (bytes, language) => importBlocks(bytes, translator(language, WORDS));

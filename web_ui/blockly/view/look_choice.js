@@ -11,7 +11,8 @@ import { h } from "../../ui/dom.js";
  */
 export function lookChoice({ t, choose }) {
   const group = h("div", { class: "seg", role: "group", "aria-labelledby": "blocks-look" });
-  const element = h("div", { class: "blocks-looks" }, h("span", { class: "small muted", id: "blocks-look" }, t("view.look")), group);
+  const name = h("span", { class: "small muted", id: "blocks-look" }, t("view.look"));
+  const element = h("div", { class: "blocks-looks" }, name, group);
   return {
     element,
     /** @param {readonly Look[]} looks  that can be chosen @param {Look | null} shown */
@@ -19,8 +20,9 @@ export function lookChoice({ t, choose }) {
       element.hidden = looks.length < 2;
       /** @param {Look} look */
       const button = (look) => {
-        const attributes = { type: "button", class: "btn note", "data-look": look, "aria-pressed": String(look === shown) };
-        return h("button", { ...attributes, onclick: () => choose(look) }, t(`look.${look}`));
+        const isShown = look === shown;
+        const attributes = { type: "button", class: "btn note", "data-look": look, "aria-pressed": String(isShown) };
+        return h("button", { ...attributes, onclick: () => isShown || choose(look) }, t(`look.${look}`));
       };
       group.replaceChildren(...looks.map(button));
     },

@@ -1,5 +1,5 @@
-// What the user should know about the open file, above the blocks: its text is another one, it cannot be shown, or parts
-// of it were left out.
+// What the user should know about the open file, above the blocks: its text is another one, it cannot be shown, or
+// parts of it were left out.
 
 import { h } from "../../ui/dom.js";
 import { icon } from "../../ui/icons.js";
@@ -19,7 +19,8 @@ export function fileNotice({ t, adopt }) {
   /** @param {string} text @param {readonly Node[]} more @param {readonly string[]} details */
   const show = (text, more, details) => {
     const list = h("ul", {}, ...details.map((each) => h("li", {}, each)));
-    const unfolded = h("details", { class: "blocks-more" }, h("summary", {}, t("view.more", { count: details.length })), list);
+    const summary = h("summary", {}, t("view.more", { count: details.length }));
+    const unfolded = h("details", { class: "blocks-more" }, summary, list);
     element.replaceChildren(
       icon("warning", { small: true }),
       h("div", { class: "grow" }, h("p", {}, text), ...(details.length === 0 ? [] : [unfolded])),
@@ -42,10 +43,11 @@ export function fileNotice({ t, adopt }) {
       const [problem] = file.problems;
       element.hidden = true;
       if (problem !== undefined) {
-        const { line, column } = problem;
-        const details = file.problems.map((each) => t("view.at", { line: each.line, column: each.column, text: fileProblemText(each, t) }));
-        const text = t("view.at", { line, column, text: fileProblemText(problem, t) });
-        show(`${t("view.unknown")} ${text}`, [], details.slice(1));
+        const [first, ...others] = file.problems.map((each) => {
+          const { line, column } = each;
+          return t("view.at", { line, column, text: fileProblemText(each, t) });
+        });
+        show(`${t("view.unknown")} ${first}`, [], others);
       } else if (difference !== null) {
         show(t("view.other"), [button("adopt", t("view.adopt"), "line", adopt)], [t("view.difference", difference)]);
       } else if (leftOut.length > 0) {

@@ -1,5 +1,5 @@
-// The program that blocks stand for, below them: read only. The lines of the selected block are marked, and a click on a
-// line selects its block.
+// The program that blocks stand for, below them: read only. The lines of the selected block are marked, and a click on
+// a line selects its block.
 
 import { h, setAttribute, setText } from "../../ui/dom.js";
 import { wordsOf } from "./code_words.js";
@@ -45,11 +45,7 @@ export function textPanel({ t, turnText, turn, choose }) {
       if (program !== shown) {
         shown = program;
         const lines = program.trimEnd() === "" ? [] : program.trimEnd().split(/\r\n|\r|\n/);
-        code.replaceChildren(
-          ...lines.map((line) =>
-            h("li", {}, h("code", {}, ...wordsOf(line.replaceAll("\t", "  ")).map(({ kind, text }) => (kind === "" ? text : h("span", { class: `blocks-${kind}` }, text))))),
-          ),
-        );
+        code.replaceChildren(...lines.map(lineOf));
       }
       /** @type {Element | null} */ let wanted = null;
       [...code.children].forEach((line, index) => {
@@ -61,6 +57,13 @@ export function textPanel({ t, turnText, turn, choose }) {
       if (wanted !== null && !element.hidden) scrollTo(code, wanted);
     },
   };
+}
+
+/** @param {string} line */
+function lineOf(line) {
+  const words = wordsOf(line.replaceAll("\t", "  "));
+  const colored = words.map(({ kind, text }) => (kind === "" ? text : h("span", { class: `blocks-${kind}` }, text)));
+  return h("li", {}, h("code", {}, ...colored));
 }
 
 /** Scroll a list, and nothing around it, until a line is in view. @param {HTMLElement} list @param {Element} line */
