@@ -41,6 +41,11 @@ export class BlocksField {
     this.ready = defineBlocks(language, t);
   }
 
+  /** Whether there is room for a workspace: it cannot be shown in a hidden tab. */
+  get isVisible() {
+    return this.place.clientWidth > 0;
+  }
+
   /** Show an empty workspace; call when `ready`. @param {Look} look @param {ReadonlySet<string>} hidden */
   open(look, hidden) {
     this.#close();
@@ -135,7 +140,7 @@ export class BlocksField {
   }
 
   resize() {
-    if (this.#workspace !== null && this.place.clientWidth > 0) Blockly.svgResize(this.#workspace);
+    if (this.#workspace !== null && this.isVisible) Blockly.svgResize(this.#workspace);
   }
 
   focus() {

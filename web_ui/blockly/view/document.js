@@ -11,6 +11,7 @@ import { sameWorkspace } from "../state.js";
 
 export class BlocksDocument {
   /** @type {readonly (string | null)[] | null} */ #blocks = null;
+  /** Whether the program of the file has comments that the blocks do not have. */ #hasOwnComments = false;
 
   /** @param {string} text  of an .aesl file */
   constructor(text) {
@@ -52,10 +53,9 @@ export class BlocksDocument {
     return linesOfBlock(this.blocks, this.state, id);
   }
 
-  /** Whether a program of text only would be lost by a change: it is another one, or has comments of its own. */
+  /** Whether the next change loses text that is not in the blocks: another program, or comments. */
   get hasOwnText() {
-    const made = new Set(commentsOf(this.generated.code));
-    return this.isOther || commentsOf(this.code).some((comment) => !made.has(comment));
+    return this.isOther || (this.#hasOwnComments && this.code === this.file.code);
   }
 
   /** Whether a workspace is the same program in the same places. @param {WorkspaceState} state */
@@ -71,6 +71,8 @@ export class BlocksDocument {
   loaded(state) {
     this.file = { ...this.file, state };
     this.#setState(state);
+    const made = new Set(commentsOf(this.generated.code));
+    this.#hasOwnComments = commentsOf(this.code).some((comment) => !made.has(comment));
   }
 
   /**

@@ -9,6 +9,7 @@ import { localStore, trySetItem } from "../../browser/local_storage.js";
 import { ProgramChecker } from "../../editor/program_checker.js";
 import WORDS from "../../i18n/blockly.texts.js";
 import { translator } from "../../i18n/index.js";
+import { CONNECTION } from "../../state/index.js";
 import { disabledReason } from "../../state/disabled_reason.js";
 import { h, setAttribute } from "../../ui/dom.js";
 import { withoutBlocks } from "../file.js";
@@ -34,7 +35,6 @@ export { withoutBlocks as withoutPicture };
 /** @typedef {import("../../program_tab/tab.js").Parts} Parts */
 /** @typedef {import("../../hosts/program_host.js").ProgramView} ProgramView */
 /** @typedef {import("../toolbox.js").Look} Look */
-/** @typedef {import("../state.js").WorkspaceState} WorkspaceState */
 
 const LOOK_KEY = "program.look";
 const TEXT_KEY = "program.blocksText";
@@ -129,6 +129,7 @@ class BlocksView {
 
   resized() {
     this.field.resize();
+    void this.#fill();
   }
 
   hasMistake() {
@@ -190,8 +191,12 @@ class BlocksView {
 
   /** Show the document in Blockly, once that is there. */
   async #fill() {
-    await this.field.ready;
-    if (this.#isDestroyed || this.#isLoaded || !this.element.isConnected) return;
+    try {
+      await this.field.ready;
+    } catch {
+      return this.#reportConnection();
+    }
+    if (this.#isDestroyed || this.#isLoaded || !this.field.isVisible) return;
     const document = this.#document;
     const { imported, toolbox } = this.parts.session;
     const look = this.#lookNow();
@@ -204,6 +209,11 @@ class BlocksView {
     this.looks.render(offeredLooks(toolbox), look);
     this.#showMistakes();
     this.parts.redraw();
+  }
+
+  #reportConnection() {
+    const { store, text } = this.parts.context;
+    store.dispatch({ type: "notice", level: "error", text: text("page")("app.notLoaded"), cause: CONNECTION });
   }
 
   #lookNow() {
@@ -240,16 +250,12 @@ class BlocksView {
     if (!this.#isLoaded || this.field.isDragging || !this.#document.canEdit) return;
     const { state } = this.field;
     if (this.#document.isSame(state)) this.parts.redraw();
-    else if (this.#document.isOther) void this.#decide(state);
+    else if (this.#document.isOther) void this.#decide();
     else this.#write(() => this.#document.change(state));
   }
 
-  /**
-   * The program of the file is another one: ask before that of changed blocks takes its place.
-   *
-   * @param {WorkspaceState} state
-   */
-  async #decide(state) {
+  /** The program of the file is another one: ask before that of changed blocks takes its place. */
+  async #decide() {
     if (this.#isAsking) return;
     this.#isAsking = true;
     const { t } = this;
@@ -258,7 +264,7 @@ class BlocksView {
     if (this.#isDestroyed) return;
     if (answer === null) return this.field.undo();
     this.#write(() => {
-      this.#document.change(state);
+      this.#document.change(this.field.state);
       return this.#document.adopt();
     });
   }
