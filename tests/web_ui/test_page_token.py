@@ -84,6 +84,10 @@ def test_nothing_violates_the_content_security_policy(browser, page_server, host
     page.locator("#connection[data-state=lost]").wait_for()  # the socket was tried; a predicate would need eval
     page.locator("#tab-program").click()
     page.locator(".cm-editor").wait_for()
+    page.locator("#file-menu").click()
+    page.locator("#file-sheet [data-verb=new]").click()
+    page.locator("[data-new=blocks-avoid]").click()
+    page.locator(".blocklyBlockCanvas .thymio_led").wait_for()
     page.locator("#tab-playground").click()
     page.locator(".current [data-new]").click()
     page.locator("#creator-try").wait_for()

@@ -47,7 +47,7 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
     const words = h("small", { class: "muted" }, t(`language.${language.id}.text`));
     const cards = h("ul", { class: "program-cards" }, ...language.samples.map((sample) => card(language, sample)));
     const rows = (language.more ?? []).map(({ name, key }) => row(language, name, key));
-    const summary = h("summary", {}, t("new.more"), icon("caretDown", { small: true }));
+    const summary = h("summary", {}, t("new.more"), h("span", { class: "turns" }, icon("caretDown", { small: true })));
     const more = h("details", { class: "disc program-more" }, summary, h("ul", { class: "program-files" }, ...rows));
     return h(
       "section",

@@ -163,7 +163,7 @@ class BlocksView {
   }
 
   redraw() {
-    const { session, selection, context } = this.parts;
+    const { selection, context } = this.parts;
     const { state } = context.store;
     const document = this.#document;
     this.checker.retry(state.services);
@@ -184,7 +184,7 @@ class BlocksView {
     this.panel.element.hidden = !this.#isTextShown;
     if (this.#isTextShown) {
       const selected = this.#selected === null ? null : document.linesOf(this.#selected);
-      this.panel.render({ program: session.workspace.code, selected, running: this.#place.line });
+      this.panel.render({ program: document.code, selected, running: this.#place.line });
     }
     this.hint.hidden = !this.#isLoaded || !document.canEdit || !isEmpty(document.state);
   }
