@@ -7,6 +7,7 @@ import { useDialogs } from "./dialogs.js";
 /** @typedef {import("../state.js").WorkspaceState} WorkspaceState */
 /** @typedef {import("../toolbox.js").Look} Look */
 /** @typedef {{ id: string | null, text: string }} BlockMark   what is wrong with a block */
+/** @typedef {{ undo: readonly any[], redo: readonly any[] }} History   events as plain data */
 
 /** Where the pictures of Blockly are (vite.config.js). */
 const MEDIA = "./blockly/";
@@ -14,6 +15,9 @@ const MEDIA = "./blockly/";
 const NARROW_PX = 480;
 /** Distance of a program from the corner, in pixels of the page. */
 const MARGIN_PX = 20;
+
+/** @type {History} */
+const NO_HISTORY = { undo: [], redo: [] };
 
 export class BlocksField {
   /** @type {import("blockly/core").WorkspaceSvg | null} */ #workspace = null;
@@ -60,8 +64,13 @@ export class BlocksField {
     if (this.#workspace !== null && this.look !== null) offerBlocks(this.#workspace, this.look, this.t, hidden);
   }
 
-  /** Show another program, without a history. @param {WorkspaceState} state */
-  load(state) {
+  /**
+   * Show another program.
+   *
+   * @param {WorkspaceState} state
+   * @param {History} [history]   of the same program in an earlier workspace
+   */
+  load(state, { undo, redo } = NO_HISTORY) {
     const workspace = this.#workspace;
     if (workspace === null) return;
     this.#marked = new Set();
@@ -73,9 +82,18 @@ export class BlocksField {
       Blockly.Events.enable();
     }
     workspace.clearUndo();
+    workspace.getUndoStack().push(...undo.map((event) => Blockly.Events.fromJson(event, workspace)));
+    workspace.getRedoStack().push(...redo.map((event) => Blockly.Events.fromJson(event, workspace)));
     const { left, top } = workspace.getBlocksBoundingBox();
     const { scale } = workspace;
     workspace.scroll(MARGIN_PX - left * scale, MARGIN_PX - top * scale);
+  }
+
+  /** What can be undone and redone: it can be given to another workspace. @returns {History} */
+  get history() {
+    if (this.#workspace === null) return NO_HISTORY;
+    const [undo, redo] = [this.#workspace.getUndoStack(), this.#workspace.getRedoStack()];
+    return { undo: undo.map((event) => event.toJson()), redo: redo.map((event) => event.toJson()) };
   }
 
   /** The program that is shown. @returns {WorkspaceState} */

@@ -35,6 +35,15 @@ export { withoutBlocks as withoutPicture };
 /** @typedef {import("../../program_tab/tab.js").Parts} Parts */
 /** @typedef {import("../../hosts/program_host.js").ProgramView} ProgramView */
 /** @typedef {import("../toolbox.js").Look} Look */
+/**
+ * Blocks of a file as Blockly had them, for a view that is created again: for another look, or another language.
+ *
+ * @typedef {object} KeptBlocks
+ * @property {string} text
+ * @property {boolean} isOther   whether the program of the file was another one
+ * @property {import("../state.js").WorkspaceState} state
+ * @property {import("./blocks_field.js").History} history
+ */
 
 const LOOK_KEY = "program.look";
 const TEXT_KEY = "program.blocksText";
@@ -155,6 +164,7 @@ class BlocksView {
   }
 
   destroy() {
+    this.#keep();
     this.#isDestroyed = true;
     this.checker.destroy();
     this.field.destroy();
@@ -198,10 +208,13 @@ class BlocksView {
     }
     if (this.#isDestroyed || this.#isLoaded || !this.field.isVisible) return;
     const document = this.#document;
-    const { imported, toolbox } = this.parts.session;
+    const { session } = this.parts;
+    const { imported, toolbox } = session;
     const look = this.#lookNow();
     if (this.field.look !== look) this.field.open(look, new Set(toolbox.hide));
-    this.field.load(document.canEdit ? document.state : {});
+    const kept = session.blocks?.text === document.text ? session.blocks : null;
+    if (kept !== null && !kept.isOther) document.difference = null; // blocks with a mistake keep the program before it
+    this.field.load(document.canEdit ? (kept?.state ?? document.state) : {}, kept?.history);
     if (document.canEdit) document.loaded(this.field.state);
     this.#isLoaded = true;
     setAttribute(this.area, "data-known", String(document.canEdit));
@@ -224,10 +237,19 @@ class BlocksView {
 
   /** @param {Look} look */
   #chooseLook(look) {
-    this.#chosen = look;
     trySetItem(localStore, LOOK_KEY, look);
+    this.#keep();
+    this.#chosen = look;
     this.#isLoaded = false;
+    this.#document = new BlocksDocument(this.#document.text);
     void this.#fill();
+  }
+
+  /** Keep what Blockly shows, and what can be undone, for another workspace with the same file. */
+  #keep() {
+    const { text, isOther, canEdit } = this.#document;
+    if (!this.#isLoaded || !canEdit) return;
+    this.parts.session.blocks = { text, isOther, state: this.field.state, history: this.field.history };
   }
 
   #toggleText() {

@@ -21,7 +21,7 @@ export function blockMistakes(document, verdict, t) {
   const own = document.generated.problems.map((problem) => ({
     id: problem.id,
     text: problemText(problem, t),
-    isError: problem.severity === "error",
+    isError: problem.severity === "error" && !document.isOther, // of another program, blocks are not used
   }));
   const { blocks } = document;
   const compiler = mistakesIn(verdict).map(({ line, message }) => ({
@@ -30,7 +30,7 @@ export function blockMistakes(document, verdict, t) {
     isError: true,
   }));
   // Blocks with an error of their own are not in the program that the compiler saw.
-  const all = document.isOther ? compiler : own.some(({ isError }) => isError) ? own : [...own, ...compiler];
+  const all = own.some(({ isError }) => isError) ? own : [...own, ...compiler];
   return [...all.filter(({ isError }) => isError), ...all.filter(({ isError }) => !isError)];
 }
 

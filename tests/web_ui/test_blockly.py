@@ -1,0 +1,141 @@
+"""Programs of blocks in a real Chromium against the running suite: built, run, mended, opened, in both looks."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.conftest import checked_page
+from tests.web_ui.page_support import (
+    MARKS,
+    TouchPoints,
+    choose_in_file_menu,
+    choose_language,
+    drop_file,
+    open_menu,
+    open_page,
+    open_tab,
+    wait_for_service,
+)
+
+pytestmark = MARKS
+
+AXE = Path(__file__).parents[2] / "web_ui/node_modules/axe-core/axe.min.js"
+FINDINGS = """async () => (await axe.run(".program")).violations
+    .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html.slice(0, 120)).join(" ")}`)"""
+POSE = "() => window.thymio.state().robot.latest.pose.position"
+MOVED = f"([x, y]) => {{ const now = ({POSE})(); return Math.hypot(now.x - x, now.y - y) > 0.03; }}"
+BLOCKS = ".blocklyBlockCanvas"
+CODE = ".blocks-code"
+VERDICT = ".blocks-verdict"
+FLYOUT = ".blocklyFlyout:visible"
+
+
+def expect(page, selector, **options):
+    return playwright.expect(page.locator(selector, **options))
+
+
+def begin(page, sample: str) -> None:
+    """Begin with a sample."""
+    open_tab(page, "program")
+    page.locator(".program[data-shown=start], .program[data-shown=program]").wait_for()
+    if not page.locator(f"[data-new={sample}]").is_visible():
+        if page.locator("[data-language=blocks] .program-more").is_visible():
+            page.locator("[data-language=blocks] .program-more summary").click()
+        else:
+            choose_in_file_menu(page, "new")
+    page.click(f"[data-new={sample}]")
+    page.locator(".blocks .blocklySvg").first.wait_for()
+
+
+def show_text(page) -> None:
+    if page.locator("[data-verb=text]").get_attribute("aria-pressed") == "false":
+        page.click("[data-verb=text]")
+    page.locator(CODE).wait_for()
+
+
+def category(page, name: str):
+    return page.locator(".blocklyToolboxCategory", has_text=name).first
+
+
+def grip_of(page, block) -> tuple[float, float]:
+    """A place at the upper left of a block, where it has no field."""
+    box = block.bounding_box()
+    return box["x"] + 6, box["y"] + 8
+
+
+def new_block(page, group: str, kind: str) -> tuple[float, float]:
+    """Open a category; the place of a new block in it."""
+    category(page, group).click()
+    block = page.locator(f"{FLYOUT} .{kind}").first
+    block.wait_for()
+    return grip_of(page, block)
+
+
+def drag(page, start: tuple[float, float], end: tuple[float, float]) -> None:
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(start[0] + 8, start[1] + 8, steps=3)
+    page.mouse.move(*end, steps=12)
+    page.mouse.up()
+
+
+@pytest.fixture
+def blocks(suite, page):
+    """The tab of a robot at rest."""
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_tab(page, "program")
+    wait_for_service(page, "/aseba_runtime/check", "/aseba/step_line")
+    return page
+
+
+def test_a_program_is_built_by_mouse_mended_and_run(blocks):
+    page = blocks
+    begin(page, "blocks-empty")
+    expect(page, ".blocks-hint").to_be_visible()
+    canvas = page.locator(".blocks-place").bounding_box()
+    drag(page, new_block(page, "Motors", "thymio_motors_start"), (canvas["x"] + 320, canvas["y"] + 80))
+    expect(page, f"{BLOCKS} .thymio_motors_start").to_have_count(1)
+    expect(page, ".blocks-hint").to_be_hidden()
+    show_text(page)
+    expect(page, CODE).to_contain_text("motor.right.target = 300")
+    expect(page, VERDICT).to_have_text("No mistakes")
+    expect(page, f"{CODE} [data-mark=selected]").to_have_count(2)
+
+    page.click("[data-verb=undo]")
+    expect(page, f"{BLOCKS} .thymio_motors_start").to_have_count(0)
+    expect(page, ".blocks-hint").to_be_visible()
+    page.click("[data-verb=redo]")
+    expect(page, f"{BLOCKS} .thymio_motors_start").to_have_count(1)
+
+    # a mistake is shown at its block, and the file keeps the last program without one
+    page.locator(f"{BLOCKS} .blocklyShadow .blocklyField").click()
+    page.keyboard.type("99999\n")
+    expect(page, VERDICT).to_contain_text("1 mistake: The number is 99999")
+    playwright.expect(page.get_by_role("button", name="Run program")).to_be_disabled()
+    expect(page, f"{BLOCKS} .blocklyWarningIcon, {BLOCKS} .blocklyIconGroup").to_have_count(1)
+    page.click(VERDICT)
+    expect(page, ".blocklyBubble").to_contain_text("from -32768 to 32767")
+    expect(page, CODE).to_contain_text("motor.right.target = 300")
+    page.click("[data-verb=undo]")
+    expect(page, VERDICT).to_have_text("No mistakes")
+
+    start = page.evaluate(POSE)
+    page.click("[data-verb=run]")
+    page.wait_for_function(MOVED, arg=[start["x"], start["y"]])
+    expect(page, "#program-state").to_have_text("running")
+
+
+def test_blocks_are_put_together_by_keys(blocks):
+    page = blocks
+    begin(page, "blocks-empty")
+
+
+def test_a_file_of_blocks_is_opened_turned_into_text_and_back(blocks, tmp_path):
+    page = blocks
+    begin(page, "blocks-line")
