@@ -36,6 +36,20 @@ VERDICT = ".blocks-verdict"
 FLYOUT = ".blocklyFlyout:visible"
 
 
+PROJECT = {
+    "targets": [
+        {
+            "isStage": False,
+            "blocks": {
+                "hat": {"opcode": "event_whenflagclicked", "next": "say", "topLevel": True, "inputs": {}, "fields": {}},
+                "say": {"opcode": "looks_sayforsecs", "next": "stop", "parent": "hat", "inputs": {}, "fields": {}},
+                "stop": {"opcode": "thymio_stopMotors", "next": None, "parent": "say", "inputs": {}, "fields": {}},
+            },
+        }
+    ]
+}
+
+
 def expect(page, selector, **options):
     return playwright.expect(page.locator(selector, **options))
 
@@ -131,11 +145,60 @@ def test_a_program_is_built_by_mouse_mended_and_run(blocks):
     expect(page, "#program-state").to_have_text("running")
 
 
-def test_blocks_are_put_together_by_keys(blocks):
+def test_files_open_change_and_keep_what_is_theirs(blocks, tmp_path):
     page = blocks
-    begin(page, "blocks-empty")
-
-
-def test_a_file_of_blocks_is_opened_turned_into_text_and_back(blocks, tmp_path):
-    page = blocks
+    # a text that was edited runs until the user decides
     begin(page, "blocks-line")
+    expect(page, VERDICT).to_have_text("No mistakes")
+    show_text(page)
+    with page.expect_download() as download:
+        page.keyboard.press("Control+s")
+    saved = tmp_path / "edited.aesl"
+    text = Path(download.value.path()).read_text(encoding="utf-8")
+    assert "<ThymioBlockly>" in text
+    saved.write_text(text.replace("= 200", "= 222", 1), encoding="utf-8")
+    drop_file(page, saved, ".blocks-place")
+    expect(page, ".blocks-notice").to_contain_text("another one")
+    expect(page, CODE).to_contain_text("= 222")
+    page.locator(f"{BLOCKS} .thymio_led").click(position={"x": 6, "y": 8})
+    page.keyboard.press("Delete")
+    page.get_by_role("button", name="Take the change back").click()
+    expect(page, f"{BLOCKS} .thymio_led").to_have_count(1)
+    page.click("[data-notice=adopt]")
+    expect(page, ".blocks-notice").to_be_hidden()
+    expect(page, CODE).not_to_contain_text("= 222")
+
+    # blocks leave the file, and come back
+    page.click("[data-verb=turn]")
+    expect(page, ".cm-content").to_contain_text("onevent prox")
+    page.click("[data-detach=undo]")
+    expect(page, f"{BLOCKS} .thymio_event_update").to_have_count(1)
+
+    # a project of Scratch, with what the robot cannot do
+    project = tmp_path / "project.sb3"
+    with zipfile.ZipFile(project, "w") as archive:
+        archive.writestr("project.json", json.dumps(PROJECT))
+    drop_file(page, project, ".blocks-place")
+    expect(page, f"{BLOCKS} .thymio_stopMotors").to_have_count(1)
+    expect(page, ".scratch-renderer, .zelos-renderer").to_have_count(1)
+    expect(page, ".blocks-notice").to_contain_text("left out")
+    page.click(".blocks-notice summary")
+    expect(page, ".blocks-notice li").to_have_text("left out: looks_sayforsecs (1 times)")
+
+    # a teacher's file hides blocks
+    limits = tmp_path / "limits.json"
+    limits.write_text('{"toolbox": 1, "hide": ["category:motion"], "modes": ["scratch"]}')
+    drop_file(page, limits, ".blocks-place")
+    expect(page, ".blocklyToolboxCategory", has_text="Motion").to_have_count(0)
+    choose_in_file_menu(page, "all-blocks")
+    expect(page, ".blocklyToolboxCategory", has_text="Motion").to_have_count(1)
+
+    # the other look, and another language: the program stays
+    open_menu(page, "#file-menu")
+    page.click("[data-look=blockly]")
+    expect(page, ".blocklyToolboxCategory", has_text="Loops").to_have_count(1)
+    expect(page, f"{BLOCKS} .thymio_stopMotors").to_have_count(1)
+    page.keyboard.press("Escape")
+    choose_language(page, "de")
+    expect(page, ".blocklyToolboxCategory", has_text="Schleifen").to_have_count(1)
+    expect(page, f"{BLOCKS} .thymio_stopMotors").to_have_count(1)

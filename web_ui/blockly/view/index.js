@@ -3,7 +3,7 @@
 //   BlocksDocument   the file as blocks and text
 //   BlocksField      Blockly
 //   ProgramChecker   the compiler's verdict on the text
-//   blocksBar, lookChoice, fileNotice, textPanel, blocksFoot   what is around the blocks
+//   blocksFrame      what is around the blocks
 
 import { localStore, trySetItem } from "../../browser/local_storage.js";
 import { ProgramChecker } from "../../editor/program_checker.js";
@@ -11,21 +11,17 @@ import WORDS from "../../i18n/blockly.texts.js";
 import { translator } from "../../i18n/index.js";
 import { CONNECTION } from "../../state/index.js";
 import { disabledReason } from "../../state/disabled_reason.js";
-import { h, setAttribute } from "../../ui/dom.js";
+import { setAttribute } from "../../ui/dom.js";
 import { withoutBlocks } from "../file.js";
 import { importFile as importBlocks } from "../import.js";
 import { lookOf, offeredLooks } from "../looks.js";
 import { isEmpty } from "../state.js";
-import { blocksBar } from "./bar.js";
+import { blocksFrame } from "./frame.js";
 import { BlocksField } from "./blocks_field.js";
 import { ask } from "./dialogs.js";
 import { BlocksDocument } from "./document.js";
-import { blocksFoot } from "./foot.js";
-import { lookChoice } from "./look_choice.js";
 import { blockMistakes, summary } from "./mistakes.js";
-import { fileNotice } from "./notice.js";
 import { NOWHERE, runPlace } from "./run_place.js";
-import { textPanel } from "./text_panel.js";
 
 import "./blocks.css";
 
@@ -71,10 +67,23 @@ class BlocksView {
     this.t = t;
     this.#document = new BlocksDocument(session.workspace.current.text);
     this.#toolbox = session.toolbox;
-    this.area = h("div", { class: "blocks-place" });
-    this.hint = h("p", { class: "blocks-hint", hidden: true }, t("view.empty"));
+    const frame = blocksFrame({
+      t,
+      editorText,
+      commands,
+      undo: (again) => this.field.undo(again),
+      toggleText: () => this.#toggleText(),
+      adopt: () => this.#write(() => this.#document.adopt()),
+      chooseLine: (line) => this.field.select(this.#document.blocks[line] ?? ""),
+      chooseLook: (look) => this.#chooseLook(look),
+      goToMistake: () => this.showMistake(),
+    });
+    this.frame = frame;
+    this.element = frame.element;
+    this.bar = frame.bar.element;
+    this.entries = [frame.looks.element];
     this.field = new BlocksField({
-      place: this.area,
+      place: frame.area,
       t,
       language,
       changed: () => this.#changed(),
@@ -93,32 +102,6 @@ class BlocksView {
         redraw();
       },
     });
-    this.controls = blocksBar({
-      t,
-      editorText,
-      commands,
-      undo: (again) => this.field.undo(again),
-      toggleText: () => this.#toggleText(),
-    });
-    this.notice = fileNotice({ t, adopt: () => this.#write(() => this.#document.adopt()) });
-    this.panel = textPanel({
-      t,
-      turnText: editorText("detach.turn"),
-      turn: () => void commands.detach(),
-      choose: (line) => this.field.select(this.#document.blocks[line] ?? ""),
-    });
-    this.foot = blocksFoot(() => this.showMistake());
-    this.looks = lookChoice({ t, choose: (look) => this.#chooseLook(look) });
-    this.bar = this.controls.element;
-    this.entries = [this.looks.element];
-    const frame = h("div", { class: "blocks-frame" }, this.area, this.hint);
-    this.element = h(
-      "div",
-      { class: "blocks" },
-      this.notice.element,
-      h("div", { class: "blocks-body" }, frame, this.panel.element),
-      this.foot.element,
-    );
     context.theme.subscribe(redraw);
   }
 
@@ -154,7 +137,7 @@ class BlocksView {
 
   /** @param {string} text @param {"good" | "warning" | "error"} kind */
   report(text, kind) {
-    this.foot.report(text, kind);
+    this.frame.foot.report(text, kind);
   }
 
   async loaded() {}
@@ -178,9 +161,9 @@ class BlocksView {
     const document = this.#document;
     this.checker.retry(state.services);
     this.#offer();
-    setAttribute(this.area, "data-dark", String(context.theme.isDark));
+    setAttribute(this.frame.area, "data-dark", String(context.theme.isDark));
     const values = selection.status?.values ?? {};
-    this.controls.render({
+    this.frame.bar.render({
       reason: disabledReason(state, context.text("page")),
       state: values.state ?? "",
       canUndo: this.field.canUndo,
@@ -191,12 +174,12 @@ class BlocksView {
     this.#place = selection.isTextRunning ? runPlace(values, document.blocks, context.language) : NOWHERE;
     if (this.#isLoaded) this.field.highlight(this.#place.block);
     if (this.#place.fault !== before) this.#showMistakes();
-    this.panel.element.hidden = !this.#isTextShown;
+    this.frame.panel.element.hidden = !this.#isTextShown;
     if (this.#isTextShown) {
       const selected = this.#selected === null ? null : document.linesOf(this.#selected);
-      this.panel.render({ program: document.code, selected, running: this.#place.line });
+      this.frame.panel.render({ program: document.code, selected, running: this.#place.line });
     }
-    this.hint.hidden = !this.#isLoaded || !document.canEdit || !isEmpty(document.state);
+    this.frame.hint.hidden = !this.#isLoaded || !document.canEdit || !isEmpty(document.state);
   }
 
   /** Show the document in Blockly, once that is there. */
@@ -217,9 +200,9 @@ class BlocksView {
     this.field.load(document.canEdit ? (kept?.state ?? document.state) : {}, kept?.history);
     if (document.canEdit) document.loaded(this.field.state);
     this.#isLoaded = true;
-    setAttribute(this.area, "data-known", String(document.canEdit));
-    this.notice.render(document, imported?.text === document.text ? imported.leftOut : []);
-    this.looks.render(offeredLooks(toolbox), look);
+    setAttribute(this.frame.area, "data-known", String(document.canEdit));
+    this.frame.notice.render(document, imported?.text === document.text ? imported.leftOut : []);
+    this.frame.looks.render(offeredLooks(toolbox), look);
     this.#showMistakes();
     this.parts.redraw();
   }
@@ -264,7 +247,7 @@ class BlocksView {
     if (toolbox === this.#toolbox) return;
     this.#toolbox = toolbox;
     this.field.offer(new Set(toolbox.hide));
-    this.looks.render(offeredLooks(toolbox), this.field.look);
+    this.frame.looks.render(offeredLooks(toolbox), this.field.look);
   }
 
   /** Blocks were changed. */
@@ -296,7 +279,7 @@ class BlocksView {
     const { workspace } = this.parts.session;
     if (this.#document.hasOwnText) workspace.keep();
     workspace.replaceText(make());
-    this.notice.render(this.#document, []);
+    this.frame.notice.render(this.#document, []);
     this.#showMistakes();
     this.checker.checkSoon();
     this.parts.redraw();
@@ -311,9 +294,9 @@ class BlocksView {
     const faults = fault === "" ? [] : [{ id: block, text: t("view.fault", { text: fault }) }];
     if (this.#isLoaded) this.field.mark([...this.#mistakes, ...faults]);
     const words = summary(this.#mistakes, t);
-    if (words !== "") this.foot.report(words, this.hasMistake() ? "error" : "warning");
-    else if (faults.length > 0) this.foot.report(faults[0].text, "error");
-    else this.foot.report(this.#isChecked ? editorText("mistakes.none") : "", this.#isChecked ? "good" : "");
+    if (words !== "") this.frame.foot.report(words, this.hasMistake() ? "error" : "warning");
+    else if (faults.length > 0) this.frame.foot.report(faults[0].text, "error");
+    else this.frame.foot.report(this.#isChecked ? editorText("mistakes.none") : "", this.#isChecked ? "good" : "");
     if (words !== "" && words !== before) parts.context.announce(words);
   }
 }
