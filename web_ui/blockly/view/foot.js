@@ -12,13 +12,14 @@ const SIGNS = { good: "check", warning: "warning", error: "warning", "": null };
 export function blocksFoot(go) {
   const sign = h("span", { class: "blocks-sign", "aria-hidden": "true" });
   const words = h("span", {});
-  const verdict = h("button", { type: "button", class: "blocks-verdict", onclick: go }, sign, words);
+  const verdict = h("button", { type: "button", class: "blocks-verdict", hidden: true, onclick: go }, sign, words);
   /** @type {Kind | null} */ let shown = null;
   return {
     element: h("div", { class: "blocks-foot" }, verdict),
     /** @param {string} text @param {Kind} kind */
     report(text, kind) {
       setText(words, text);
+      verdict.hidden = text === "";
       if (kind === shown) return;
       shown = kind;
       setAttribute(verdict, "data-kind", kind);
