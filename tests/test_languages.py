@@ -110,6 +110,7 @@ PARTS = {
     "stage": "stage",
     "state/program_status.js": "program",
     "tour": "tour",
+    "vpl": "vpl",
     "welcome": "welcome",
 }
 """Folders and modules of the page, and the file of texts that `t` means there; elsewhere it is page.json."""

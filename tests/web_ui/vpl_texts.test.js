@@ -7,34 +7,29 @@ import { nameKey } from "../../web_ui/vpl/blocks.js";
 import { BLOCKS } from "../../web_ui/vpl/kinds.js";
 
 const FOLDER = new URL("../../web_ui/vpl/", import.meta.url);
+/** Names of the robot's variables look like keys, too. */
+const VARIABLES = /^(?:prox|acc|button|timer|sound)\.(?:horizontal|ground|\d|period|wave)/;
 const PREFIXES = new Set(Object.keys(texts.en).map((key) => key.split(".")[0]));
 
-/** The keys that the modules name, as strings or as templates. */
+/** The keys that the modules name as strings. That every text is named is tested by tests/test_languages.py. */
 function named() {
-  const source = readdirSync(FOLDER)
+  const source = readdirSync(FOLDER, { recursive: true })
+    .map(String)
     .filter((name) => name.endsWith(".js"))
     .map((name) => readFileSync(new URL(name, FOLDER), "utf8"))
     .join("\n");
-  const keys = [...source.matchAll(/"(\w+(?:\.\w+)+)"/g)]
+  return [...source.matchAll(/"(\w+(?:\.\w+)+)"/g)]
     .map(([, key]) => key)
-    .filter((key) => PREFIXES.has(key.split(".")[0]));
-  const templates = [...source.matchAll(/`(\w+\.[^`\n]*)`/g)]
-    .map(([, template]) => template)
-    .filter((each) => PREFIXES.has(each.split(".")[0]));
-  return { keys, templates };
+    .filter((key) => PREFIXES.has(key.split(".")[0]) && !VARIABLES.test(key));
 }
 
-test("every text that a module names exists, and every text is named", () => {
-  const { keys, templates } = named();
+test("every text that a module names exists", () => {
+  const keys = named();
+  assert.ok(keys.length > 50);
   assert.deepEqual(
     keys.filter((key) => !(key in texts.en)),
     [],
   );
-  const fitting = templates.map(
-    (each) => new RegExp(`^${each.replaceAll(".", "\\.").replace(/\$\{[^}]*\}/g, "\\w+")}$`),
-  );
-  const unused = Object.keys(texts.en).filter((key) => !keys.includes(key) && !fitting.some((each) => each.test(key)));
-  assert.deepEqual(unused, []);
 });
 
 test("every block has a name", () => {

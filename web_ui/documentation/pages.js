@@ -14,6 +14,7 @@ export const SOURCES = {
   blockly: "docs/blockly.md",
   behaviors: "docs/behaviors.md",
   playgrounds: "playgrounds/README.md",
+  vpl: "docs/vpl.md",
   robot: "docs/robot.md",
   ros: "docs/ros.md",
   "ros2-tools": "docs/ros2-tools.md",

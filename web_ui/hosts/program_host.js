@@ -12,6 +12,7 @@ import { localStore } from "../browser/local_storage.js";
 import { importerOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
 import { looksLikeToolbox } from "../program_tab/toolbox_file.js";
 import { CONNECTION } from "../state/index.js";
+import { holdsVpl } from "../vpl/holds.js";
 
 /** @typedef {import("../editor/editor_session.js").EditorSession} EditorSession */
 /** @typedef {import("../program_tab/tab.js").ProgramTab} ProgramTab */
@@ -61,6 +62,25 @@ import { CONNECTION } from "../state/index.js";
 
 /** The languages of programs, in display order. To add one: a line here. @type {readonly Language[]} */
 export const LANGUAGES = [
+  {
+    id: "vpl",
+    icon: "vpl",
+    holds: holdsVpl,
+    samples: [
+      { name: "empty", key: "vpl_empty", icon: "file" },
+      { name: "avoid", key: "vpl_avoid", icon: "beams" },
+      { name: "line", key: "vpl_line", icon: "track" },
+      { name: "buttons", key: "vpl_buttons", icon: "pad" },
+      { name: "music", key: "vpl_music", icon: "clap" },
+      { name: "timer", key: "vpl_timer", icon: "sun" },
+      { name: "states", key: "vpl_states", icon: "grid" },
+      { name: "remote", key: "vpl_remote", icon: "remote" },
+      { name: "tilt", key: "vpl_tilt", icon: "tilt" },
+      { name: "counter", key: "vpl_counter", icon: "list" },
+    ],
+    load: () => import("../vpl/view/index.js"),
+    toolboxNames: async () => (await import("../vpl/toolbox.js")).NAMES,
+  },
   BLOCKS,
   {
     id: TEXT,

@@ -28,7 +28,8 @@ export function check({ rows }) {
     if (row.event === null || row.actions.length === 0) {
       const hint = rows.slice(index + 1).every(isEmptyRow);
       const missing = row.event === null ? "event" : "action";
-      const key = `check.${hint ? "add" : "missing"}.${missing}`;
+      const tone = hint ? "add" : "missing";
+      const key = `check.${tone}.${missing}`;
       const slot = missing === "event" ? missing : "actions";
       return { key, values: { row: index + 1 }, kind: `missing-${missing}`, hint, row: index, slot, other: null };
     }

@@ -147,6 +147,11 @@ export function moveRow(program, from, to) {
   return makeProgram(mode, spliced(spliced(rows, from, 1), to, 0, rows[from]));
 }
 
+/** Put a row, such as a copy of one, in front of a row. @param {Program} program @param {number} at @param {Readonly<Row>} row */
+export function putRow({ mode, rows }, at, row) {
+  return makeProgram(mode, spliced(rows, at, 0, row));
+}
+
 /** Copy a row; `to` is the index of the copy. @param {Program} program @param {number} from @param {number} to */
 export function copyRow(program, from, to) {
   const { mode, rows } = program;

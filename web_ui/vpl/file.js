@@ -4,6 +4,7 @@ import { AeslError, newAesl, readAesl, withCode, withEntry } from "../editor/aes
 import { encoded } from "../editor/xml.js";
 import { lastOf, placeOf, readElements } from "./elements.js";
 import { VplError } from "./errors.js";
+import { holdsVpl } from "./holds.js";
 import { REPORTS } from "./generator.js";
 import { makeProgram, sameProgram } from "./program.js";
 import { readPairs } from "./read_pairs.js";
@@ -79,6 +80,25 @@ export function newVpl(program = makeProgram("basic"), code = "") {
   const end = text.lastIndexOf("</node>");
   const plugin = `<toolsPlugins>\n${plugged(program, "", "\n")}\n</toolsPlugins>\n`;
   return withReport(text.slice(0, end) + plugin + text.slice(end), code);
+}
+
+/** The element of a file that holds plug-in data. */
+const TOOLS = "toolsPlugins";
+
+/** The file without its VPL programs: what is left is text. @param {string} text @returns {string} */
+export function withoutVpl(text) {
+  const found = nodesOf(readElements(text)).flatMap((node) => {
+    const tools = lastOf(node, [TOOLS]);
+    const part = lastOf(node, [PLUGIN, EXTENDED_ROOT]) ?? lastOf(node, [ROOT]);
+    if (part === null) return [];
+    return [tools !== null && tools.children.length === 1 && tools.children[0] === part ? tools : part];
+  });
+  const result = found.reverse().reduce((left, { from, to }) => {
+    const blank = /^[ \t]*\r?\n/.exec(left.slice(to))?.[0].length ?? 0;
+    const margin = blank > 0 ? (/[ \t]*$/.exec(left.slice(0, from))?.[0].length ?? 0) : 0;
+    return left.slice(0, from - margin) + left.slice(to + blank);
+  }, text);
+  return found.length > 0 && holdsVpl(result) ? withoutVpl(result) : result;
 }
 
 /**

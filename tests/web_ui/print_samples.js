@@ -1,0 +1,7 @@
+// Prints the programs of VPL that the page offers to begin with, as one object of JSON by name.
+
+import { LANGUAGES } from "../../web_ui/hosts/program_host.js";
+import { sampleText } from "../../web_ui/vpl/view/samples.js";
+
+const names = LANGUAGES.find(({ id }) => id === "vpl")?.samples.map(({ name }) => name) ?? [];
+console.log(JSON.stringify(Object.fromEntries(names.map((name) => [name, sampleText(name)]))));
