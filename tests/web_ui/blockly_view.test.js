@@ -3,7 +3,6 @@ import { test } from "node:test";
 
 import { newFile } from "../../web_ui/blockly/file.js";
 import { generate } from "../../web_ui/blockly/generator.js";
-import { wordsOf } from "../../web_ui/blockly/view/code_words.js";
 import { BlocksDocument } from "../../web_ui/blockly/view/document.js";
 import { blockMistakes, summary } from "../../web_ui/blockly/view/mistakes.js";
 import texts from "../../web_ui/i18n/blockly.texts.js";
@@ -25,16 +24,6 @@ function documentOf(blocks, code) {
 
 /** What the compiler says. @param {number | null} line */
 const verdict = (line) => ({ errors: [{ line, column: 1, kind: "division", message: "division by zero" }], warnings: [], use: null, variables: [] });
-
-test("a line of a program has its words in colors", () => {
-  const kinds = (/** @type {string} */ line) => wordsOf(line).filter(({ kind }) => kind !== "").map(({ kind, text }) => `${kind} ${text}`);
-  assert.deepEqual(kinds("onevent timer0 # ring"), ["key onevent", "event timer0", "comment # ring"]);
-  assert.deepEqual(kinds("\tcall leds.top(32,0,-x)"), ["key call", "call leds.top", "number 32", "number 0"]);
-  assert.deepEqual(kinds("if prox.horizontal[2] > 2000 then"), ["key if", "number 2", "number 2000", "key then"]);
-  for (const line of ["a.b2[3] = ~é % 4 #x", "", "  when a == 1 do"]) {
-    assert.equal(wordsOf(line).map(({ text }) => text).join(""), line);
-  }
-});
 
 test("a mistake of the blocks is at its block, errors before warnings", () => {
   const found = blockMistakes(documentOf([loose, call, note]), null, t);

@@ -2,7 +2,7 @@
 // a line selects its block.
 
 import { h, setAttribute, setText } from "../../ui/dom.js";
-import { wordsOf } from "./code_words.js";
+import { pieces } from "../../vpl/view/marked_text.js";
 
 /**
  * @param {object} options
@@ -61,8 +61,8 @@ export function textPanel({ t, turnText, turn, choose }) {
 
 /** @param {string} line */
 function lineOf(line) {
-  const words = wordsOf(line.replaceAll("\t", "  "));
-  const colored = words.map(({ kind, text }) => (kind === "" ? text : h("span", { class: `blocks-${kind}` }, text)));
+  const words = pieces(line.replaceAll("\t", "  "));
+  const colored = words.map(({ look, text }) => (look === "" ? text : h("span", { class: `blocks-${look}` }, text)));
   return h("li", {}, h("code", {}, ...colored));
 }
 
