@@ -81,7 +81,7 @@ export const KEY_TABLE = [
       { keys: ["n", "b"], text: "blocks.stack" },
       { keys: ["Delete"], text: "blocks.remove" },
       { held: CONTROL, keys: ["z"], text: "blocks.undo" },
-      { held: [...CONTROL, ...SHIFT], keys: ["z"], text: "blocks.redo" },
+      { held: CONTROL, keys: ["y"], text: "blocks.redo" },
     ],
   },
   {

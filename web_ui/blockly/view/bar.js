@@ -33,12 +33,12 @@ export function blocksBar({ t, editorText, commands, undo, toggleText }) {
     t("view.text"),
   ];
   const slim = "line slim note";
-  const back = button("undo", "undo", t("view.undo"), "Ctrl+Z", "icon", () => undo(false), []);
-  const again = button("redo", "redo", t("view.redo"), "Ctrl+Shift+Z", "icon", () => undo(true), []);
+  const back = button("undo", "undo", t("view.undo"), "Ctrl+Z", "icon line", () => undo(false), []);
+  const again = button("redo", "redo", t("view.redo"), "Ctrl+Y", "icon line", () => undo(true), []);
   const halt = button("pause", "halt", haltName, "F10", slim, () => void commands.control("pause"), shown(haltName));
   const next = button("step_line", "nextLine", nextName, "F7", slim, () => void commands.control("step_line"), shown(nextName));
   const goOn = button("run-on", "goOn", goName, "F9", slim, () => void commands.control("run"), shown(goName));
-  const text = button("text", "text", textName, "", "line slim note", toggleText, shown(textName));
+  const text = button("text", "text", textName, "", "note", toggleText, shown(textName));
   const tools = [back, again, halt, next, goOn, text];
   return {
     element: h("div", { class: "blocks-bar", role: "toolbar", "aria-label": t("view.tools") }, ...tools),
