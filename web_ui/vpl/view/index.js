@@ -164,7 +164,7 @@ class VplView {
     this.events.render(session.toolbox, program.mode);
     this.actions.render(session.toolbox, program.mode);
     const shownRefusal = editing.question === null ? refusal : null;
-    this.rows.render({ program, refusal: shownRefusal, selected, slot: this.#slot, isPasting: this.#held !== null });
+    this.rows.render({ program, refusal: shownRefusal, selected, slot: this.#slot, isPasting: this.#held !== null && "block" in this.#held });
     this.#showNotices();
     const { text, source } = editing.shown;
     this.pane.render({ isShown: this.isTextShown, text, source, row: selected });
@@ -290,7 +290,10 @@ class VplView {
     const held = this.#held;
     const { program } = this.editing;
     if (held === null) return;
-    if ("row" in held) return this.#edit(putRow(program, Math.min(spot.row + 1, program.rows.length - 1), held.row));
+    if ("row" in held) {
+      this.#edit(putRow(program, Math.min(spot.row + 1, program.rows.length - 1), held.row));
+      return void this.#cancel();
+    }
     const slot = spot.slot === "conditions" ? spot.slot : slotOf(held.block);
     const reason = whyNot(program, spot.row, held.block, slot);
     const isPut = this.#apply({
