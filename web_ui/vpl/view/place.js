@@ -22,3 +22,8 @@ export function spotOf(target) {
 export function isSlot(spot) {
   return spot.slot !== "row" && spot.slot !== "remove";
 }
+
+/** The place of a block as the edits name it. @param {Spot} spot @returns {import("../program.js").Place} */
+export function placeOf({ row, slot, index }) {
+  return { row, slot: /** @type {Slot} */ (slot), index };
+}
