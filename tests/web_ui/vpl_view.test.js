@@ -36,7 +36,12 @@ const FILES = new URL("../data/web/vpl/", import.meta.url);
 const read = (/** @type {string} */ name) => readFileSync(new URL(name, FILES), "utf8");
 const SAMPLES = LANGUAGES.find(({ id }) => id === "vpl")?.samples.map(({ name }) => name) ?? [];
 
-/** Blocks that the controls reach from a new one, in at most `depth` steps. @param {string} name @param {number} depth */
+/**
+ * Blocks that the controls reach from a new one, in at most `depth` steps.
+ *
+ * @param {string} name
+ * @param {number} depth
+ */
 function reached(name, depth) {
   /** @type {Map<string, Block>} */ const found = new Map();
   let last = [makeBlock(name)];
@@ -103,7 +108,11 @@ test("pictures differ where the state differs", () => {
   }
 });
 
-/** Blocks whose difference is in their thresholds only, which sliders and words show. @param {readonly Block[]} blocks */
+/**
+ * Blocks whose difference is in their thresholds only, which sliders and words show.
+ *
+ * @param {readonly Block[]} blocks
+ */
 function thresholdsOnly(blocks) {
   const sensors = blocks.map(({ values }) => JSON.stringify(values.slice(0, -2)));
   return blocks.length - new Set(sensors).size;

@@ -2,7 +2,19 @@
 // It also has what is begun: a chosen slot, a copy that waits for its place, a mode that would lose blocks.
 
 import { nameKey } from "../blocks.js";
-import { blockAt, copyRow, insertRow, moveBlock, moveRow, putBlock, putRow, removeBlock, removeRow, slotOf, whyNot } from "../edits.js"; // prettier-ignore
+import {
+  blockAt,
+  copyRow,
+  insertRow,
+  moveBlock,
+  moveRow,
+  putBlock,
+  putRow,
+  removeBlock,
+  removeRow,
+  slotOf,
+  whyNot,
+} from "../edits.js";
 import { added } from "./dropping.js";
 import { isSlot, placeOf, written } from "./place.js";
 

@@ -24,7 +24,12 @@ export function dragBlocks({ element, rows, commands, started }) {
   /** @type {import("./dropping.js").Dragged | null} */ let dragged = null;
   /** @type {Element | null} the row below the pointer */ let below = null;
 
-  /** What is below the pointer: a row, its place for blocks, or what is beside the rows. @param {number} x @param {number} y */
+  /**
+   * What is below the pointer: a row, its place for blocks, or what is beside the rows.
+   *
+   * @param {number} x
+   * @param {number} y
+   */
   const at = (x, y) => {
     const target = document.elementFromPoint(x, y);
     const row = target?.closest("[data-row]") ?? null;

@@ -9,7 +9,11 @@ export function written({ row, slot, index }) {
   return `${row} ${slot} ${index}`;
 }
 
-/** The place that is written into an element or the nearest one around it; null if there is none. @param {EventTarget | null} target */
+/**
+ * The place that is written into an element or the nearest one around it; null if there is none.
+ *
+ * @param {EventTarget | null} target
+ */
 export function spotOf(target) {
   const element = target instanceof Element ? target.closest("[data-place]") : null;
   const text = element instanceof HTMLElement ? element.dataset.place : undefined;
