@@ -321,6 +321,14 @@ test("an older text counts until the user has decided, and the edit waits", () =
   assert.match(workspace.code, /when .* do/);
 });
 
+test("a file that cannot be read as VPL stays as it is", () => {
+  const text = newAesl("a = 1\n").replace("</node>", "<!-- <vplroot> --></node>");
+  const { workspace, editing } = opened(text);
+  assert.deepEqual([editing.error?.key, editing.isBlocked], ["file.none", false]);
+  add(editing, "button");
+  assert.equal(workspace.current.text, text);
+});
+
 test("notices say what to decide", () => {
   const { editing } = opened(read("format0.aesl"));
   const noop = () => {};

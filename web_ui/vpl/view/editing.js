@@ -153,7 +153,7 @@ export class VplEditing {
    * @param {string} [series]   consecutive edits of one gesture are undone together
    */
   edit(next, series = "") {
-    if (next === this.program) return;
+    if (next === this.program || this.error !== null) return; // there is no file that could take it
     if (this.#opened.isStored) {
       this.#pending = { program: next, series };
       return;
