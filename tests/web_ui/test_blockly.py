@@ -10,10 +10,8 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import (
     MARKS,
-    TouchPoints,
     choose_in_file_menu,
     choose_language,
     drop_file,

@@ -63,7 +63,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     go_to(page, "#tab-playground", "Shift+Tab")
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("Enter")
-    page.locator("[data-new=button]:focus").wait_for()  # the tab asks how to begin
+    page.locator("[data-new=vpl-empty]:focus").wait_for()  # the tab asks how to begin
     go_to(page, "[data-new=empty]")
     page.keyboard.press("Enter")
     page.locator(".cm-content:focus").wait_for()  # the text has the cursor in it

@@ -36,7 +36,12 @@ const FILES = new URL("../data/web/vpl/", import.meta.url);
 const read = (/** @type {string} */ name) => readFileSync(new URL(name, FILES), "utf8");
 const SAMPLES = LANGUAGES.find(({ id }) => id === "vpl")?.samples.map(({ name }) => name) ?? [];
 
-/** Blocks that the controls reach from a new one, in at most `depth` steps. @param {string} name @param {number} depth */
+/**
+ * Blocks that the controls reach from a new one, in at most `depth` steps.
+ *
+ * @param {string} name
+ * @param {number} depth
+ */
 function reached(name, depth) {
   /** @type {Map<string, Block>} */ const found = new Map();
   let last = [makeBlock(name)];
@@ -103,7 +108,11 @@ test("pictures differ where the state differs", () => {
   }
 });
 
-/** Blocks whose difference is in their thresholds only, which sliders and words show. @param {readonly Block[]} blocks */
+/**
+ * Blocks whose difference is in their thresholds only, which sliders and words show.
+ *
+ * @param {readonly Block[]} blocks
+ */
 function thresholdsOnly(blocks) {
   const sensors = blocks.map(({ values }) => JSON.stringify(values.slice(0, -2)));
   return blocks.length - new Set(sensors).size;
@@ -310,6 +319,14 @@ test("an older text counts until the user has decided, and the edit waits", () =
   editing.decide(true);
   assert.deepEqual([editing.question, editing.program.rows.length], [null, program.rows.length - 1]);
   assert.match(workspace.code, /when .* do/);
+});
+
+test("a file that cannot be read as VPL stays as it is", () => {
+  const text = newAesl("a = 1\n").replace("</node>", "<!-- <vplroot> --></node>");
+  const { workspace, editing } = opened(text);
+  assert.deepEqual([editing.error?.key, editing.isBlocked], ["file.none", false]);
+  add(editing, "button");
+  assert.equal(workspace.current.text, text);
 });
 
 test("notices say what to decide", () => {

@@ -69,7 +69,11 @@ export class EditorSession {
     }
   }
 
-  /** Limit the blocks, in this browser, until that is taken back. @param {import("../program_tab/toolbox_file.js").Toolbox} toolbox */
+  /**
+   * Limit the blocks, in this browser, until that is taken back.
+   *
+   * @param {import("../program_tab/toolbox_file.js").Toolbox} toolbox
+   */
   setToolbox(toolbox) {
     this.toolbox = toolbox;
     if (toolbox === WHOLE) this.storage.removeItem(TOOLBOX_KEY);

@@ -264,7 +264,12 @@ export function createView(parts) {
   return new TextView(parts);
 }
 
-/** One of the programs to begin with; "" is an empty page. @param {string} name @param {import("../i18n/index.js").Translate} t */
+/**
+ * One of the programs to begin with; "" is an empty page.
+ *
+ * @param {string} name
+ * @param {import("../i18n/index.js").Translate} t
+ */
 export function sampleText(name, t) {
   return name === "empty" ? "" : skeletonText(name, t);
 }

@@ -1,7 +1,18 @@
 // The open programs, one per tab: which robot runs which, and the drafts in browser storage. No DOM.
 
 import { AeslError, readAesl } from "./aesl.js";
-import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined, rewritten } from "./documents.js";
+import {
+  blank,
+  codeOf,
+  edited,
+  fileName,
+  fromRobot,
+  isInRobot,
+  isUnsaved,
+  opened,
+  redefined,
+  rewritten,
+} from "./documents.js";
 
 /** @typedef {import("./documents.js").Document} Document */
 /** @typedef {import("./state.js").ProgramInfo} ProgramInfo */
@@ -81,7 +92,12 @@ export class Workspace {
     this.#replace(this.tab, { ...blank(), own: true });
   }
 
-  /** Begin with a program of the page, which needs no place among the last programs. @param {string} name @param {string} text */
+  /**
+   * Begin with a program of the page, which needs no place among the last programs.
+   *
+   * @param {string} name
+   * @param {string} text
+   */
   begin(name, text) {
     this.#replace(this.tab, opened(fileName(name), text));
   }

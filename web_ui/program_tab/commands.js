@@ -13,6 +13,8 @@ const THYMIO = "thymio-II";
 /** Projects of other programs hold pictures and sounds, too. */
 const LARGEST_IMPORT = 20_000_000;
 
+/** @typedef {import("../hosts/program_host.js").Language} Language */
+/** @typedef {import("../hosts/program_host.js").LanguageModule} LanguageModule */
 /** @typedef {import("../input/runtime_client.js").Verb} Verb */
 
 export class ProgramCommands {
@@ -24,7 +26,7 @@ export class ProgramCommands {
    * @param {import("../editor/editor_session.js").EditorSession} options.session
    * @param {import("./language_choice.js").LanguageChoice} options.choice
    * @param {readonly import("../hosts/program_host.js").Language[]} options.languages
-   * @param {(language: import("../hosts/program_host.js").Language) => Promise<import("../hosts/program_host.js").LanguageModule | null>} options.load
+   * @param {(language: Language) => Promise<LanguageModule | null>} options.load
    * @param {import("../input/actions.js").Actions} options.actions
    * @param {import("../editor/robot_selection.js").RobotSelection} options.selection
    * @param {() => import("../hosts/program_host.js").ProgramView | null} options.view  of the chosen language

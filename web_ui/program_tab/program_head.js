@@ -14,7 +14,15 @@ export function programHead({ t, languages, choose, commands }) {
   const choices = languages.map(({ id, icon: sign }) =>
     h(
       "button",
-      { type: "button", class: "btn", "data-language": id, "aria-pressed": "false", onclick: () => choose(id) },
+      {
+        type: "button",
+        class: "btn",
+        "data-language": id,
+        "aria-pressed": "false",
+        "aria-label": t(`language.${id}`),
+        title: t(`language.${id}`),
+        onclick: () => choose(id),
+      },
       icon(sign, { small: true }),
       h("span", {}, t(`language.${id}`)),
     ),

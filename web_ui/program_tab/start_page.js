@@ -43,8 +43,9 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
   };
   /** The samples of a language, below its name if there are several languages. @param {Language} language */
   const sectionOf = (language) => {
-    const title = h("h3", { id: `start-${language.id}` }, icon(language.icon, { small: true }), t(`language.${language.id}`));
-    const words = h("small", { class: "muted" }, t(`language.${language.id}.text`));
+    const { id } = language;
+    const title = h("h3", { id: `start-${id}` }, icon(language.icon, { small: true }), t(`language.${id}`));
+    const words = h("small", { class: "muted" }, t(`language.${id}.text`));
     const cards = h("ul", { class: "program-cards" }, ...language.samples.map((sample) => card(language, sample)));
     const rows = (language.more ?? []).map(({ name, key }) => row(language, name, key));
     const summary = h("summary", {}, t("new.more"), h("span", { class: "turns" }, icon("caretDown", { small: true })));

@@ -27,6 +27,8 @@ export { EditorSession } from "../editor/editor_session.js";
 /** Narrower tabs have the menu of the file in the head, as the tabs leave no room for it. */
 const WIDE_PX = 640;
 
+/** @typedef {import("../hosts/program_host.js").Language} Language */
+/** @typedef {import("../hosts/program_host.js").LanguageModule} LanguageModule */
 /** @typedef {import("../hosts/program_host.js").ProgramView} ProgramView */
 /**
  * @typedef {object} Parts   what a language gets
@@ -52,7 +54,7 @@ export class ProgramTab {
    * @param {import("../shell/context.js").Context} options.context
    * @param {readonly import("../hosts/program_host.js").Language[]} options.languages
    * @param {import("./language_choice.js").LanguageChoice} options.choice
-   * @param {(language: import("../hosts/program_host.js").Language) => Promise<import("../hosts/program_host.js").LanguageModule | null>} options.load
+   * @param {(language: Language) => Promise<LanguageModule | null>} options.load
    * @param {(id: string) => void} options.show   shows the document in a language, by `setView`
    */
   constructor({ session, choice, context, languages, load, show }) {

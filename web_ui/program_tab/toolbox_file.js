@@ -5,7 +5,9 @@
 // `hide` has names of blocks and of categories, `modes` the modes of VPL that can be chosen. Blocks that a program has
 // stay in it, whatever the file hides. Pure.
 
-/** @typedef {{ hide: readonly string[], modes: readonly string[] | null }} Toolbox   modes: null if the file has none */
+/**
+ * @typedef {{ hide: readonly string[], modes: readonly string[] | null }} Toolbox   modes: null if the file has none
+ */
 /** @typedef {{ key: string, values: Record<string, string> }} Problem   a text of the languages' files */
 
 const FORMAT = "toolbox";

@@ -13,12 +13,14 @@ const LIGHTS = ["var(--light-red)", "var(--light-green)", "var(--light-blue)"];
 /** The slider of a wheel. @param {number} x  of its middle @param {number} speed */
 function wheelSlider(x, speed) {
   const at = 36 - (speed / FASTEST) * 20;
+  const track = { fill: "var(--bot)", stroke: "var(--act-line)", "stroke-width": 1.5 };
+  const bar = { y: short(Math.min(at, 36)), height: short(Math.abs(at - 36)), fill: "var(--act-fill)" };
   return (
-    tag("rect", { x: x - 4, y: 10, width: 8, height: 52, rx: 4, fill: "var(--bot)", stroke: "var(--act-line)", "stroke-width": 1.5 }) +
-    tag("rect", { x: x - 4, y: short(Math.min(at, 36)), width: 8, height: short(Math.abs(at - 36)), fill: "var(--act-fill)" }) +
+    tag("rect", { x: x - 4, y: 10, width: 8, height: 52, rx: 4, ...track }) +
+    tag("rect", { x: x - 4, width: 8, ...bar }) +
     line(`M${x - 4} 36h8`, "var(--act-line)", 1.2) +
     tag("rect", { x: x - 8, y: short(at - 4), width: 16, height: 8, rx: 4, fill: ACT })
-  ); // prettier-ignore
+  );
 }
 
 /** The way that the robot takes with these speeds. @param {number} left @param {number} right */
@@ -88,14 +90,15 @@ function colorbottom(levels) {
 
 /** @param {readonly number[]} values */
 function sound(values) {
-  const staff = [20, 28.5, 37, 45.5, 54].map((y) => line(`M8 ${y}H64`, "var(--act-line)", 1.5, { "stroke-opacity": 0.5 }));
+  const faint = { "stroke-opacity": 0.5 };
+  const staff = [20, 28.5, 37, 45.5, 54].map((y) => line(`M8 ${y}H64`, "var(--act-line)", 1.5, faint));
   const notes = values.map((value, column) => {
     const note = value % LENGTH_UNIT;
     const cx = 13 + 9.2 * column;
     if (note === SILENCE) return line(`M${short(cx - 2)} 62h4`, ACT, 1.8, { "stroke-opacity": 0.6 });
     const isLong = value >= 2 * LENGTH_UNIT;
-    const look = { rx: isLong ? 4.5 : 3.7, ry: 3.4, fill: isLong ? "var(--bot)" : ACT, stroke: ACT, "stroke-width": 1.8 };
-    return tag("ellipse", { cx: short(cx), cy: 54 - 8.5 * note, ...look });
+    const look = isLong ? { rx: 4.5, fill: "var(--bot)" } : { rx: 3.7, fill: ACT };
+    return tag("ellipse", { cx: short(cx), cy: 54 - 8.5 * note, ry: 3.4, stroke: ACT, "stroke-width": 1.8, ...look });
   });
   return staff.join("") + notes.join("");
 }

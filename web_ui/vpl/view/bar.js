@@ -53,7 +53,9 @@ export function vplBar({ t, undo, redo, choose, toggleText }) {
   );
   return {
     element: h("div", { class: "vpl-bar" }, back, forth, modeMenu.element, text),
-    /** @param {{ canUndo: boolean, canRedo: boolean, modes: readonly Mode[], mode: Mode, isTextShown: boolean }} facts */
+    /**
+     * @param {{ canUndo: boolean, canRedo: boolean, modes: readonly Mode[], mode: Mode, isTextShown: boolean }} facts
+     */
     render(facts) {
       modes = facts.modes.includes(facts.mode) ? facts.modes : [facts.mode, ...facts.modes];
       mode = facts.mode;

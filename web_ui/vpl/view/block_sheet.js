@@ -35,7 +35,12 @@ export function blockSheet({ t, change, endSeries, copy, remove, closed }) {
   const large = h("div", { class: "vpl-large" });
   const body = h("div", { class: "vpl-sheet-body" });
   const plain = h("p", { class: "small muted" }, t("block.plain"));
-  /** @param {string} name @param {import("../../ui/icons.js").IconName} sign @param {string} look @param {() => void} act */
+  /**
+   * @param {string} name
+   * @param {import("../../ui/icons.js").IconName} sign
+   * @param {string} look
+   * @param {() => void} act
+   */
   const action = (name, sign, look, act) =>
     h(
       "button",
@@ -46,7 +51,13 @@ export function blockSheet({ t, change, endSeries, copy, remove, closed }) {
   const close = () => element.hidePopover();
   const element = h(
     "div",
-    { id: "vpl-block", class: "sheet vpl-sheet", popover: "auto", role: "dialog", "aria-labelledby": "vpl-block-title" },
+    {
+      id: "vpl-block",
+      class: "sheet vpl-sheet",
+      popover: "auto",
+      role: "dialog",
+      "aria-labelledby": "vpl-block-title",
+    },
     title,
     body,
     plain,
@@ -67,12 +78,14 @@ export function blockSheet({ t, change, endSeries, copy, remove, closed }) {
   });
 
   /** @param {Words} words */
-  const say = ({ key, values = {} }) => t(key, { ...values, ...("part" in values ? { part: t(String(values.part)) } : {}) });
+  const say = ({ key, values = {} }) =>
+    t(key, "part" in values ? { ...values, part: t(String(values.part)) } : values);
 
   /** @param {Control} control @param {number} index  among the controls @param {number} [value] */
   const use = (control, index, value) => {
     if (block === null) return;
-    change(used(block, control, mode, value), control.kind === "slider" ? `${index} ${button?.getAttribute("data-place")}` : "");
+    const series = control.kind === "slider" ? `${index} ${button?.getAttribute("data-place")}` : "";
+    change(used(block, control, mode, value), series);
   };
 
   /** @param {() => Control} control @param {number} index @returns {Part} */
@@ -172,7 +185,9 @@ export function blockSheet({ t, change, endSeries, copy, remove, closed }) {
     setAttribute(element, "data-block", block.name);
     if (now !== structure) {
       structure = now;
-      parts = controls.map((_, index) => MAKERS[controls[index].kind](() => controlsOf(/** @type {Block} */ (block), mode)[index], index));
+      /** @param {number} index */
+      const present = (index) => controlsOf(/** @type {Block} */ (block), mode)[index];
+      parts = controls.map(({ kind }, index) => MAKERS[kind](() => present(index), index));
       const inPicture = parts.filter((_, index) => "area" in controls[index]).map((part) => part.element);
       const beside = parts.filter((_, index) => !("area" in controls[index])).map((part) => part.element);
       const drawn = h("div", { class: "vpl-drawn", "aria-hidden": "true" });
@@ -206,13 +221,15 @@ export function blockSheet({ t, change, endSeries, copy, remove, closed }) {
       if (block === null || changed === block) return;
       if (changed === null || changed.name !== block.name) return close();
       const old = structure;
-      const focused = document.activeElement instanceof HTMLElement && element.contains(document.activeElement) ? document.activeElement : null;
+      const { activeElement } = document;
+      const focused = activeElement instanceof HTMLElement && element.contains(activeElement) ? activeElement : null;
       const value = focused?.dataset.value;
       [block, mode, button] = [changed, inMode, beside ?? button];
       draw();
       if (old === structure) return;
       if (button !== null) move(element, button);
-      /** @type {HTMLElement | null} */ (body.querySelector(value === undefined ? "button, input" : `[data-value="${value}"]`))?.focus();
+      const next = value === undefined ? "button, input" : `[data-value="${value}"]`;
+      /** @type {HTMLElement | null} */ (body.querySelector(next))?.focus();
     },
   };
 }

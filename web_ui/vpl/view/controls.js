@@ -18,8 +18,10 @@ import { keyAt, KEYPAD_LABELS, SENSORS } from "./events.js";
  *
  * @typedef {{ kind: "press", index: number, area: Area, words: Words, isOn: boolean }} PressControl
  * @typedef {{ kind: "key", key: number, area: Area, words: Words, isOn: boolean }} KeyControl
- * @typedef {{ kind: "slider", index: number, stops: number[], value: number, look: string, words: Words, shown: Words }} SliderControl
- * @typedef {{ kind: "choice", index: number, value: number, words: Words, options: { value: number, words: Words }[] }} ChoiceControl
+ * @typedef {{ kind: "slider", index: number, value: number, words: Words }
+ *   & { stops: number[], look: string, shown: Words }} SliderControl
+ * @typedef {{ kind: "choice", index: number, value: number, words: Words }
+ *   & { options: { value: number, words: Words }[] }} ChoiceControl
  * @typedef {{ kind: "notes", values: readonly number[] }} NotesControl
  * @typedef {PressControl | KeyControl | SliderControl | ChoiceControl | NotesControl} Control
  */
@@ -75,7 +77,14 @@ function slider(block, index, look, words, shown = { key: "value.number", values
   return { kind: "slider", index, stops: stopsOf(block, index), value: block.values[index], look, words, shown };
 }
 
-/** @param {Block} block @param {number} index @param {string} name  of the texts @param {number} from @param {number} to @returns {ChoiceControl} */
+/**
+ * @param {Block} block
+ * @param {number} index
+ * @param {string} name  of the texts
+ * @param {number} from
+ * @param {number} to
+ * @returns {ChoiceControl}
+ */
 function choice(block, index, name, from, to) {
   const options = [];
   for (let value = from; value <= to; value += 1) options.push({ value, words: { key: `${name}.${value}` } });
@@ -119,7 +128,12 @@ function buttonControls(block, advanced) {
   ];
 }
 
-/** @param {Block} block @param {boolean} advanced @param {number} low  index of the lower threshold @returns {Control[]} */
+/**
+ * @param {Block} block
+ * @param {boolean} advanced
+ * @param {number} low  index of the lower threshold
+ * @returns {Control[]}
+ */
 function thresholds(block, advanced, low) {
   if (!advanced) return [];
   return [
@@ -173,9 +187,10 @@ const CONTROLS = {
   colortop: colorControls,
   colorbottom: colorControls,
   sound: ({ values }) => [{ kind: "notes", values }],
-  timer: (block) => [
-    slider(block, 0, "time", { key: "timer.value" }, { key: "value.seconds", values: { seconds: block.values[0] / 1000 } }),
-  ],
+  timer: (block) => {
+    const seconds = { key: "value.seconds", values: { seconds: block.values[0] / 1000 } };
+    return [slider(block, 0, "time", { key: "timer.value" }, seconds)];
+  },
   play: (block) => [slider(block, 0, "count", { key: "play.value" })],
 }; // prettier-ignore
 
@@ -217,7 +232,13 @@ export function used(block, control, mode, value = 0) {
 export const NOTES = 5;
 export const COLUMNS = 6;
 
-/** What a column of the melody has on a line. @param {number} value @param {number} note @returns {"" | "short" | "long"} */
+/**
+ * What a column of the melody has on a line.
+ *
+ * @param {number} value
+ * @param {number} note
+ * @returns {"" | "short" | "long"}
+ */
 export function lengthAt(value, note) {
   if (value % LENGTH_UNIT !== note) return "";
   return value >= 2 * LENGTH_UNIT ? "long" : "short";

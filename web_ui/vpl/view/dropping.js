@@ -2,12 +2,15 @@
 
 import { kindOf, makeBlock } from "../blocks.js";
 import { blockAt, copyRow, moveBlock, moveRow, putBlock, removeBlock, slotOf, whyNot } from "../edits.js";
+import { placeOf } from "./place.js";
 
 /** @typedef {import("../program.js").Finding} Finding */
 /** @typedef {import("../program.js").Program} Program */
 /** @typedef {import("./place.js").Spot} Spot */
 /** What is dragged: a new block of a palette, or a block or a row of the program. @typedef {string | Spot} Dragged */
-/** @typedef {{ program: Program, row: number, reason: Finding | null }} Dropped   program: unchanged if it is impossible */
+/**
+ * @typedef {{ program: Program, row: number, reason: Finding | null }} Dropped   program: unchanged if it is impossible
+ */
 
 /**
  * @param {Program} program
@@ -23,13 +26,13 @@ export function dropped(program, dragged, spot, copy) {
     if (copy) return { program: copyRow(program, dragged.row, Math.min(row, last)), row, reason: null };
     return { program: moveRow(program, dragged.row, Math.min(row, last - 1)), row, reason: null };
   }
-  const from = typeof dragged === "string" ? null : { ...dragged, slot: /** @type {import("./place.js").Slot} */ (dragged.slot) };
+  const from = typeof dragged === "string" ? null : placeOf(dragged);
   const block = from === null ? makeBlock(/** @type {string} */ (dragged)) : blockAt(program, from);
   if (block === null) return { program, row, reason: null };
   const slot = slotAt(program, block.name, spot, from?.slot);
   const at = spot.slot === slot ? spot.index : undefined;
   const isOwn = from !== null && !copy && from.row === row && from.slot === slot;
-  const reason = whyNot(program, row, block, slot, isOwn ? from.index : null);
+  const reason = whyNot(program, row, block, slot, isOwn ? (from.index ?? 0) : null);
   if (reason !== null) return { program, row, reason };
   if (from === null) return { program: putBlock(program, row, block, { slot, index: at }), row, reason };
   return { program: moveBlock(program, from, row, { at, copy, slot }), row, reason };

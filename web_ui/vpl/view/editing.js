@@ -128,7 +128,11 @@ export class VplEditing {
     return { message: comparison.message, changes: comparison.changes, isAsked: this.#pending !== null };
   }
 
-  /** The text of the document, with the lines of its rows if they are known. @returns {{ text: string, source: Source | null }} */
+  /**
+   * The text of the document, with the lines of its rows if they are known.
+   *
+   * @returns {{ text: string, source: Source | null }}
+   */
   get shown() {
     const { comparison, isStored, file, code } = this.#opened;
     if (isStored) return { text: file.code, source: comparison.source };
@@ -149,7 +153,7 @@ export class VplEditing {
    * @param {string} [series]   consecutive edits of one gesture are undone together
    */
   edit(next, series = "") {
-    if (next === this.program) return;
+    if (next === this.program || this.error !== null) return; // there is no file that could take it
     if (this.#opened.isStored) {
       this.#pending = { program: next, series };
       return;
@@ -163,7 +167,11 @@ export class VplEditing {
     this.#opened.history = endSeries(this.#opened.history);
   }
 
-  /** Decide: a new text is made from the blocks, with the edit that waits; else the stored text stays. @param {boolean} isRenewed */
+  /**
+   * Decide: a new text is made from the blocks, with the edit that waits; else the stored text stays.
+   *
+   * @param {boolean} isRenewed
+   */
   decide(isRenewed) {
     const pending = this.#pending;
     this.#pending = null;

@@ -1,29 +1,21 @@
 // The keyboard in the rows: arrows move between blocks, Delete removes, Ctrl and arrows move rows and actions.
 
-import { isSlot, spotOf } from "./place.js";
+import { isSlot, spotOf, written } from "./place.js";
 
 /** @typedef {import("./place.js").Spot} Spot */
-/**
- * @typedef {object} KeyActions
- * @property {(place: string) => void} go             to another place
- * @property {(spot: Spot) => void} remove
- * @property {(spot: Spot, by: -1 | 1) => void} moveRow
- * @property {(spot: Spot, by: -1 | 1) => void} moveBlock
- * @property {(spot: Spot) => void} copyRow
- * @property {(spot: Spot) => void} copy
- * @property {(spot: Spot) => void} paste
- * @property {() => void} undo
- * @property {() => void} redo
- * @property {() => boolean} cancel                   returns whether there was something to cancel
- */
 
-/** @param {HTMLElement} element  the view @param {HTMLElement} rows @param {KeyActions} actions */
-export function watchKeys(element, rows, actions) {
+/**
+ * @param {HTMLElement} element   the view
+ * @param {ReturnType<typeof import("./rows.js").rowList>} rows
+ * @param {import("./commands.js").VplCommands} commands
+ */
+export function watchKeys(element, rows, commands) {
+  const { editing } = commands;
   element.addEventListener("keydown", (event) => {
     const { key, shiftKey, altKey } = event;
     const ctrl = event.ctrlKey || event.metaKey;
     if (altKey) return;
-    const spot = rows.contains(/** @type {Node} */ (event.target)) ? spotOf(event.target) : null;
+    const spot = rows.element.contains(/** @type {Node} */ (event.target)) ? spotOf(event.target) : null;
     if (!act(key.length === 1 ? key.toLowerCase() : key, ctrl, shiftKey, spot)) return;
     event.preventDefault();
     event.stopPropagation();
@@ -31,55 +23,68 @@ export function watchKeys(element, rows, actions) {
 
   /** @param {string} key @param {boolean} ctrl @param {boolean} shift @param {Spot | null} spot */
   const act = (key, ctrl, shift, spot) => {
-    if (ctrl && key === "z") shift ? actions.redo() : actions.undo();
-    else if (ctrl && key === "y") actions.redo();
-    else if (key === "Escape") return actions.cancel();
+    if (ctrl && (key === "y" || (key === "z" && shift))) commands.redo();
+    else if (ctrl && key === "z") commands.undo();
+    else if (key === "Escape") return commands.cancel();
     else if (spot === null) return false;
     else if (ctrl) return withCtrl(key, spot);
-    else if (key === "Delete" || key === "Backspace") actions.remove(spot);
-    else return move(key, spot);
+    else if (key === "Delete" || key === "Backspace") {
+      commands.remove(spot);
+      focus(spot);
+    } else return go(key, spot);
     return true;
+  };
+
+  /** Draw, then focus a place. @param {Spot} spot */
+  const focus = (spot) => {
+    commands.draw();
+    rows.focus(written(spot));
   };
 
   /** @param {string} key @param {Spot} spot */
   const withCtrl = (key, spot) => {
-    if (key === "ArrowUp") actions.moveRow(spot, -1);
-    else if (key === "ArrowDown") actions.moveRow(spot, 1);
-    else if (key === "ArrowLeft" && isSlot(spot)) actions.moveBlock(spot, -1);
-    else if (key === "ArrowRight" && isSlot(spot)) actions.moveBlock(spot, 1);
-    else if (key === "c") actions.copy(spot);
-    else if (key === "v") actions.paste(spot);
-    else if (key === "d") actions.copyRow(spot);
-    else return false;
+    const by = key === "ArrowUp" || key === "ArrowLeft" ? -1 : 1;
+    if (key === "ArrowUp" || key === "ArrowDown") {
+      commands.moveRow(spot.row, spot.row + by);
+      focus({ ...spot, row: editing.selected ?? spot.row });
+    } else if ((key === "ArrowLeft" || key === "ArrowRight") && isSlot(spot)) {
+      commands.moveInRow(spot, by);
+      focus({ ...spot, index: Math.max(spot.index + by, 0) });
+    } else if (key === "c") commands.copy(spot);
+    else if (key === "v") {
+      commands.paste(spot);
+      focus(spot);
+    } else if (key === "d") {
+      if (spot.row < editing.program.rows.length - 1) commands.actOnRow("copy", spot.row);
+    } else return false;
     return true;
   };
 
   /** @param {string} key @param {Spot} spot */
-  const move = (key, spot) => {
-    const places = /** @type {HTMLElement[]} */ ([...rows.querySelectorAll("[data-place]")]).map((each) => ({
-      place: each.dataset.place ?? "",
-      ...spotOf(each),
-    }));
-    const mine = places.filter(({ row }) => row === spot.row);
+  const go = (key, spot) => {
+    const all = /** @type {HTMLElement[]} */ ([...rows.element.querySelectorAll("[data-place]")]);
+    const spots = all.map((each) => /** @type {Spot} */ (spotOf(each)));
+    const mine = spots.filter(({ row }) => row === spot.row);
     const at = mine.findIndex(({ slot, index }) => slot === spot.slot && index === spot.index);
-    /** @param {number} row */
+    /** The place in another row that is most like this one. @param {number} row */
     const inRow = (row) => {
-      const there = places.filter((each) => each.row === row);
+      const there = spots.filter((each) => each.row === row);
       const same = there.filter(({ slot }) => slot === spot.slot);
       return same[Math.min(spot.index, same.length - 1)] ?? there[Math.min(at, there.length - 1)];
     };
-    const lastRow = places.at(-1)?.row ?? 0;
-    const target = {
+    /** @type {Record<string, () => Spot | undefined>} */
+    const targets = {
       ArrowLeft: () => mine[at - 1],
       ArrowRight: () => mine[at + 1],
       ArrowUp: () => inRow(spot.row - 1),
       ArrowDown: () => inRow(spot.row + 1),
       Home: () => inRow(0),
-      End: () => inRow(lastRow),
-    }[key];
+      End: () => inRow(spots.at(-1)?.row ?? 0),
+    };
+    const target = targets[key];
     if (target === undefined) return false;
     const found = target();
-    if (found !== undefined) actions.go(found.place);
+    if (found !== undefined) rows.focus(written(found));
     return true;
   };
 }

@@ -3,8 +3,13 @@
 /** @typedef {"" | "key" | "event" | "number" | "comment"} Look */
 /** @typedef {{ text: string, look: Look }} Piece */
 
-const KEYWORDS = "var const if then elseif else end when do for in step while call callsub sub onevent emit return and or not abs";
-const WORD = new RegExp(`(#.*)|\\b(?:(onevent|emit|sub|callsub)([ ]+)([\\w.]+)|(${KEYWORDS.replaceAll(" ", "|")})|(0x[\\da-f]+|\\d+))\\b`, "g");
+const KEYWORDS =
+  "var|const|if|then|elseif|else|end|when|do|for|in|step|while|call|callsub|sub|onevent|emit|return|and|or|not|abs";
+/** A comment; or a word before a name, blanks and the name; a keyword; a number. */
+const WORD = new RegExp(
+  `(#.*)|\\b(?:(onevent|emit|sub|callsub)([ ]+)([\\w.]+)|(${KEYWORDS})|(0x[\\da-f]+|\\d+))\\b`,
+  "g",
+);
 
 /** The pieces of a line. @param {string} line @returns {Piece[]} */
 export function pieces(line) {

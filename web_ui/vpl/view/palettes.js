@@ -33,7 +33,8 @@ export function palette({ t, types, add }) {
   const entry = (name) => {
     const title = t(nameKey(name));
     const attributes = { class: "vpl-new", "data-new-block": name, "data-drag": "", tabindex: "-1" };
-    const button = h("button", { type: "button", ...attributes, onclick: (/** @type {MouseEvent} */ event) => add(name, event.detail === 0) });
+    const click = (/** @type {MouseEvent} */ { detail }) => add(name, detail === 0);
+    const button = h("button", { type: "button", ...attributes, onclick: click });
     button.innerHTML = picture(makeBlock(name, SHOWN[name]));
     button.append(h("span", {}, title));
     button.setAttribute("aria-label", t("palette.add", { name: title }));
@@ -43,12 +44,14 @@ export function palette({ t, types, add }) {
   element.addEventListener("keydown", (event) => {
     const all = buttons();
     const at = all.indexOf(/** @type {HTMLElement} */ (document.activeElement));
-    const to = { ArrowDown: at + 1, ArrowRight: at + 1, ArrowUp: at - 1, ArrowLeft: at - 1, Home: 0, End: all.length - 1 }[event.key];
+    const [next, last] = [at + 1, at - 1];
+    const targets = { ArrowDown: next, ArrowRight: next, ArrowUp: last, ArrowLeft: last, Home: 0, End: all.length - 1 };
+    const to = /** @type {Record<string, number>} */ (targets)[event.key];
     if (at < 0 || to === undefined || event.ctrlKey) return;
     event.preventDefault();
-    const next = all[(to + all.length) % all.length];
-    for (const each of all) each.tabIndex = each === next ? 0 : -1;
-    next.focus();
+    const target = all[(to + all.length) % all.length];
+    for (const each of all) each.tabIndex = each === target ? 0 : -1;
+    target.focus();
   });
   let shown = "";
   return {
@@ -65,9 +68,12 @@ export function palette({ t, types, add }) {
       if (now === shown) return;
       shown = now;
       element.replaceChildren(
-        ...lists.flatMap(({ type, names }) =>
-          names.length === 0 ? [] : [h("span", { class: "vpl-cap", "aria-hidden": "true" }, t(`palette.${type}`)), ...names.map(entry)],
-        ),
+        ...lists
+          .filter(({ names }) => names.length > 0)
+          .flatMap(({ type, names }) => [
+            h("span", { class: "vpl-cap", "aria-hidden": "true" }, t(`palette.${type}`)),
+            ...names.map(entry),
+          ]),
       );
       const [first] = buttons();
       if (first !== undefined) first.tabIndex = 0;

@@ -13,7 +13,11 @@ export function drawing({ name, values }) {
   return outline(kindOf(name).type) + draw(values);
 }
 
-/** The picture, hidden from screen readers: the control that contains it has the block's sentence. @param {Block} block */
+/**
+ * The picture, hidden from screen readers: the control that contains it has the block's sentence.
+ *
+ * @param {Block} block
+ */
 export function picture(block) {
   return `<svg class="vpl-picture" viewBox="0 0 ${WIDTH} ${HEIGHT}" aria-hidden="true">${drawing(block)}</svg>`;
 }

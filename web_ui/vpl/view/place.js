@@ -9,7 +9,11 @@ export function written({ row, slot, index }) {
   return `${row} ${slot} ${index}`;
 }
 
-/** The place that is written into an element or the nearest one around it; null if there is none. @param {EventTarget | null} target */
+/**
+ * The place that is written into an element or the nearest one around it; null if there is none.
+ *
+ * @param {EventTarget | null} target
+ */
 export function spotOf(target) {
   const element = target instanceof Element ? target.closest("[data-place]") : null;
   const text = element instanceof HTMLElement ? element.dataset.place : undefined;
@@ -21,4 +25,9 @@ export function spotOf(target) {
 /** Whether a place is one of a block. @param {Spot} spot @returns {spot is Spot & { slot: Slot }} */
 export function isSlot(spot) {
   return spot.slot !== "row" && spot.slot !== "remove";
+}
+
+/** The place of a block as the edits name it. @param {Spot} spot @returns {import("../program.js").Place} */
+export function placeOf({ row, slot, index }) {
+  return { row, slot: /** @type {Slot} */ (slot), index };
 }

@@ -58,12 +58,14 @@ export function rowList({ t }) {
     const at = (block, name, at) => {
       const spot = { row: index, slot: name, index: at };
       if (block !== null) return blockButton(block, spot);
-      const isMissing = isHere && refusal.slot === name && !refusal.hint && (name === "event" || row.actions.length === 0);
-      return slotButton(spot, isMissing);
+      const isEmpty = name === "event" || row.actions.length === 0;
+      return slotButton(spot, isHere && refusal.slot === name && !refusal.hint && isEmpty);
     };
     const isLast = index === program.rows.length - 1 && isEmptyRow(row);
     const conditions = row.conditions.map((block, each) => at(block, "conditions", each));
     const actions = row.actions.map((block, each) => at(block, "actions", each));
+    /** The place for one more block. @param {"conditions" | "actions"} name */
+    const more = (name) => at(null, name, row[name].length);
     const isFull = row.actions.length >= palette("action", program.mode).length;
     const number = h(
       "button",
@@ -87,9 +89,9 @@ export function rowList({ t }) {
       number,
       at(row.event, "event", 0),
       ...(row.state === null ? [] : [at(row.state, "state", 0)]),
-      ...(program.mode === "extended" ? [h("span", { class: "vpl-conditions" }, ...conditions, at(null, "conditions", conditions.length))] : []),
+      ...(program.mode === "extended" ? [h("span", { class: "vpl-conditions" }, ...conditions, more("conditions"))] : []),
       h("span", { class: "vpl-arrow", "aria-hidden": "true" }, icon("right", { small: true })),
-      h("span", { class: "vpl-actions" }, ...actions, ...(isFull ? [] : [at(null, "actions", actions.length)]), ...whyOf(index, refusal)),
+      h("span", { class: "vpl-actions" }, ...actions, ...(isFull ? [] : [more("actions")]), ...whyOf(index, refusal)),
       ...(isLast ? [] : [bin]),
       h("span", { class: "chip vpl-ran", hidden: true }, icon("check", { small: true }), t("row.ran")),
     ); // prettier-ignore

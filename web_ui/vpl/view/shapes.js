@@ -23,7 +23,14 @@ export function shape(d, fill, edge = "var(--bot-edge)", more = {}) {
   return tag("path", { d, fill, stroke: edge, "stroke-width": 2, "stroke-linejoin": "round", ...more });
 }
 
-/** A line with round ends. @param {string} d @param {string} color @param {number} [width] @param {Attributes} [more] */
+/**
+ * A line with round ends.
+ *
+ * @param {string} d
+ * @param {string} color
+ * @param {number} [width]
+ * @param {Attributes} [more]
+ */
 export function line(d, color, width = 2.4, more = {}) {
   const ends = { "stroke-linecap": "round", "stroke-linejoin": "round" };
   return tag("path", { d, fill: "none", stroke: color, "stroke-width": width, ...ends, ...more });
@@ -63,23 +70,33 @@ export function fromSide(x, y, { top = "var(--bot)", bottom = "var(--bot-2)", tu
   );
 }
 
-/** The robot from behind, upright or turned around its long axis. @param {number} x @param {number} y @param {number} turn */
+/**
+ * The robot from behind, upright or turned around its long axis.
+ *
+ * @param {number} x
+ * @param {number} y
+ * @param {number} turn
+ */
 export function fromBehind(x, y, turn) {
   const wheel = (/** @type {number} */ at) =>
     tag("rect", { x: at, y: 0, width: 6, height: 13, rx: 2.5, fill: "var(--tyre)" });
   return tag(
     "g",
     { transform: `translate(${x} ${y}) rotate(${turn})` },
-    wheel(-22) + wheel(16) + shape("M-19 9V-4a7 7 0 0 1 7-7H12a7 7 0 0 1 7 7V9Z", "var(--bot)") + line("M-19 2H19", "var(--bot-mark)", 1.6),
-  ); // prettier-ignore
+    wheel(-22) +
+      wheel(16) +
+      shape("M-19 9V-4a7 7 0 0 1 7-7H12a7 7 0 0 1 7 7V9Z", "var(--bot)") +
+      line("M-19 2H19", "var(--bot-mark)", 1.6),
+  );
 }
 
 const HAND =
-  "M8 12.5V6.3a1.4 1.4 0 0 1 2.8 0v5V4.7a1.4 1.4 0 0 1 2.8 0v6.6V5.9a1.4 1.4 0 0 1 2.8 0V14c0 4-2.2 6.500-5.300 6.500-2.400 0-3.900-1.100-5.100-3.300L4.300 13.700a1.400 1.400 0 0 1 2.400-1.400L8 14Z";
+  "M8 12.5V6.3a1.4 1.4 0 0 1 2.8 0v5V4.7a1.4 1.4 0 0 1 2.8 0v6.6V5.9a1.4 1.4 0 0 1 2.8 0V14c0 4-2.2 6.5-5.3 6.5-2.4 0-3.9-1.1-5.1-3.3L4.3 13.7a1.4 1.4 0 0 1 2.4-1.4L8 14Z";
 
 /** A hand. @param {string} transform */
 export function hand(transform) {
-  return shape(HAND, "var(--skin)", "var(--bot-edge)", { "stroke-width": 1.15, transform: `${transform} translate(-10.5 -13)` });
+  const placed = { "stroke-width": 1.15, transform: `${transform} translate(-10.5 -13)` };
+  return shape(HAND, "var(--skin)", "var(--bot-edge)", placed);
 }
 
 /** The color of a light, as bright as a person sees it. @param {readonly number[]} levels  red, green, blue: 0 to 32 */

@@ -21,7 +21,7 @@ export function textPane({ t, turn, choose }) {
   const button = h("button", { type: "button", class: "btn note", "data-vpl": "turn", onclick: turn }, t("pane.turn"));
   const element = h(
     "section",
-    { class: "vpl-text", "aria-label": t("pane.title") },
+    { class: "vpl-text" },
     h("div", { class: "vpl-text-head" }, h("b", {}, t("pane.title")), about, h("span", { class: "grow" }), button),
     code,
   );
