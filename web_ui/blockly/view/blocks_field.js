@@ -11,8 +11,9 @@ import { useDialogs } from "./dialogs.js";
 
 /** Where the pictures of Blockly are (vite.config.js). */
 const MEDIA = "./blockly/";
-/** Below this width the toolbox is under the blocks. */
+/** Below this width the toolbox is under the blocks, if there is this height. */
 const NARROW_PX = 480;
+const HIGH_PX = 440;
 /** Distance of a program from the corner, in pixels of the page. */
 const MARGIN_PX = 20;
 
@@ -54,7 +55,8 @@ export class BlocksField {
   open(look, hidden) {
     this.#close();
     this.look = look;
-    const isNarrow = this.place.clientWidth < NARROW_PX;
+    const { clientWidth, clientHeight } = this.place;
+    const isNarrow = clientWidth < NARROW_PX && clientHeight >= HIGH_PX;
     this.#workspace = openWorkspace(this.place, look, { t: this.t, media: MEDIA, hidden, isNarrow });
     this.#workspace.addChangeListener((event) => this.#listen(event));
   }
@@ -185,7 +187,8 @@ export class BlocksField {
   /** @param {import("blockly/core").Events.Abstract} event */
   #listen(event) {
     if (event.type === Blockly.Events.SELECTED) {
-      this.selected(/** @type {import("blockly/core").Events.Selected} */ (event).newElementId ?? null);
+      const id = /** @type {import("blockly/core").Events.Selected} */ (event).newElementId ?? null;
+      if (id !== null || this.place.contains(document.activeElement)) this.selected(id); // else the focus left
     } else if (!event.isUiEvent || event.type === Blockly.Events.BLOCK_DRAG) this.changed();
   }
 }

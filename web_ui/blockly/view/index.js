@@ -37,6 +37,7 @@ export { withoutBlocks as withoutPicture };
  * @typedef {object} KeptBlocks
  * @property {string} text
  * @property {boolean} isOther   whether the program of the file was another one
+ * @property {Look | null} chosen   by the user
  * @property {import("../state.js").WorkspaceState} state
  * @property {import("./blocks_field.js").History} history
  */
@@ -193,9 +194,10 @@ class BlocksView {
     const document = this.#document;
     const { session } = this.parts;
     const { imported, toolbox } = session;
+    const kept = session.blocks?.text === document.text ? session.blocks : null;
+    this.#chosen ??= kept?.chosen ?? null;
     const look = this.#lookNow();
     if (this.field.look !== look) this.field.open(look, new Set(toolbox.hide));
-    const kept = session.blocks?.text === document.text ? session.blocks : null;
     if (kept !== null && !kept.isOther) document.difference = null; // blocks with a mistake keep the program before it
     this.field.load(document.canEdit ? (kept?.state ?? document.state) : {}, kept?.history);
     if (document.canEdit) document.loaded(this.field.state);
@@ -232,7 +234,8 @@ class BlocksView {
   #keep() {
     const { text, isOther, canEdit } = this.#document;
     if (!this.#isLoaded || !canEdit) return;
-    this.parts.session.blocks = { text, isOther, state: this.field.state, history: this.field.history };
+    const { state, history } = this.field;
+    this.parts.session.blocks = { text, isOther, chosen: this.#chosen, state, history };
   }
 
   #toggleText() {
