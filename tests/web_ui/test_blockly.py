@@ -138,10 +138,48 @@ def test_a_program_is_built_by_mouse_mended_and_run(blocks):
     page.click("[data-verb=undo]")
     expect(page, VERDICT).to_have_text("No mistakes")
 
+    if AXE.exists():
+        page.add_script_tag(path=str(AXE))
+        assert page.evaluate(FINDINGS) == []
+
     start = page.evaluate(POSE)
     page.click("[data-verb=run]")
     page.wait_for_function(MOVED, arg=[start["x"], start["y"]])
     expect(page, "#program-state").to_have_text("running")
+
+
+def test_blocks_are_put_together_by_keys_and_run_one_by_one(blocks):
+    page = blocks
+    begin(page, "blocks-empty")
+    area = page.locator(".blocks-place").bounding_box()
+    page.mouse.click(area["x"] + 400, area["y"] + 200)
+    page.keyboard.press("t")
+    page.locator(".blocklyToolboxCategoryContainer:focus").wait_for()
+    page.keyboard.press("ArrowDown")
+    page.locator(f"{FLYOUT} .thymio_motors_start").wait_for()
+    for key in ("ArrowRight", "Enter", "Enter"):
+        page.keyboard.press(key)
+    expect(page, f"{BLOCKS} .thymio_motors_start").to_have_count(1)
+    expect(page, "[data-verb=undo]").to_be_enabled()
+    page.keyboard.press("Delete")
+    expect(page, f"{BLOCKS} .thymio_motors_start").to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(page, f"{BLOCKS} .thymio_motors_start").to_have_count(1)
+
+    begin(page, "blocks-avoid")
+    expect(page, f"{BLOCKS} .thymio_event_update").to_have_count(1)
+    show_text(page)
+    page.keyboard.press("F9")
+    expect(page, "#program-state").to_have_text("running")
+    page.keyboard.press("F10")
+    expect(page, "#program-state").to_contain_text("halted")
+    page.keyboard.press("F7")  # while it waits for an event it is in no line
+    expect(page, f"{BLOCKS} .blocklyHighlighted").to_have_count(1)
+    expect(page, f"{CODE} [data-mark=running]").to_have_count(1)
+    page.keyboard.press("F7")
+    expect(page, f"{BLOCKS} .blocklyHighlighted").to_have_count(1)
+    page.keyboard.press("F9")
+    expect(page, f"{BLOCKS} .blocklyHighlighted").to_have_count(0)
 
 
 def test_files_open_change_and_keep_what_is_theirs(blocks, tmp_path):

@@ -41,6 +41,8 @@ export class BlocksField {
     this.selected = selected;
     this.sizes = new ResizeObserver(() => this.resize());
     this.sizes.observe(place);
+    this.roles = new MutationObserver(tidyNewBlocks);
+    this.roles.observe(place, { subtree: true, attributeFilter: ["role"] });
     useDialogs(Blockly, t);
     /** Blocks exist in the language of the page. */
     this.ready = defineBlocks(language, t);
@@ -169,6 +171,7 @@ export class BlocksField {
 
   destroy() {
     this.sizes.disconnect();
+    this.roles.disconnect();
     this.#close();
   }
 
@@ -190,5 +193,17 @@ export class BlocksField {
       const id = /** @type {import("blockly/core").Events.Selected} */ (event).newElementId ?? null;
       if (id !== null || this.place.contains(document.activeElement)) this.selected(id); // else the focus left
     } else if (!event.isUiEvent || event.type === Blockly.Events.BLOCK_DRAG) this.changed();
+  }
+}
+
+/**
+ * New blocks are options of a list, which may not have anything else in it: Blockly's places for blocks are none.
+ *
+ * @param {readonly MutationRecord[]} changes
+ */
+function tidyNewBlocks(changes) {
+  for (const { target } of changes) {
+    if (!(target instanceof Element) || target.getAttribute("role") !== "figure") continue;
+    if (target.closest(".blocklyFlyout") !== null) target.setAttribute("role", "none");
   }
 }

@@ -24,7 +24,7 @@ export function textPanel({ t, turnText, turn, choose }) {
     h(
       "div",
       { class: "blocks-text-head" },
-      h("h3", { id: "blocks-text-title" }, t("view.same")),
+      h("b", { id: "blocks-text-title" }, t("view.same")),
       note,
       h("span", { class: "grow" }),
       h("button", { type: "button", class: "btn note", "data-verb": "turn", onclick: turn }, turnText),
