@@ -26,8 +26,8 @@ pytestmark = MARKS
 AXE = Path(__file__).parents[2] / "web_ui/node_modules/axe-core/axe.min.js"
 FINDINGS = """async () => (await axe.run(".program")).violations
     .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html.slice(0, 120)).join(" ")}`)"""
-POSE = "() => window.thymio.state().robot.latest.pose.position"
-MOVED = f"([x, y]) => {{ const now = ({POSE})(); return Math.hypot(now.x - x, now.y - y) > 0.03; }}"
+POSE = "() => window.thymio.partPosition('robot')"
+MOVED = f"([x, y]) => {{ const now = ({POSE})(); return Math.hypot(now.x - x, now.y - y) > 5; }}"
 BLOCKS = ".blocklySvg .blocklyBlockCanvas"
 CODE = ".blocks-code"
 VERDICT = ".blocks-verdict"
