@@ -26,6 +26,7 @@ from tests.web_ui.test_page_access import AXE, FINDINGS
 pytestmark = MARKS
 
 FILES = Path(__file__).parents[1] / "data" / "web" / "vpl"
+PLACE = "() => { const { position } = window.thymio.state().robot.latest.pose.pose; return [position.x, position.y]; }"
 ROWS = "() => document.querySelectorAll('.vpl-row').length"
 
 
@@ -155,10 +156,12 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     assert blocks(page, 1) == ["prox", "move"]
 
     # it runs, its rows flash, and the robot drives
+    page.wait_for_function("() => window.thymio.state().robot.latest.pose !== undefined")
+    start = page.evaluate(PLACE)
     page.get_by_role("button", name="Run program").click()
     expect(page, "#program-state").to_have_attribute("data-state", "running")
     page.wait_for_function("() => document.querySelector('.vpl-ran:not([hidden])') !== null")
-    page.wait_for_function("() => Math.abs(window.thymio.state().robot.latest.pose?.x ?? 0) >= 0")
+    page.wait_for_function(f"([x, y]) => {{ const [a, b] = ({PLACE})(); return Math.hypot(a - x, b - y) > 0.03; }}", arg=start)
 
     # as text, read-only; turned into text; back
     page.locator("[data-language=text]").click()

@@ -8,6 +8,9 @@ import { TEXT } from "./language_choice.js";
 /** @typedef {import("../editor/file_store.js").StoredFile} StoredFile */
 /** @typedef {import("../hosts/program_host.js").Language} Language */
 
+/** So many samples of a language are cards; further ones are named below them. */
+const CARDS = 4;
+
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
@@ -34,17 +37,38 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
         h("span", {}, h("b", {}, t(`new.${key}`)), " ", h("small", {}, t(`new.${key}.text`))),
       ),
     );
+  /** @param {Language} language @param {import("../hosts/program_host.js").Sample} sample */
+  const shortCard = (language, { name, key, icon: sign }) =>
+    h(
+      "li",
+      {},
+      h(
+        "button",
+        {
+          type: "button",
+          class: "btn note line",
+          "data-new": `${language.id}-${name}`,
+          title: t(`new.${key}.text`),
+          onclick: () => void commands.begin(language, name),
+        },
+        icon(sign, { small: true }),
+        t(`new.${key}`),
+      ),
+    );
   /** The samples of a language, below its name if there are several languages. @param {Language} language */
   const sectionOf = (language) => {
     const { id } = language;
     const title = h("h3", { id: `start-${id}` }, icon(language.icon, { small: true }), t(`language.${id}`));
     const words = h("small", { class: "muted" }, t(`language.${id}.text`));
-    const cards = h("ul", { class: "program-cards" }, ...language.samples.map((sample) => card(language, sample)));
+    const { samples } = language;
+    const cards = samples.slice(0, CARDS).map((sample) => card(language, sample));
+    const more = samples.slice(CARDS).map((sample) => shortCard(language, sample));
     return h(
       "section",
-      { class: "program-samples", "data-language": language.id, "aria-labelledby": `start-${language.id}` },
+      { class: "program-samples", "data-samples": language.id, "aria-labelledby": `start-${language.id}` },
       h("div", { class: "program-samples-head", hidden: languages.length < 2 }, title, words),
-      cards,
+      h("ul", { class: "program-cards" }, ...cards),
+      ...(more.length === 0 ? [] : [h("ul", { class: "program-more" }, ...more)]),
     );
   };
   const sections = languages.map(sectionOf);
@@ -89,7 +113,7 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
     element,
     /** Show the samples of a language first. @param {string} id */
     prefer(id) {
-      const first = sections.filter((section) => section.dataset.language === id);
+      const first = sections.filter((section) => section.dataset.samples === id);
       samples.replaceChildren(...first, ...sections.filter((section) => !first.includes(section)));
       element.scrollTop = 0;
     },

@@ -137,7 +137,8 @@ export class VplEditing {
     const { comparison, isStored, file, code } = this.#opened;
     if (isStored) return { text: file.code, source: comparison.source };
     const { source } = this.#generated;
-    return { text: code, source: source?.text === code ? source : null };
+    // Files have blanks after the text, in front of the blocks.
+    return { text: code, source: source?.text.trimEnd() === code.trimEnd() ? source : null };
   }
 
   /** The row that a line of the text belongs to. @param {number} line  from 1 */
