@@ -26,7 +26,7 @@ from tests.web_ui.test_page_access import AXE, FINDINGS
 pytestmark = MARKS
 
 FILES = Path(__file__).parents[1] / "data" / "web" / "vpl"
-PLACE = "() => { const { position } = window.thymio.state().robot.latest.pose.pose; return [position.x, position.y]; }"
+PLACE = "() => { const { x, y } = window.thymio.state().robot.latest.pose; return [x, y]; }"
 ROWS = "() => document.querySelectorAll('.vpl-row').length"
 
 
@@ -161,7 +161,9 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     page.get_by_role("button", name="Run program").click()
     expect(page, "#program-state").to_have_attribute("data-state", "running")
     page.wait_for_function("() => document.querySelector('.vpl-ran:not([hidden])') !== null")
-    page.wait_for_function(f"([x, y]) => {{ const [a, b] = ({PLACE})(); return Math.hypot(a - x, b - y) > 0.03; }}", arg=start)
+    page.wait_for_function(
+        f"([x, y]) => {{ const [a, b] = ({PLACE})(); return Math.hypot(a - x, b - y) > 0.03; }}", arg=start
+    )
 
     # as text, read-only; turned into text; back
     page.locator("[data-language=text]").click()
@@ -248,7 +250,7 @@ def test_a_program_is_built_by_fingers_on_a_phone(suite, phone):
 
 def test_older_files_and_a_teachers_list_are_opened(suite, page):
     page.set_viewport_size({"width": 800, "height": 600})
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, suite("--playground", "base", "--program", "none"), unfold=False)
     open_tab(page, "program")
     page.locator(".program[data-shown=start]").wait_for()
     drop_file(page, FILES / "format0.aesl", ".program")
