@@ -38,7 +38,7 @@ import "./vpl.css";
 
 const TEXT_KEY = "vpl.text";
 /** Lower windows have no room for the text until it is asked for. */
-const ROOMY = "(min-width: 900px) and (min-height: 720px)";
+const ROOMY = "(min-width: 1181px) and (min-height: 720px)";
 
 /** @implements {ProgramView} */
 class VplView {
