@@ -44,7 +44,7 @@ const ROOMY = "(min-width: 1181px) and (min-height: 720px)";
 class VplView {
   /** @type {Spot | null} the block whose editor is open */ #edited = null;
   #lastEvent = 0;
-  #told = "";
+  #announced = "";
   #isAsked = false;
 
   /** @param {Parts} parts */
@@ -180,9 +180,9 @@ class VplView {
       const button = this.rows.element.querySelector(`[data-place="${written(this.#edited)}"]`);
       this.sheet.update(blockAt(program, placeOf(this.#edited)), mode, button);
     }
-    const told = refusal === null || refusal.hint ? "" : t(refusal.key, refusal.values);
-    if (told !== this.#told && told !== "") context.announce(told);
-    this.#told = told;
+    const announced = refusal === null || refusal.hint ? "" : t(refusal.key, refusal.values);
+    if (announced !== this.#announced && announced !== "") context.announce(announced);
+    this.#announced = announced;
     this.#flash();
   }
 
