@@ -57,8 +57,8 @@ def begin(page, sample: str) -> None:
     open_tab(page, "program")
     page.locator(".program[data-shown=start], .program[data-shown=program]").wait_for()
     if not page.locator(f"[data-new={sample}]").is_visible():
-        if page.locator("[data-language=blocks] .program-more").is_visible():
-            page.locator("[data-language=blocks] .program-more summary").click()
+        if page.locator("[data-samples=blocks] .program-more").is_visible():
+            page.locator("[data-samples=blocks] .program-more summary").click()
         else:
             choose_in_file_menu(page, "new")
     page.click(f"[data-new={sample}]")

@@ -280,6 +280,8 @@ def test_each_of_two_robots_has_its_program(suite, page):
     names = page.evaluate("Object.keys(window.thymio.state().robots)")
     for name, text in zip(names, ("var mine = 11\n", "var mine = 22\n"), strict=True):
         choose_robot(page, name)
+        expect(page, "#robot-chooser").to_contain_text(name)
+        open_editor(page)
         write(page, text)
         page.keyboard.press("Control+Enter")
     for name, value in zip(names, ("11", "22"), strict=True):

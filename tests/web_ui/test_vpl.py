@@ -26,6 +26,7 @@ from tests.web_ui.test_page_access import AXE, FINDINGS
 pytestmark = MARKS
 
 FILES = Path(__file__).parents[1] / "data" / "web" / "vpl"
+PLACE = "() => { const { x, y } = window.thymio.state().robot.latest.pose; return [x, y]; }"
 ROWS = "() => document.querySelectorAll('.vpl-row').length"
 
 
@@ -38,8 +39,10 @@ def begin(page: Any, sample: str) -> None:
     open_tab(page, "program")
     page.locator(".program[data-shown=start], .program[data-shown=program]").wait_for()
     card = page.locator(f"[data-new=vpl-{sample}]")
-    if not card.is_visible():
+    if page.locator(".program[data-shown=program]").is_visible():
         choose_in_file_menu(page, "new")
+    if not card.is_visible():
+        page.locator("[data-samples=vpl] .program-more summary").click()
     card.click()
     page.locator(".vpl-rows").wait_for()
 
@@ -155,10 +158,14 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     assert blocks(page, 1) == ["prox", "move"]
 
     # it runs, its rows flash, and the robot drives
+    page.wait_for_function("() => window.thymio.state().robot.latest.pose !== undefined")
+    start = page.evaluate(PLACE)
     page.get_by_role("button", name="Run program").click()
     expect(page, "#program-state").to_have_attribute("data-state", "running")
     page.wait_for_function("() => document.querySelector('.vpl-ran:not([hidden])') !== null")
-    page.wait_for_function("() => Math.abs(window.thymio.state().robot.latest.pose?.x ?? 0) >= 0")
+    page.wait_for_function(
+        f"([x, y]) => {{ const [a, b] = ({PLACE})(); return Math.hypot(a - x, b - y) > 0.03; }}", arg=start
+    )
 
     # as text, read-only; turned into text; back
     page.locator("[data-language=text]").click()
@@ -245,7 +252,7 @@ def test_a_program_is_built_by_fingers_on_a_phone(suite, phone):
 
 def test_older_files_and_a_teachers_list_are_opened(suite, page):
     page.set_viewport_size({"width": 800, "height": 600})
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, suite("--playground", "base", "--program", "none"), unfold=False)
     open_tab(page, "program")
     page.locator(".program[data-shown=start]").wait_for()
     drop_file(page, FILES / "format0.aesl", ".program")

@@ -23,7 +23,7 @@ test("without entries nothing is limited", () => {
   assert.deepEqual(readToolbox(writeToolbox(WHOLE)).toolbox, WHOLE);
 });
 
-test("names that no language has are told", () => {
+test("names that no language has are reported", () => {
   assert.deepEqual(unknownNames({ hide: ["sound", "fly"], modes: ["easy"] }, ["sound", "basic"]), ["fly", "easy"]);
 });
 

@@ -283,6 +283,11 @@ test("edits become the text of the document; undone, it is byte for byte the old
   assert.deepEqual([editing.canUndo, editing.canRedo], [false, true]);
 });
 
+test("a file as it was opened shows which lines belong to a row", () => {
+  const { editing, workspace } = opened(sampleText("buttons"));
+  assert.equal(editing.rowOf(workspace.code.split("\n").findIndex((line) => line.includes("pair_run 1")) + 1), 1);
+});
+
 test("a slider is one step of the history", () => {
   const { editing } = opened(sampleText("empty"));
   add(editing, "move");

@@ -52,7 +52,7 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
     const more = h("details", { class: "disc program-more" }, summary, h("ul", { class: "program-files" }, ...rows));
     return h(
       "section",
-      { class: "program-samples", "data-language": language.id, "aria-labelledby": `start-${language.id}` },
+      { class: "program-samples", "data-samples": language.id, "aria-labelledby": `start-${language.id}` },
       h("div", { class: "program-samples-head", hidden: languages.length < 2 }, title, words),
       cards,
       ...(rows.length === 0 ? [] : [more]),
@@ -100,7 +100,7 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
     element,
     /** Show the samples of a language first. @param {string} id */
     prefer(id) {
-      const first = sections.filter((section) => section.dataset.language === id);
+      const first = sections.filter((section) => section.dataset.samples === id);
       samples.replaceChildren(...first, ...sections.filter((section) => !first.includes(section)));
       element.scrollTop = 0;
     },

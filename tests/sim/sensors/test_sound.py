@@ -5,13 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, make, readings, run, send
-from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
 from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.commands import Clap, PlayTone, SetNoiseLevel, SetSoundThreshold
 from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.sensors import sound
-from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 from thymio_sim_ros.sim.world import StepResult, World
 
 PAIR = ({**ROBOT, "name": "a"}, {**ROBOT, "name": "b", "x_m": 0.5})
@@ -29,9 +27,8 @@ def intensities(steps: list[StepResult], robot: str) -> list[int]:
 
 def measured(level: int, sounds: tuple[Sound, ...] = (), threshold: int = 0) -> SoundReading:
     """One block at the origin."""
-    states = (EnvironmentState(noise_level=level), MicrophoneState(threshold))
-    reading = sound.SENSOR.measure(FakeView(states=states, sounds=sounds))
-    assert isinstance(reading, SoundReading)
+    reading = sound.report(0, sound.intensity_at(level, sounds, 0.0, 0.0), MicrophoneState(threshold), {})
+    assert reading is not None
     return reading
 
 
@@ -100,12 +97,10 @@ def test_a_loudspeaker_is_heard_while_it_plays() -> None:
 
 
 def test_after_a_loud_block_silence_is_news() -> None:
-    environment = EnvironmentState()
-    view = FakeView(states=(environment, MicrophoneState(50)))
-    measurements = []
-    for environment.noise_level in (0, 100, 0):
-        measurements.append(sound.SENSOR.measure(view))
-        view.now_ns += sound.BLOCK_NS
+    memory: dict[str, int] = {}
+    microphone = MicrophoneState(50)
+    blocks = enumerate((0, 100, 0))
+    measurements = [sound.report(n * sound.BLOCK_NS, level, microphone, memory) for n, level in blocks]
     assert [reading and reading.words[0] for reading in measurements] == [0, 100, 0]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aseba_vm.kernel.record import Record, fields
+from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.model.geometry import Tilt
@@ -105,6 +106,10 @@ class BatchView:
     @property
     def falling(self) -> Sequence[int]:
         return [index for index, robot in enumerate(self._robots) if robot.is_falling]
+
+    @property
+    def sounds(self) -> Sequence[Sound]:
+        return self._batch.shared.sounds()
 
     def record(self, kind: type[R]) -> R:
         record = kind(self.memory, len(self._robots))

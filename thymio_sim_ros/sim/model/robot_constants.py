@@ -81,6 +81,10 @@ TAP_SPEED_M_S = 0.02
 INTEGRATOR_LIMIT = 4806
 """Limit of _integrator (section 2.1)."""
 
+REFRESH_NS = 1_000_000_000
+"""Values that are reported on change are reported once a second, too, for programs that were reset meanwhile.
+Own choice."""
+
 
 def hull() -> tuple[tuple[float, float], ...]:
     """Return the collision outline in m, counter-clockwise from the front right (section 1.1)."""

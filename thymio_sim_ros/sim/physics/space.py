@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 import pymunk
 
 from thymio_sim_ros.sim.model.geometry import Pose
@@ -32,8 +33,6 @@ _DRAG_PER_S = 0.01
 
 Source: docs/spec/playground-formats.md section 1.3.
 """
-_STOPPED = (0.0, 0.0, 0.0)
-"""Velocities of a body that `MovableBody.end_tick` has stopped."""
 _DROWSY_S = 0.1
 """An object at rest for this long sleeps until it is touched."""
 
@@ -74,7 +73,7 @@ class Physics:
         self._was_still = False
         self._standing: list[MovableBody] = []
         """Objects that have not fallen."""
-        self._motions: list[Any] = []
+        self._motions = np.zeros((0, 6))
         """What was read of each of them last, with the velocities that `end_tick` left."""
         self._rows: Any = ()
         """Their rows among the bodies that are read, in the order with the number `_order`."""
@@ -168,17 +167,17 @@ class Physics:
         if reader.order != self._order:
             self._order = reader.order
             self._standing = [movable for movable in self._movables.values() if not movable.is_fallen]
-            self._motions = [None] * len(self._standing)
+            self._motions = np.full((len(self._standing), 6), np.nan)
             self._rows = reader.rows([movable.body for movable in self._standing])
         if not self._standing:
             return
-        before, self._motions = self._motions, reader.state[self._rows].tolist()
-        if self._motions != before:
-            for movable, motion, known in zip(self._standing, self._motions, before, strict=True):
-                if motion != known:
-                    movable.end_tick(*motion)
-                    if not movable.is_moving:
-                        motion[3:] = _STOPPED
+        before, self._motions = self._motions, reader.state[self._rows]
+        changed = (self._motions != before).any(axis=1)
+        for number in changed.nonzero()[0].tolist():
+            movable, motion = self._standing[number], self._motions[number]
+            movable.end_tick(*motion.tolist())
+            if not movable.is_moving:
+                motion[3:] = 0.0
 
     @property
     def _is_still(self) -> bool:

@@ -199,6 +199,11 @@ class BatchSensorView(Protocol):
         ...
 
     @property
+    def sounds(self) -> Sequence[Sound]:
+        """All sounds in the world now."""
+        ...
+
+    @property
     def memories(self) -> Sequence[dict[str, Any]]:
         """The `SensorView.memory` of this sensor on each robot, to which `on_wake` writes."""
         ...

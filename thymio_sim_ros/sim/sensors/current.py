@@ -8,11 +8,11 @@ from aseba_vm.kernel.record import Record
 from aseba_vm.kernel.types import Ints, kernel
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.readings import CurrentReading
+from thymio_sim_ros.sim.model.robot_constants import REFRESH_NS
 from thymio_sim_ros.sim.model.robot_state import WheelState
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import BatchSensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._publish_on_change import REFRESH_NS
 
 __all__ = ["SENSOR", "list_changed"]
 

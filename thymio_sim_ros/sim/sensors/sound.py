@@ -9,18 +9,19 @@ unless that is 0. Quieter blocks are reported on change and once per second.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
-from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, level_at
+from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, Sound, level_at
 from thymio_sim_ros.sim.model.readings import SoundReading
+from thymio_sim_ros.sim.model.robot_constants import REFRESH_NS
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.display import DisplayedValue
-from thymio_sim_ros.sim.plugin_api.view import SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._publish_on_change import should_publish
 from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 
-__all__ = ["BLOCK_NS", "SENSOR"]
+__all__ = ["BLOCK_NS", "SENSOR", "intensity_at", "report"]
 
 BLOCK_NS = 16_384_000
 """128 samples at 7812.5 Hz (docs/spec/thymio-robot.md section 9)."""
@@ -29,18 +30,35 @@ _SILENCE = 128
 """A sample in silence: the middle of 8 bits. Assumption."""
 
 
-def _measure(view: SensorView) -> SoundReading | None:
-    intensity = view.state(EnvironmentState).noise_level
-    if sounds := view.sounds:
-        intensity = round(math.hypot(intensity, level_at(sounds, view.pose.x_m, view.pose.y_m)))
-    intensity = min(FULL_LEVEL, intensity)
-    is_loud = view.state(MicrophoneState).is_exceeded(intensity)
-    if not should_publish(view, intensity) and not is_loud:
+def _prepare(batch: BatchSensorView) -> Callable[[], Sequence[SoundReading | None]]:
+    environments, microphones = batch.states(EnvironmentState), batch.states(MicrophoneState)
+    robots, memories = batch.robots, batch.memories
+
+    def measure() -> Sequence[SoundReading | None]:
+        now_ns, levels = batch.now_ns, [environment.noise_level for environment in environments]
+        if sounds := batch.sounds:
+            places = zip(levels, robots.x.tolist(), robots.y.tolist(), strict=False)
+            levels = [intensity_at(level, sounds, x, y) for level, x, y in places]
+        return [
+            report(now_ns, level, microphone, memory)
+            for level, microphone, memory in zip(levels, microphones, memories, strict=True)
+        ]
+
+    return measure
+
+
+def intensity_at(noise_level: int, sounds: Sequence[Sound], x_m: float, y_m: float) -> int:
+    """Return mic.intensity at a point for a background noise and all sounds of the world."""
+    return min(FULL_LEVEL, round(math.hypot(noise_level, level_at(sounds, x_m, y_m))))
+
+
+def report(now_ns: int, intensity: int, microphone: MicrophoneState, memory: dict[str, int]) -> SoundReading | None:
+    """Return the reading of a block; None if it need not be reported. `memory` has the last report of the robot."""
+    is_loud = microphone.is_exceeded(intensity)
+    if intensity != memory.get("intensity") or now_ns >= memory["refresh_ns"]:
+        memory["intensity"], memory["refresh_ns"] = intensity, now_ns + REFRESH_NS
+    elif not is_loud:
         return None
-    return _reading(view.now_ns, intensity, is_loud=is_loud)
-
-
-def _reading(now_ns: int, intensity: int, *, is_loud: bool) -> SoundReading:
     smallest = _SILENCE - (intensity + 1) // 2
     return SoundReading(now_ns, (intensity, 2 * smallest + intensity), is_loud)
 
@@ -48,7 +66,7 @@ def _reading(now_ns: int, intensity: int, *, is_loud: bool) -> SoundReading:
 SENSOR = Sensor(
     name="sound",
     period_ns=BLOCK_NS,
-    measure=_measure,
+    prepare_all=_prepare,
     aseba=AsebaFace(variables=(("mic.intensity", 1), ("mic._mean", 1)), event="mic", above="mic.threshold"),
     label="microphone",
     values=(DisplayedValue("", "%", 100 / FULL_LEVEL, full_scale=FULL_LEVEL),),

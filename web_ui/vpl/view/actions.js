@@ -78,14 +78,14 @@ const isLit = (levels) => levels.some((level) => level > 0);
 function colortop(levels) {
   const color = lightColor(levels);
   const glow = isLit(levels) ? tag("ellipse", { cx: 35, cy: 20, rx: 29, ry: 17, fill: color, opacity: 0.25 }) : "";
-  return glow + fromSide(35, 26, isLit(levels) ? { top: color } : {}) + levelLines(levels);
+  return glow + fromSide(35, 26, { lamp: "top", ...(isLit(levels) ? { top: color } : {}) }) + levelLines(levels);
 }
 
 /** @param {readonly number[]} levels */
 function colorbottom(levels) {
   const color = lightColor(levels);
   const glow = isLit(levels) ? tag("ellipse", { cx: 35, cy: 38, rx: 30, ry: 6, fill: color, opacity: 0.55 }) : "";
-  return glow + fromSide(35, 24, isLit(levels) ? { bottom: color } : {}) + levelLines(levels);
+  return glow + fromSide(35, 24, { lamp: "bottom", ...(isLit(levels) ? { bottom: color } : {}) }) + levelLines(levels);
 }
 
 /** @param {readonly number[]} values */

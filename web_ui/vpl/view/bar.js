@@ -47,7 +47,7 @@ export function vplBar({ t, undo, redo, choose, toggleText }) {
   });
   const text = h(
     "button",
-    { type: "button", class: "btn note", "data-vpl": "text", onclick: toggleText },
+    { type: "button", class: "btn note", "data-vpl": "text", "aria-label": t("bar.text"), onclick: toggleText },
     icon("text", { small: true }),
     h("span", {}, t("bar.text")),
   );

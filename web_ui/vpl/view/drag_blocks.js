@@ -43,10 +43,10 @@ export function dragBlocks({ element, rows, commands, started }) {
 
   /** @param {Element | null} row @param {string} [look] */
   const mark = (row, look) => {
-    if (below !== row) below?.classList.remove("drop", "drop-no");
+    if (below !== row) below?.classList.remove("vpl-drop", "vpl-drop-no");
     below = row;
-    row?.classList.toggle("drop", look === "drop");
-    row?.classList.toggle("drop-no", look === "drop-no");
+    row?.classList.toggle("vpl-drop", look === "vpl-drop");
+    row?.classList.toggle("vpl-drop-no", look === "vpl-drop-no");
   };
 
   return watchDrags(element, rows, {
@@ -63,7 +63,7 @@ export function dragBlocks({ element, rows, commands, started }) {
     over(x, y, copy) {
       const { row, spot } = at(x, y);
       if (dragged === null || spot === null) return mark(null);
-      mark(row, dropped(editing.program, dragged, spot, copy).reason === null ? "drop" : "drop-no");
+      mark(row, dropped(editing.program, dragged, spot, copy).reason === null ? "vpl-drop" : "vpl-drop-no");
     },
     drop(x, y, copy) {
       const { spot, isOut } = at(x, y);

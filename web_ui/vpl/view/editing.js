@@ -25,7 +25,7 @@ import { makeProgram, sameProgram } from "../program.js";
  * @property {VplFile} file            as it was opened
  * @property {Comparison} comparison   of its text with its blocks
  * @property {History} history
- * @property {boolean} isStored        whether the text is still the one of the file: nobody has decided to renew it
+ * @property {boolean} isStored        whether the text is still the one of the file: no decision to renew it was made
  * @property {boolean} isRenewed       whether the user wants a new text even for the blocks of the file
  * @property {string} code             the last text without error
  * @property {boolean} areWarningsRead
@@ -137,7 +137,8 @@ export class VplEditing {
     const { comparison, isStored, file, code } = this.#opened;
     if (isStored) return { text: file.code, source: comparison.source };
     const { source } = this.#generated;
-    return { text: code, source: source?.text === code ? source : null };
+    // Files have blanks after the text, in front of the blocks.
+    return { text: code, source: source?.text.trimEnd() === code.trimEnd() ? source : null };
   }
 
   /** The row that a line of the text belongs to. @param {number} line  from 1 */

@@ -38,13 +38,13 @@ import "./vpl.css";
 
 const TEXT_KEY = "vpl.text";
 /** Lower windows have no room for the text until it is asked for. */
-const ROOMY = "(min-width: 900px) and (min-height: 720px)";
+const ROOMY = "(min-width: 1181px) and (min-height: 720px)";
 
 /** @implements {ProgramView} */
 class VplView {
   /** @type {Spot | null} the block whose editor is open */ #edited = null;
   #lastEvent = 0;
-  #told = "";
+  #announced = "";
   #isAsked = false;
 
   /** @param {Parts} parts */
@@ -54,8 +54,6 @@ class VplView {
     this.parts = parts;
     this.t = t;
     this.editing = new VplEditing({ workspace: session.workspace, kept: session.texts });
-    const kept = session.storage.getItem(TEXT_KEY);
-    this.isTextShown = kept === null ? matchMedia(ROOMY).matches : kept === "on";
 
     this.rows = rowList({ t });
     this.commands = new VplCommands({
@@ -169,21 +167,22 @@ class VplView {
     const { program, selected, canUndo, canRedo } = editing;
     const { mode } = program;
     const modes = offeredModes(session.toolbox);
-    this.controls.render({ canUndo, canRedo, modes, mode, isTextShown: this.isTextShown });
+    const isTextShown = this.#isTextShown;
+    this.controls.render({ canUndo, canRedo, modes, mode, isTextShown });
     this.events.render(session.toolbox, mode);
     this.actions.render(session.toolbox, mode);
     const refusal = editing.question === null ? editing.refusal : null;
     this.rows.render({ program, refusal, selected, slot: commands.slot, isPasting: commands.isPasting });
     this.#showNotices();
     const { text, source } = editing.shown;
-    this.pane.render({ isShown: this.isTextShown, text, source, row: selected });
+    this.pane.render({ isShown: isTextShown, text, source, row: selected });
     if (this.#edited !== null) {
       const button = this.rows.element.querySelector(`[data-place="${written(this.#edited)}"]`);
       this.sheet.update(blockAt(program, placeOf(this.#edited)), mode, button);
     }
-    const told = refusal === null || refusal.hint ? "" : t(refusal.key, refusal.values);
-    if (told !== this.#told && told !== "") context.announce(told);
-    this.#told = told;
+    const announced = refusal === null || refusal.hint ? "" : t(refusal.key, refusal.values);
+    if (announced !== this.#announced && announced !== "") context.announce(announced);
+    this.#announced = announced;
     this.#flash();
   }
 
@@ -218,6 +217,12 @@ class VplView {
     this.#isAsked = isAsked;
   }
 
+  /** Whether the text is shown: as it was chosen, else if there is room. */
+  get #isTextShown() {
+    const kept = this.parts.session.storage.getItem(TEXT_KEY);
+    return kept === null ? matchMedia(ROOMY).matches : kept === "on";
+  }
+
   /** @param {import("../kinds.js").Mode} mode */
   #chooseMode(mode) {
     if (!this.commands.chooseMode(mode)) return;
@@ -226,8 +231,7 @@ class VplView {
   }
 
   #toggleText() {
-    this.isTextShown = !this.isTextShown;
-    trySetItem(this.parts.session.storage, TEXT_KEY, this.isTextShown ? "on" : "off");
+    trySetItem(this.parts.session.storage, TEXT_KEY, this.#isTextShown ? "off" : "on");
     this.parts.redraw();
   }
 

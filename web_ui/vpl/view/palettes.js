@@ -8,7 +8,7 @@ import { picture } from "./picture.js";
 /** @typedef {import("../kinds.js").BlockType} BlockType */
 /** @typedef {import("../kinds.js").Mode} Mode */
 
-/** Values with which a block is easier to recognise than with its first ones, in the palette only. */
+/** Values with which a block is easier to recognize than with its first ones, in the palette only. */
 const SHOWN = /** @type {Record<string, number[]>} */ ({
   button: [0, 0, 0, 0, 1],
   prox: [0, 1, 1],

@@ -199,6 +199,6 @@ export function rowList({ t }) {
 /** @param {number} index @param {Refusal | null} refusal @param {number | null} selected @param {HTMLElement} [row] */
 function lookOf(index, refusal, selected, row) {
   const isWrong = refusal !== null && !refusal.hint && (refusal.row === index || refusal.other === index);
-  const states = ["ran", "drop", "drop-no"].filter((name) => row?.classList.contains(name));
+  const states = ["ran", "vpl-drop", "vpl-drop-no"].filter((name) => row?.classList.contains(name));
   return ["vpl-row", selected === index ? "selected" : "", isWrong ? "wrong" : "", ...states].filter(Boolean).join(" ");
 }

@@ -57,14 +57,18 @@ export function fromAbove(x, y, scale, fill = "var(--bot)") {
  * The robot from the side.
  *
  * @param {number} x @param {number} y
- * @param {{ top?: string, bottom?: string, turn?: number }} [look]   fills, and degrees
+ * @param {{ top?: string, bottom?: string, turn?: number, lamp?: "top" | "bottom" }} [look]   fills, degrees, and the
+ *   part that is a lamp, on or off
  */
-export function fromSide(x, y, { top = "var(--bot)", bottom = "var(--bot-2)", turn = 0 } = {}) {
+export function fromSide(x, y, { top = "var(--bot)", bottom = "var(--bot-2)", turn = 0, lamp } = {}) {
+  const edges = { top: "var(--bot-edge)", bottom: "var(--bot-edge)" };
+  if (lamp !== undefined) edges[lamp] = "var(--act)";
+  const lower = shape("M-22 1H23V9a3 3 0 0 1-3 3H-19a3 3 0 0 1-3-3Z", bottom, edges.bottom);
+  const upper = shape("M-22 1V-3a9 9 0 0 1 9-9H16a7 7 0 0 1 7 7V1Z", top, edges.top);
   return tag(
     "g",
     { transform: `translate(${x} ${y}) rotate(${turn})` },
-    shape("M-22 8V-3a9 9 0 0 1 9-9H16a7 7 0 0 1 7 7V8Z", top) +
-      shape("M-22 1H23V9a3 3 0 0 1-3 3H-19a3 3 0 0 1-3-3Z", bottom) +
+    (lamp === "top" ? lower + upper : upper + lower) +
       tag("circle", { cx: -9, cy: 9, r: 6.5, fill: "var(--tyre)" }) +
       tag("circle", { cx: -9, cy: 9, r: 2.4, fill: "var(--bot-2)" }),
   );
