@@ -61,6 +61,6 @@ def pytest_collection_modifyitems(items):
     """Mark the tests that need ROS, so that `make check` can leave them out: by their folder or by their fixtures."""
     folders = [Path(__file__).parent / name for name in ("ros", "testing/ros", "tf")]
     for item in items:
-        fixtures = {"ros", "ros_domain"}.intersection(getattr(item, "fixturenames", ()))
+        fixtures = {"ros", "ros_domain", "at_rest"}.intersection(getattr(item, "fixturenames", ()))
         if fixtures or any(folder in item.path.parents for folder in folders):
             item.add_marker("ros")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -60,8 +61,71 @@ class Suites:
             self._running.pop().end()
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run the tests that share a suite one after another, so that it is started once."""
+    ours = [at for at, item in enumerate(items) if Path(__file__).parent in item.path.parents]
+    tests = [items[at] for at in ours]
+    tests.sort(key=lambda item: "at_rest" not in getattr(item, "fixturenames", ()))  # otherwise in their order
+    for at, item in zip(ours, tests, strict=True):
+        items[at] = item
+
+
+class SharedSuite:
+    """One suite for many tests: a robot without a program that stands in the playground "base"."""
+
+    ARGUMENTS = ("--playground", "base", "--program", "none")
+    UNCHANGED = """() => {
+        const {simulator, robot, program} = window.thymio?.connected ? window.thymio.state() : {};
+        if (!simulator || !robot?.latest) return true;
+        const {x, y} = robot.latest.pose;
+        return simulator.playground === "base" && !simulator.paused && !program?.name && Math.hypot(x, y) < 0.001;
+    }"""
+
+    def __init__(self, folder: Path) -> None:
+        self._suites = Suites(folder)
+        self._resources = contextlib.ExitStack()
+        self._address: str | None = None
+
+    def start(self) -> str:
+        """The address of its page; it is started if it does not run."""
+        if self._address is None:
+            from thymio_sim_ros.testing.ros.domain import reserved
+
+            self._resources.enter_context(reserved())
+            self._resources.callback(self._suites.end)
+            self._address = self._suites(*self.ARGUMENTS)
+        return self._address
+
+    def end(self) -> None:
+        """End it if it runs."""
+        self._address = None
+        self._resources.close()
+
+
+@pytest.fixture(scope="session")
+def _shared(tmp_path_factory) -> Iterator[SharedSuite]:
+    shared = SharedSuite(tmp_path_factory.mktemp("shared"))
+    yield shared
+    shared.end()
+
+
 @pytest.fixture
-def suite(ros_domain, tmp_path) -> Iterator[Suites]:
+def at_rest(_shared, page) -> Iterator[str]:
+    """The address of a suite with a robot at rest, shared by all tests that leave it as it is: starts take long."""
+    yield _shared.start()
+    if not page.evaluate(SharedSuite.UNCHANGED):
+        _shared.end()
+        pytest.fail("this test has changed the shared suite: it needs a suite of its own (suite)")
+
+
+@pytest.fixture
+def _alone(_shared) -> None:
+    """One suite at a time: two processors are enough for no more."""
+    _shared.end()
+
+
+@pytest.fixture
+def suite(_alone, ros_domain, tmp_path) -> Iterator[Suites]:
     """Start a suite with arguments; returns the address of its page."""
     suites = Suites(tmp_path)
     yield suites

@@ -117,7 +117,7 @@ def test_it_is_accessible_in_both_themes_and_every_language(class_page):
         assert page.evaluate(FINDINGS) == []
 
 
-def test_one_robot_is_no_class(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_one_robot_is_no_class(at_rest, page):
+    open_page(page, at_rest)
     playwright.expect(page.locator("#tab-robot")).to_be_visible()
     playwright.expect(page.locator("#tab-class")).to_be_hidden()
