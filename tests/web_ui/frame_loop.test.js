@@ -38,7 +38,7 @@ function view() {
   const world = { moving: false };
   const draw = () => {
     size.fit(quality.settings.pixelRatio);
-    canvas.isEmpty = false;
+    if (size.isShown) canvas.isEmpty = false;
     return world.moving;
   };
   const loop = new FrameLoop({ quality, draw });

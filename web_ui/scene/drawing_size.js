@@ -13,6 +13,8 @@ export class DrawingSize {
     this.renderer = renderer;
     /** @type {Size} CSS pixels; kept, since reading it after moving a label forces a layout */
     this.css = { width: 0, height: 0 };
+    /** Whether the view has room: on phones it has none beside some tabs. */
+    this.isShown = false;
     /** @type {Size & { ratio: number }} what the canvas has */ this.fitted = { width: 0, height: 0, ratio: 0 };
     new ResizeObserver(() => {
       this.#measure(canvas);
@@ -39,6 +41,7 @@ export class DrawingSize {
 
   /** @param {HTMLCanvasElement} canvas */
   #measure({ clientWidth: width, clientHeight: height }) {
-    if (width > 0 && height > 0) this.css = { width, height }; // hidden, it keeps its size
+    this.isShown = width > 0 && height > 0;
+    if (this.isShown) this.css = { width, height }; // hidden, it keeps its size
   }
 }

@@ -65,6 +65,7 @@ export class Painter {
   draw(world, camera, { isWhole, drawFlat }) {
     const { flat, renderer, still } = this;
     flat.canvas.hidden = !this.isFlat;
+    if (!this.size.isShown && !isWhole) return;
     if (this.isFlat || renderer === null) {
       world.scene.updateMatrixWorld(); // the renderer would do this; hit tests need it
       drawFlat();
