@@ -15,6 +15,7 @@ export function exposeForTests({ store, scene, dragController, creator }) {
       state: () => snapshot(store.state),
       frames: () => scene.frames,
       level: () => scene.quality.level,
+      isPainted: () => scene.world.surroundings.wood !== null,
       screenPosition: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) =>
         scene.projection.toWindow(x, y, z),
       dragged: () => dragController.dragged,
