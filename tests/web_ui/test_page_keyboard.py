@@ -138,8 +138,8 @@ def test_editor_and_program_panel_show_errors_in_the_language_of_the_page(
     expect(page, ".reference .entry-help:visible p").to_contain_text(help_text)
 
 
-def test_letter_keys_work_with_caps_lock(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_letter_keys_work_with_caps_lock(at_rest, page):
+    open_page(page, at_rest)
     page.focus("#view")
     page.keyboard.press("T")  # without Shift, as with Caps Lock
     playwright.expect(page.get_by_role("button", name="Above")).to_have_attribute("aria-pressed", "true")

@@ -146,7 +146,7 @@ function card(symbol, meaning, title, about, action) {
 function greetingPlace({ scene }, { robots, selected }) {
   const pose = robots[selected]?.latest?.pose;
   if (pose === undefined) return null;
-  const at = scene.screenPosition(pose.x, pose.y, pose.z + OVER_ROBOT_M);
+  const at = scene.projection.toWindow(pose.x, pose.y, pose.z + OVER_ROBOT_M);
   if (at === null) return null;
   const { left, top, width, height } = scene.canvas.getBoundingClientRect();
   const [x, y] = [Math.round(at.x - left), Math.round(at.y - top)];
