@@ -117,7 +117,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     ("language", "error", "help_text"),
     [
         ("de", "keine Variable heißt 'motor.left.targt'; vielleicht ist 'motor.left.target' gemeint", "gewünschte"),
-        ("fr", "aucune variable ne s'appelle 'motor.left.targt'", "vitesse voulue"),
+        ("fr", "aucune variable ne s’appelle 'motor.left.targt'", "vitesse voulue"),
         ("it", "nessuna variabile si chiama 'motor.left.targt'", "velocità voluta"),
     ],
 )
