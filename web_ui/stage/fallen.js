@@ -1,5 +1,6 @@
 // A message over the view for each fallen robot, with a button that returns it to its start.
 
+import { robotNames } from "../browser/robot_names.js";
 import { h } from "../ui/dom.js";
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
@@ -21,7 +22,7 @@ export function fallenPanel({ text, actions }) {
           h(
             "p",
             { class: "message" },
-            h("span", { class: "grow" }, several ? t("fallen.named", { name: name || pageText("app.robot") }) : t("fallen")),
+            h("span", { class: "grow" }, several ? t("fallen.named", { name: robotNames.title(name) || pageText("app.robot") }) : t("fallen")),
             h(
               "button",
               { type: "button", class: "btn soft", "data-fallen": name, onclick: () => void actions.putBack(name) },

@@ -61,7 +61,7 @@ export function startsOver(context, t, slot, close) {
         attributes: { "data-example": "" },
         act: () => {
           close();
-          workspace.select("program");
+          void context.program.openStart(); // the ways to begin, also when the robot runs an example
         },
       },
     ],
