@@ -17,12 +17,15 @@ export function fallenPanel({ text, actions }) {
       if (fallen.join() === shown && element.childElementCount === fallen.length) return;
       shown = fallen.join();
       const several = Object.keys(robots).length > 1;
+      /** @param {string} name */
+      const words = (name) =>
+        several ? t("fallen.named", { name: robotNames.title(name) || pageText("app.robot") }) : t("fallen");
       element.replaceChildren(
         ...fallen.map((name) =>
           h(
             "p",
             { class: "message" },
-            h("span", { class: "grow" }, several ? t("fallen.named", { name: robotNames.title(name) || pageText("app.robot") }) : t("fallen")),
+            h("span", { class: "grow" }, words(name)),
             h(
               "button",
               { type: "button", class: "btn soft", "data-fallen": name, onclick: () => void actions.putBack(name) },
