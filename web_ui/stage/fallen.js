@@ -2,6 +2,7 @@
 
 import { robotNames } from "../browser/robot_names.js";
 import { h } from "../ui/dom.js";
+import { keepFocus } from "../ui/focus.js";
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function fallenPanel({ text, actions }) {
@@ -20,19 +21,22 @@ export function fallenPanel({ text, actions }) {
       /** @param {string} name */
       const words = (name) =>
         several ? t("fallen.named", { name: robotNames.title(name) || pageText("app.robot") }) : t("fallen");
-      element.replaceChildren(
-        ...fallen.map((name) =>
+      const messages = fallen.map((name) =>
+        h(
+          "p",
+          { class: "message" },
+          h("span", { class: "grow" }, words(name)),
           h(
-            "p",
-            { class: "message" },
-            h("span", { class: "grow" }, words(name)),
-            h(
-              "button",
-              { type: "button", class: "btn soft", "data-fallen": name, onclick: () => void actions.putBack(name) },
-              t("fallen.back"),
-            ),
+            "button",
+            { type: "button", class: "btn soft", "data-fallen": name, onclick: () => void actions.putBack(name) },
+            t("fallen.back"),
           ),
         ),
+      );
+      keepFocus(
+        element,
+        () => element.replaceChildren(...messages),
+        () => element.querySelector("button"),
       );
     },
   };

@@ -2,6 +2,7 @@
 
 import { titleOf } from "../examples/index.js";
 import { h } from "../ui/dom.js";
+import { keepFocus } from "../ui/focus.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
 import { offeredExamples } from "./offered_examples.js";
@@ -113,7 +114,9 @@ export function startsOver(context, t, slot, close) {
       size.disconnect();
       leaveFree(0);
       document.body.classList.remove(OPEN);
-      for (const each of [hello, element, sheet.element]) each.remove();
+      keepFocus(slot, () => {
+        for (const each of [hello, element, sheet.element]) each.remove();
+      });
       scene.invalidate();
     },
   };
