@@ -1,6 +1,7 @@
 // The three ways to start, over the lower part of the scene, and the robot's greeting.
 
 import { titleOf } from "../examples/index.js";
+import { unfoldTray } from "../stage/tray.js";
 import { h } from "../ui/dom.js";
 import { keepFocus } from "../ui/focus.js";
 import { icon } from "../ui/icons.js";
@@ -39,6 +40,7 @@ export function startsOver(context, t, slot, close) {
   };
   const drive = () => {
     void load(DRIVE);
+    unfoldTray(); // in a low window it is folded, and the arrows are in it
     scene.canvas.focus(); // the arrow keys work at once
     pulse();
   };
