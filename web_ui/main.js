@@ -155,7 +155,7 @@ async function main() {
       actions.press(robot, button, pressed);
     },
     dragController,
-    robotTitle: (name) => robotNames.of(name) || name || text("page")("app.robot"),
+    robotTitle: (name) => robotNames.title(name) || text("page")("app.robot"),
     select: (robot) => store.dispatch({ type: "select", robot }),
     contextLost: (trouble) => graphics.set(trouble),
   });

@@ -351,7 +351,7 @@ def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the
     expect(writing, CARD).to_contain_text("Aseba has whole numbers only")
     expect(writing, ".mistake-card .correct").to_have_count(0)
     choose_language(writing, "fr")
-    expect(writing, CARD).to_contain_text("Aseba n'a que des nombres entiers")
+    expect(writing, CARD).to_contain_text("Aseba n’a que des nombres entiers")
 
 
 def test_the_mark_in_the_text_offers_the_correction_too(writing):

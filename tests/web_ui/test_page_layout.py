@@ -92,7 +92,7 @@ def test_actions_go_to_the_chosen_robot_or_to_all(suite, page):
     for name in names:
         page.wait_for_function(runs, arg=[name, "explorer"])
     choose_robot(page, names[1])
-    playwright.expect(page.locator("#stop")).to_have_text("Stop robot")
+    playwright.expect(page.locator("#stop")).to_have_text(f"Stop {names[1]}")
     choose_example(page, "friendly")
     page.wait_for_function(runs, arg=[names[1], "friendly"])
     page.click("#stop")

@@ -4,6 +4,9 @@ import { buttonOf, fileButton, h, lock, setAttribute, setText } from "../ui/dom.
 import { icon } from "../ui/icons.js";
 import { makeSheet } from "../ui/sheet.js";
 
+/** Files of programs, as a file dialog offers them. */
+export const PROGRAM_FILES = ".aesl,.aseba,.txt";
+
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
@@ -58,7 +61,7 @@ export function fileMenu({ t, session, commands, redraw }) {
     id: "editor-file",
     label: t("file.open"),
     help: t("file.open"),
-    accept: ".aesl,.aseba,.txt",
+    accept: PROGRAM_FILES,
     open: (file) => void commands.open(file),
     look: "btn",
   });

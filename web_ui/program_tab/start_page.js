@@ -1,8 +1,9 @@
 // How to begin a program: a skeleton with comments, an empty page, an example, or one of the last programs.
 
 import { exampleList } from "../examples/index.js";
-import { h } from "../ui/dom.js";
+import { fileButton, h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
+import { PROGRAM_FILES } from "./file_menu.js";
 import { SKELETONS, skeletonText } from "./skeletons.js";
 
 /** @type {Readonly<Record<string, import("../ui/icons.js").IconName>>} */
@@ -54,10 +55,17 @@ export function startPage({ t, exampleText, draftLabel, commands }) {
     icon("text", { small: true }),
     t("new.back"),
   );
+  const open = fileButton({
+    id: "start-file",
+    label: t("file.open"),
+    help: t("file.open"),
+    accept: PROGRAM_FILES,
+    open: (file) => void commands.open(file),
+  });
   const element = h(
     "div",
     { class: "program-start", hidden: true },
-    h("div", { class: "program-start-head" }, h("h2", {}, t("new.title")), back),
+    h("div", { class: "program-start-head" }, h("h2", {}, t("new.title")), h("div", { class: "row" }, back, open)),
     h("ul", { class: "program-cards" }, ...cards),
     examplePart,
     recentPart,
