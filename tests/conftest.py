@@ -55,12 +55,14 @@ def add_language(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Ca
 def pytest_addoption(parser):
     about = "run tests/aseba_vm and tests/sim on the vectors of this folder (plain or .gz) instead of ours"
     parser.addoption("--vectors", metavar="DIR", type=Path, default=None, help=about)
+    about = "keep the pictures of the page as they are now, in tests/data/web/snapshots"
+    parser.addoption("--update-snapshots", action="store_true", help=about)
 
 
 def pytest_collection_modifyitems(items):
     """Mark the tests that need ROS, so that `make check` can leave them out: by their folder or by their fixtures."""
     folders = [Path(__file__).parent / name for name in ("ros", "testing/ros", "tf")]
     for item in items:
-        fixtures = {"ros", "ros_domain"}.intersection(getattr(item, "fixturenames", ()))
+        fixtures = {"ros", "ros_domain", "_shared"}.intersection(getattr(item, "fixturenames", ()))
         if fixtures or any(folder in item.path.parents for folder in folders):
             item.add_marker("ros")

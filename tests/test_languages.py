@@ -91,6 +91,30 @@ def test_no_sentence_is_left_in_english(language: str, file: str) -> None:
     assert own_texts(language, file).items() & own_texts(ENGLISH, file).items() == set()
 
 
+# -- typography --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("file", FILES)
+def test_apostrophes_and_quotation_marks_are_typographic(language: str, file: str) -> None:
+    """Straight quotes surround pieces of code only."""
+    opening, closing = {"de": "„“", "fr": "«»", "it": "«»"}.get(language, "“”")
+    for key, text in own_texts(language, file).items():
+        assert re.search(r"\w'\w", text) is None, key
+        assert text.count(opening) == text.count(closing), key
+        assert set(text) & set("„“”«»") <= {opening, closing}, key
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_french_has_no_break_spaces_at_its_punctuation(file: str) -> None:
+    for key, text in own_texts("fr", file).items():
+        if key.startswith("skeleton."):
+            continue  # comments of programs: pupils type plain spaces
+        text = re.sub(r"&\w+;", "", text)  # entities of XML
+        assert re.search(r"(?<!«)[ \xa0](?!!=)[;?!%]| :|« | »", text) is None, key
+        assert re.search(r"[^\W\d]([;?!%]|:(?=\s))|\w»|«\w", text) is None, key
+
+
 # -- the page ----------------------------------------------------------------------------------------------------------
 
 PARTS = {

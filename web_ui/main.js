@@ -155,7 +155,7 @@ async function main() {
       actions.press(robot, button, pressed);
     },
     dragController,
-    robotTitle: (name) => robotNames.of(name) || name || text("page")("app.robot"),
+    robotTitle: (name) => robotNames.title(name) || text("page")("app.robot"),
     select: (robot) => store.dispatch({ type: "select", robot }),
     contextLost: (trouble) => graphics.set(trouble),
   });
@@ -165,7 +165,7 @@ async function main() {
   motion.subscribe(followMotion);
   followTheme();
   followMotion();
-  const thumbnails = new ThumbnailCache((world) => scene.photograph(world));
+  const thumbnails = new ThumbnailCache((world) => scene.photographer.request(world));
 
   const visit = visitOptions(location.search);
   if (!visit.scene) document.body.dataset.scene = "off";
@@ -202,7 +202,7 @@ async function main() {
     showBar = fillBottomBar(element("#bar"), context);
     panels.build(context);
     for (const host of [program, creator, tour, welcome]) host.setContext(context);
-    if (scene.renderer === null) graphics.set("gone");
+    if (!scene.painter.has3d) graphics.set("gone");
     else graphics.render();
     redraw();
   };

@@ -123,8 +123,8 @@ test("a rejected call is reported", async () => {
   const { actions, store } = prepared({ ok: false, message: "not paused" });
   await actions.step(10);
   assert.deepEqual(
-    store.state.notices.map(({ level, text }) => [level, text]),
-    [["error", "not paused"]],
+    store.state.notices.map(({ level, text, technical }) => [level, text, technical]),
+    [["error", "action.refused", "not paused"]],
   );
 });
 
@@ -187,6 +187,16 @@ test("a robot is placed by a service, and a rejection becomes a notice", async (
     assert.deepEqual(asked, [["call", "/simulator/set_poses", { parameters }]]);
     assert.equal(store.state.notices.length, successful ? 0 : 1);
   }
+});
+
+test("what is in the way of a robot is named in the language of the page", async () => {
+  const reason = "'thymio' cannot be placed at 1.000, 2.000 m: occupied by 'box_1'";
+  const { actions, store } = prepared({ value: { results: [{ successful: false, reason }] } });
+  await actions.place("thymio", { x: 1, y: 2, yaw: 3 });
+  assert.deepEqual(
+    store.state.notices.map(({ text, technical }) => [text, technical]),
+    [["move.refusedBy", reason]],
+  );
 });
 
 test("a simulator that cannot move objects is reported", async () => {

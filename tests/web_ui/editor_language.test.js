@@ -93,6 +93,22 @@ test("blocks are indented, and their ends are not", () => {
   }
 });
 
+for (const [before, level] of /** @type {[string, number][]} */ ([
+  ["var a", 0],
+  ["onevent prox", 1],
+  ["sub turn", 1],
+  ["onevent prox\n\ta = 1", 1],
+  ["onevent prox\n\tif a > 1 then", 2],
+  ["onevent prox\n\tif a > 1 then\n\t\tb = 1\n\tend", 1],
+  ["onevent prox\n\ta = 1\n", 1],
+  ["if a then\n\tb = 1\nend", 0],
+])) {
+  test(`the line that is begun behind ${JSON.stringify(before)} is indented ${level} times`, () => {
+    const state = stateOf(`${before}\n`);
+    assert.equal(getIndentation(state, state.doc.length), 4 * level);
+  });
+}
+
 test("handlers and blocks can be folded", () => {
   const state = stateOf("onevent prox\n\tif a then\n\t\tb = 1\n\tend\n\nsub x\n\treturn\n");
   assert.deepEqual(foldable(state, 0, 12), { from: 12, to: 36 });

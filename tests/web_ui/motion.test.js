@@ -21,6 +21,10 @@ test("after one more interval the last pose is reached", () => {
   });
 });
 
+test("a robot that stands has arrived: nothing is drawn between two messages", () => {
+  assert.equal(poseAt(sample(0.1, 1, 0), sample(0.1, 1, 50), 51).arrived, true);
+});
+
 test("the first pose is used as it is", () => {
   assert.equal(poseAt(null, sample(1, 0, 0), 0).pose.x, 1);
 });

@@ -20,7 +20,7 @@ test("the line counts from where the code starts, and is not reported while the 
   assert.equal(lineOf({ line: "7" }), 7);
   assert.equal(lineOf({ line: "" }), 0);
   assert.equal(lineOf({ line: "2", first_line: "5" }), 0);
-  assert.equal(stateWithLine(FAILED, texts("fr")), "erreur ligne 3");
+  assert.equal(stateWithLine(FAILED, texts("fr")), "erreur à la ligne 3");
   assert.equal(stateWithLine({ ...FAILED, state: "paused" }, texts("en")), "halted in line 3");
   assert.equal(stateWithLine({ ...FAILED, state: "running" }, texts("fr")), "en marche");
 });

@@ -208,10 +208,10 @@ test("rejected parameters are reported at their request, other statuses as notic
     { type: "fault", what: "a frame is too short" },
   ]);
   assert.deepEqual(
-    state.notices.map(({ level, text }) => [level, text]),
+    state.notices.map(({ level, text, technical }) => [level, text, technical]),
     [
-      ["warning", "slow"],
-      ["error", "a frame is too short"],
+      ["warning", "", "slow"],
+      ["error", "", "a frame is too short"],
     ],
   );
   assert.equal(reduce(state, { type: "dismiss", id: state.notices[0].id }).notices.length, 1);
@@ -345,7 +345,7 @@ test("a notice disappears with its cause, and one of the bridge when the bridge 
   /** @param {import("../../web_ui/state/index.js").Message[]} messages */
   const reported = (...messages) => {
     for (const message of messages) store.dispatch(message);
-    return store.state.notices.map(({ text }) => text);
+    return store.state.notices.map(({ text, technical }) => text || technical);
   };
   reported({ type: "notice", level: "error", text: "refused", cause: "/simulator/step" });
   reported({ type: "notice", level: "error", text: "for good" });

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import pytest
@@ -14,21 +13,26 @@ from tests.web_ui.test_page_access import AXE, FINDINGS
 
 pytestmark = MARKS
 
-NAMES = [f"thymio_{number}" for number in range(1, 21)]
 RUN = """(name) => Object.values(window.thymio.state().programs).filter(
     (program) => program.state === "running" && program.name.startsWith(name)).length === 20"""
 FAULTY = "var list[3]\nvar at = 7\nlist[at] = 1\n"
 
 
 @pytest.fixture
-def class_page(suite, page, tmp_path) -> Any:
+def class_page(suite, page, class_world) -> Any:
     """Twenty robots that wait, and the tab with them."""
-    shapes = [{"kind": "rectangle", "x_m": 1.0, "y_m": -0.75, "size_x_m": 3.0, "size_y_m": 2.5, "color": "#f3eee3"}]
-    robots = [{"name": name, "x_m": at % 5 * 0.5, "y_m": -(at // 5) * 0.5} for at, name in enumerate(NAMES)]
-    world = tmp_path / "class.json"
-    world.write_text(json.dumps({"format": 1, "title": "Class", "shapes": shapes, "robots": robots}))
+    return opened(page, suite("--playground", str(class_world), "--program", "welcome"))
+
+
+@pytest.fixture
+def seen_class(twenty_robots, page) -> Any:
+    """The same for tests that only look."""
+    return opened(page, twenty_robots)
+
+
+def opened(page: Any, address: str) -> Any:
     page.set_viewport_size({"width": 1280, "height": 800})
-    open_page(page, suite("--playground", str(world), "--program", "welcome"))
+    open_page(page, address)
     page.wait_for_function(RUN, arg="welcome")
     open_tab(page, "class")
     page.locator(".class-tile").nth(19).wait_for()
@@ -82,8 +86,8 @@ def test_a_program_for_all_and_one_pupil_in_trouble(class_page, tmp_path):
     page.wait_for_function("(before) => window.thymio.state().timeNs < before", arg=before)
 
 
-def test_names_are_given_by_keys_shown_everywhere_and_kept(class_page):
-    page = class_page
+def test_names_are_given_by_keys_shown_everywhere_and_kept(seen_class):
+    page = seen_class
     page.click("[data-names=edit]")
     fields = page.locator(".class-field")
     playwright.expect(fields).to_have_count(20)
@@ -100,8 +104,8 @@ def test_names_are_given_by_keys_shown_everywhere_and_kept(class_page):
     playwright.expect(page.locator(".class-name").nth(1)).to_have_text("Ben")
 
 
-def test_it_is_accessible_in_both_themes_and_every_language(class_page):
-    page = class_page
+def test_it_is_accessible_in_both_themes_and_every_language(seen_class):
+    page = seen_class
     page.emulate_media(reduced_motion="reduce")
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)
@@ -117,7 +121,7 @@ def test_it_is_accessible_in_both_themes_and_every_language(class_page):
         assert page.evaluate(FINDINGS) == []
 
 
-def test_one_robot_is_no_class(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_one_robot_is_no_class(at_rest, page):
+    open_page(page, at_rest)
     playwright.expect(page.locator("#tab-robot")).to_be_visible()
     playwright.expect(page.locator("#tab-class")).to_be_hidden()

@@ -8,16 +8,16 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
+from tests.web_ui.creator_support import items, open_creator
 from tests.web_ui.page_support import MARKS, open_page, open_tab, wait_for_service
-from tests.web_ui.test_creator import items, open_creator
 
 pytestmark = MARKS
 
 
-def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_unchanged(suite, page, tmp_path):
+def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_unchanged(at_rest, page, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text(json.dumps({"format": 1, "title": "x", "shapes": [{"kind": "box", "x_m": "far"}]}))
-    open_creator(page, suite)
+    open_creator(page, at_rest)
     page.set_input_files("#creator-file", str(broken))
     fault = page.locator(".creator .fault")
     playwright.expect(fault.locator(".reason")).to_have_text("Thing 1: Position x must be from -10000 to 10000 cm.")
@@ -25,8 +25,8 @@ def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_uncha
     assert sorted(items(page)) == ["ground", "thymio"]
 
 
-def test_a_copy_of_a_shipped_playground_is_edited(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_a_copy_of_a_shipped_playground_is_edited(at_rest, page):
+    open_page(page, at_rest)
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
     open_tab(page, "playground")
     page.get_by_role("button", name="Edit a copy of Gate", exact=True).click()
@@ -50,10 +50,10 @@ def test_a_running_aseba_playground_is_edited(suite, page, tmp_path):
     assert "box" in {item["kind"] for item in items(page).values()}
 
 
-def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page, tmp_path):
+def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(at_rest, page, tmp_path):
     letter = tmp_path / "letter.json"
     letter.write_text("hello")
-    open_creator(page, suite)
+    open_creator(page, at_rest)
     page.set_input_files("#creator-file", str(letter))
     fault = page.locator(".creator .fault")
     playwright.expect(fault).to_contain_text("This file is not a playground.")

@@ -15,6 +15,8 @@ from thymio_sim_ros import resources
 
 pytestmark = MARKS
 
+BASE = ("--playground", "base", "--program", "none")
+
 COLORS = """(image) => {
     const canvas = Object.assign(document.createElement("canvas"), {width: 60, height: 40});
     const context = canvas.getContext("2d");
@@ -23,14 +25,14 @@ COLORS = """(image) => {
 }"""
 
 
-def open_gallery(page, suite, *arguments):
-    open_page(page, suite("--playground", "base", "--program", "none", *arguments))
+def open_gallery(page, address):
+    open_page(page, address)
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
     open_tab(page, "playground")
 
 
-def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(suite, page):
-    open_gallery(page, suite)
+def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(at_rest, page):
+    open_gallery(page, at_rest)
     for name in resources.playgrounds():
         card = page.locator(f"[data-playground={name}]")
         card.scroll_into_view_if_needed()
@@ -47,8 +49,8 @@ def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(suite,
         assert page.evaluate(FINDINGS) == []
 
 
-def test_thumbnails_are_drawn_when_they_come_into_sight(suite, page):
-    open_gallery(page, suite)
+def test_thumbnails_are_drawn_when_they_come_into_sight(at_rest, page):
+    open_gallery(page, at_rest)
     page.locator("[data-playground] img:not([hidden])").first.wait_for()
     assert page.locator(".gallery .sample").last.locator("img").is_hidden()
 
@@ -66,7 +68,7 @@ def test_one_is_chosen_by_keys_in_another_language(suite, page):
 
 
 def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brought_back(suite, page):
-    open_gallery(page, suite)
+    open_gallery(page, suite(*BASE))
     own = page.locator("section.own")
     playwright.expect(own).to_be_hidden()
     for title in ("First", "Second"):
@@ -93,10 +95,10 @@ def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brough
     page.wait_for_function("window.thymio.built().playground.title === 'First'")
 
 
-def test_a_broken_file_is_rejected_in_one_sentence_with_details_and_the_world_stays(suite, page, tmp_path):
+def test_a_broken_file_is_rejected_in_one_sentence_with_details_and_the_world_stays(at_rest, page, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text(json.dumps({"format": 1, "title": "Broken", "shapes": [{"kind": "box", "x_m": "far"}]}))
-    open_gallery(page, suite)
+    open_gallery(page, at_rest)
     page.set_input_files("#playground-file", str(broken))
     fault = page.locator(".current > .fault")
     playwright.expect(fault).to_contain_text("broken.json")
@@ -107,10 +109,10 @@ def test_a_broken_file_is_rejected_in_one_sentence_with_details_and_the_world_st
     assert page.evaluate("window.thymio.state().simulator.playground") == "base"
 
 
-def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page, tmp_path):
+def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(at_rest, page, tmp_path):
     letter = tmp_path / "letter.json"
     letter.write_text("hello")
-    open_gallery(page, suite)
+    open_gallery(page, at_rest)
     page.set_input_files("#playground-file", str(letter))
     fault = page.locator(".current > .fault")
     playwright.expect(fault).to_contain_text("This file is not a playground.")
@@ -157,7 +159,7 @@ def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(suite, pag
             }
         )
     )
-    open_gallery(page, suite)
+    open_gallery(page, suite(*BASE))
     page.set_input_files("#playground-file", str(foreign))
     page.wait_for_function("window.thymio.state().simulator.title === 'Lone pillar'")
     page.wait_for_function("window.thymio.state().robot?.latest")

@@ -77,10 +77,10 @@ def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
     )
 
 
-def test_little_is_loaded_before_the_editor_is_opened(suite, page):
+def test_little_is_loaded_before_the_editor_is_opened(at_rest, page):
     loaded: dict[str, bytes] = {}
     page.on("requestfinished", lambda request: loaded.update({request.url: request.response().body()}))
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, at_rest)
     page.wait_for_function("() => window.thymio.state().markers > 0")
     assert len(loaded) <= 10
     assert sum(len(gzip.compress(body)) for body in loaded.values()) < MOST_BYTES
@@ -102,8 +102,8 @@ def test_a_click_on_the_center_button_reaches_the_program(suite, page, tmp_path)
     )
 
 
-def test_with_shift_a_mouse_keeps_several_buttons_pressed(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_with_shift_a_mouse_keeps_several_buttons_pressed(at_rest, page):
+    open_page(page, at_rest)
     page.locator("#view").focus()
     page.keyboard.press("f")
     place = wait_for_position(page, "button.forward")
@@ -201,12 +201,12 @@ AT_CENTER_OF = """(message, selector) => {
 }"""
 
 
-def test_a_rejection_is_shown_where_the_file_was_dropped_or_chosen(suite, page, tmp_path):
+def test_a_rejection_is_shown_where_the_file_was_dropped_or_chosen(at_rest, page, tmp_path):
     playground, program, unknown = tmp_path / "bad.json", tmp_path / "bad.aesl", tmp_path / "bad.dat"
     playground.write_text('{"format": 1}')
     program.write_text('<network>\n<node nodeId="1" name="thymio-II">var a = = 1</node></network>')
     unknown.write_text("")
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, at_rest)
     notices = page.locator(".notice:visible")
     here = page.locator(".message-at:visible")
     open_editor(page)

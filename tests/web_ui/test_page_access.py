@@ -61,9 +61,9 @@ def test_axe_finds_nothing_serious(suite, page):
     assert page.evaluate(FINDINGS) == []
 
 
-def test_at_800_by_600_every_control_is_visible_in_every_language(suite, page):
+def test_at_800_by_600_every_control_is_visible_in_every_language(at_rest, page):
     page.set_viewport_size({"width": 800, "height": 600})
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, at_rest)
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)
         wait_for_frame(page)
@@ -71,9 +71,9 @@ def test_at_800_by_600_every_control_is_visible_in_every_language(suite, page):
 
 
 @pytest.mark.parametrize("size", [(683, 384), (360, 640)])
-def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(suite, page, size):
+def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(at_rest, page, size):
     page.set_viewport_size({"width": size[0], "height": size[1]})  # 1366 × 768 at 200 %; a small phone
-    open_page(page, suite("--playground", "base", "--program", "none"), unfold=False)
+    open_page(page, at_rest, unfold=False)
     wait_for_frame(page)
     assert page.evaluate(OVERLAPPING) == []
     open_editor(page)

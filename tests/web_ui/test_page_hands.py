@@ -49,8 +49,8 @@ def test_all_robots_are_picked_up_together(suite, page):
     )
 
 
-def test_a_hand_before_the_sensors_stays_until_it_is_taken_away(suite, page):
-    open_page(page, suite(*RESTING))
+def test_a_hand_before_the_sensors_stays_until_it_is_taken_away(at_rest, page):
+    open_page(page, at_rest)
     hand = page.locator("[data-hand=hand]")
     open_hands(page, "hand")
     page.get_by_role("button", name="in front", exact=True).click()
@@ -97,8 +97,8 @@ def test_hands_have_letters_and_escape_closes_sheet_and_move_mode_before_it_stop
     page.wait_for_function("() => window.thymio.state().program.state === 'stopped'")
 
 
-def test_a_folded_tray_opens_for_a_hand_with_values(suite, page):
-    open_page(page, suite(*RESTING))
+def test_a_folded_tray_opens_for_a_hand_with_values(at_rest, page):
+    open_page(page, at_rest)
     page.locator("#tray-fold").click()
     playwright.expect(page.locator("#tray-unfold")).to_be_focused()
     page.locator("#view").focus()

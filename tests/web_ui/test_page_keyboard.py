@@ -117,7 +117,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     ("language", "error", "help_text"),
     [
         ("de", "keine Variable heißt 'motor.left.targt'; vielleicht ist 'motor.left.target' gemeint", "gewünschte"),
-        ("fr", "aucune variable ne s'appelle 'motor.left.targt'", "vitesse voulue"),
+        ("fr", "aucune variable ne s’appelle 'motor.left.targt'", "vitesse voulue"),
         ("it", "nessuna variabile si chiama 'motor.left.targt'", "velocità voluta"),
     ],
 )
@@ -138,8 +138,8 @@ def test_editor_and_program_panel_show_errors_in_the_language_of_the_page(
     expect(page, ".reference .entry-help:visible p").to_contain_text(help_text)
 
 
-def test_letter_keys_work_with_caps_lock(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_letter_keys_work_with_caps_lock(at_rest, page):
+    open_page(page, at_rest)
     page.focus("#view")
     page.keyboard.press("T")  # without Shift, as with Caps Lock
     playwright.expect(page.get_by_role("button", name="Above")).to_have_attribute("aria-pressed", "true")
@@ -153,3 +153,23 @@ def test_letter_keys_work_with_caps_lock(suite, page):
     for key, selected in (("N", "ground"), ("N", "thymio"), ("Shift+N", "ground")):
         page.keyboard.press(key)
         page.wait_for_function("(name) => window.thymio.built().selected === name", arg=selected)
+
+
+def test_the_focus_is_not_lost_with_what_had_it(suite, page, tmp_path):
+    broken = tmp_path / "broken.aesl"
+    broken.write_text("onevent prox\nmotor.left.targt = 1\n")
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
+    drop_file(page, broken, "#view")
+    go_to(page, ".notice button")
+    page.keyboard.press("Enter")
+    expect(page, "#view").to_be_focused()
+    go_to(page, "#help-open", "Shift+Tab")
+    page.keyboard.press("Enter")
+    for _ in range(2):
+        page.keyboard.press("ArrowDown")
+    playwright.expect(page.get_by_role("menuitem", name="Keys")).to_be_focused()
+    page.keyboard.press("Enter")
+    playwright.expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page, "#help-open").to_be_focused()

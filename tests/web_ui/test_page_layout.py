@@ -92,7 +92,7 @@ def test_actions_go_to_the_chosen_robot_or_to_all(suite, page):
     for name in names:
         page.wait_for_function(runs, arg=[name, "explorer"])
     choose_robot(page, names[1])
-    playwright.expect(page.locator("#stop")).to_have_text("Stop robot")
+    playwright.expect(page.locator("#stop")).to_have_text(f"Stop {names[1]}")
     choose_example(page, "friendly")
     page.wait_for_function(runs, arg=[names[1], "friendly"])
     page.click("#stop")
@@ -101,8 +101,8 @@ def test_actions_go_to_the_chosen_robot_or_to_all(suite, page):
     assert page.evaluate(runs, [names[0], "explorer"])
 
 
-def test_the_creator_continues_when_its_tab_is_opened_again(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_the_creator_continues_when_its_tab_is_opened_again(at_rest, page):
+    open_page(page, at_rest)
     build_playground(page)
     playwright.expect(page.locator("#time")).to_be_hidden()
     open_tab(page, "robot")
@@ -112,3 +112,14 @@ def test_the_creator_continues_when_its_tab_is_opened_again(suite, page):
     page.locator(".palette").wait_for()
     page.click(".creator .leave")
     playwright.expect(page.locator("#playground-change")).to_be_visible()
+
+
+def test_the_names_of_views_follow_the_height_of_the_window_alone(at_rest, page):
+    page.set_viewport_size({"width": 1280, "height": 640})
+    open_page(page, at_rest, unfold=False)
+    row = page.locator(".view-row")
+    playwright.expect(row).to_have_attribute("data-names", "beside")
+    page.set_viewport_size({"width": 1280, "height": 460})
+    playwright.expect(row).to_have_attribute("data-names", "few")
+    page.set_viewport_size({"width": 1280, "height": 640})
+    playwright.expect(row).to_have_attribute("data-names", "beside")

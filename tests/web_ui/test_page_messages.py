@@ -25,10 +25,10 @@ DIALOG = """() => {
 }"""
 
 
-def test_a_message_is_above_an_open_dialog_and_can_be_closed_there(suite, page, tmp_path):
+def test_a_message_is_above_an_open_dialog_and_can_be_closed_there(at_rest, page, tmp_path):
     unknown = tmp_path / "song.mp3"
     unknown.write_bytes(b"")
-    open_gallery(page, suite)
+    open_gallery(page, at_rest)
     page.evaluate(DIALOG)
     page.set_input_files("#playground-file", str(unknown))
     notice = page.locator(".notice", has_text="song.mp3")
@@ -44,11 +44,11 @@ def test_a_message_is_above_an_open_dialog_and_can_be_closed_there(suite, page, 
     assert notice.evaluate(ON_TOP)
 
 
-def test_the_tab_does_not_show_the_error_of_another_attempt(suite, page, tmp_path):
+def test_the_tab_does_not_show_the_error_of_another_attempt(at_rest, page, tmp_path):
     broken, unknown = tmp_path / "broken.json", tmp_path / "song.mp3"
     broken.write_text('{"format": 1, "title": 3}')
     unknown.write_bytes(b"")
-    open_gallery(page, suite)
+    open_gallery(page, at_rest)
     fault = page.locator(".current > .fault")
     page.set_input_files("#playground-file", str(broken))
     playwright.expect(fault).to_contain_text("broken.json")
@@ -79,11 +79,11 @@ def test_success_notices_disappear_and_errors_stay_until_closed(suite, page, tmp
     playwright.expect(page.locator(".notice.info")).to_have_count(0)
 
 
-def test_one_message_is_shown_at_a_time_and_the_next_one_follows(suite, page, tmp_path):
+def test_one_message_is_shown_at_a_time_and_the_next_one_follows(at_rest, page, tmp_path):
     files = [tmp_path / name for name in ("song.mp3", "film.mp4")]
     for file in files:
         file.write_bytes(b"")
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, at_rest)
     page.locator("[data-view=move]").click()
     hint = page.locator(".messages .hint")
     playwright.expect(hint).to_be_visible()

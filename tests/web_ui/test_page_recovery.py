@@ -93,9 +93,9 @@ NO_STORAGE = """Object.defineProperty(window, "localStorage", {
 })"""
 
 
-def test_the_page_works_without_browser_storage(suite, page):
+def test_the_page_works_without_browser_storage(at_rest, page):
     page.add_init_script(NO_STORAGE)
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, at_rest)
     choose_language(page, "fr")
     playwright.expect(page.locator(".stop")).to_contain_text("Arrêt")
     open_editor(page)

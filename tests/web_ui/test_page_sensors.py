@@ -34,8 +34,8 @@ def test_the_sensor_of_a_plug_in_is_shown_with_its_changing_value(suite, page, t
     playwright.expect(values.nth(0)).to_have_text(heading)
 
 
-def test_values_are_subscribed_to_while_the_tab_is_open(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_values_are_subscribed_to_while_the_tab_is_open(at_rest, page):
+    open_page(page, at_rest)
     open_tab(page, "robot")
     page.wait_for_function(f"{MOTOR} !== undefined")
     page.click("#work-fold")

@@ -58,8 +58,8 @@ def test_the_explorer_avoids_obstacles(class_page):
     class_page.get_by_role("tab", name="Playground").click()
     class_page.get_by_role("button", name="Obstacle").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
-    about = "Forward starts, backward stops. Avoids obstacles."
-    choose_example(class_page, "Avoid things after forward", about)
+    about = "Forward starts, backward stops. Avoids things."
+    choose_example(class_page, "Press forward: avoid things", about)
     wait_until_moved(class_page, 0.2, robot_button(class_page, "Forward").click)
     playwright.expect(class_page.get_by_text("running", exact=True).first).to_be_visible()
 
@@ -69,7 +69,7 @@ def test_the_track_follower_follows_the_track(class_page):
     class_page.get_by_role("button", name="Borderless").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'borderless'")
     about = "Forward starts, backward stops. Follows the track."
-    choose_example(class_page, "Follow the track after forward", about)
+    choose_example(class_page, "Press forward: follow the track", about)
     wait_until_moved(class_page, 0.3, robot_button(class_page, "Forward").click)
 
 

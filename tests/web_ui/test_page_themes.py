@@ -39,9 +39,9 @@ def test_axe_finds_nothing_serious_in_sheets(suite, page, theme):
     page.wait_for_function(f"() => ({DIMMED})() === '0'")
 
 
-def test_controls_have_borders_in_forced_colors(suite, page):
+def test_controls_have_borders_in_forced_colors(at_rest, page):
     page.emulate_media(forced_colors="active")
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, at_rest)
     open_tab(page, "robot")
     borders = page.evaluate(
         "() => [...document.querySelectorAll('.btn, .hand, .chip')].filter((one) => one.checkVisibility())"

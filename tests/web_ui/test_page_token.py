@@ -60,7 +60,7 @@ def test_with_the_read_only_token_the_page_only_watches(suite, page):
     assert page.locator(".stop").get_attribute("title") == page.locator("#read-only").get_attribute("title")
     before = page.evaluate("window.thymio.state().timeNs")
     page.keyboard.press("Escape")  # would stop everything
-    page.wait_for_function("window.thymio.state().notices.some(({text}) => text.includes('read-only'))")
+    page.wait_for_function("window.thymio.state().notices.some(({technical}) => technical.includes('read-only'))")
     page.wait_for_function("(before) => window.thymio.state().timeNs > before", arg=before)
     assert page.evaluate("window.thymio.state().program.state") == "running"
 

@@ -61,8 +61,8 @@ def corners(page: Any) -> list[tuple[float, float]]:
     return [(place["x"], place["y"]) for place in page.evaluate(CORNERS)]
 
 
-def test_one_finger_turns_the_view_and_two_zoom_it(suite, tablet):
-    open_page(tablet, suite(*RESTING))
+def test_one_finger_turns_the_view_and_two_zoom_it(at_rest, tablet):
+    open_page(tablet, at_rest)
     wait_for_position(tablet, "robot")
     touches = TouchPoints(tablet)
     before = corners(tablet)
@@ -78,8 +78,8 @@ def test_one_finger_turns_the_view_and_two_zoom_it(suite, tablet):
     tablet.wait_for_function(ZOOMED, arg=1.2 * math.dist(*turned))
 
 
-def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(suite, tablet):
-    open_page(tablet, suite(*RESTING))
+def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(at_rest, tablet):
+    open_page(tablet, at_rest)
     tablet.locator("#view").focus()
     tablet.keyboard.press("f")
     wait_for_position(tablet, "button.center")
@@ -118,9 +118,9 @@ def test_a_robot_is_dragged_by_touch(suite, tablet):
     )
 
 
-def test_on_a_phone_nothing_overflows_and_stop_is_visible(suite, tablet):
+def test_on_a_phone_nothing_overflows_and_stop_is_visible(at_rest, tablet):
     tablet.set_viewport_size({"width": 412, "height": 860})
-    open_page(tablet, suite(*RESTING))
+    open_page(tablet, at_rest)
     for go in (None, open_editor, build_playground):
         if go is not None:
             go(tablet)
@@ -138,9 +138,9 @@ FREE = """() => {
 
 
 @pytest.mark.parametrize("size", [(390, 844), (360, 640)])
-def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(suite, tablet, size):
+def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(at_rest, tablet, size):
     tablet.set_viewport_size({"width": size[0], "height": size[1]})
-    open_page(tablet, suite(*RESTING), unfold=False)
+    open_page(tablet, at_rest, unfold=False)
     for language in ("de", "fr", "it", "en"):
         choose_language(tablet, language)
         assert tablet.evaluate(FREE) > 0.5

@@ -30,9 +30,9 @@ PNG = b"\x89PNG\r\n\x1a\n"
 RESTING = ("--playground", "base", "--program", "none")
 
 
-def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(suite, page):
+def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(at_rest, page):
     page.add_init_script(NO_WEBGL)
-    open_page(page, suite(*RESTING))
+    open_page(page, at_rest)
     page.wait_for_function(f"({FLAT_COLORS})() > 4")
     playwright.expect(page.locator("#trouble")).to_contain_text("2D")
     page.locator("#view").focus()
@@ -49,17 +49,17 @@ def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(suite, page
     assert int.from_bytes(content[16:20]) >= 1920
 
 
-def test_a_context_that_is_not_restored_switches_to_2d(suite, page):
-    open_page(page, suite(*RESTING))
+def test_a_context_that_is_not_restored_switches_to_2d(at_rest, page):
+    open_page(page, at_rest)
     wait_for_position(page, "robot")
     page.evaluate(LOSE)
     page.locator("#trouble").wait_for()
     page.wait_for_function(f"({FLAT_COLORS})() > 4")
 
 
-def test_the_view_is_saved_as_an_image_and_the_robot_view_works(suite, page):
+def test_the_view_is_saved_as_an_image_and_the_robot_view_works(at_rest, page):
     page.set_viewport_size({"width": 888, "height": 700})  # the view is as wide as the window
-    open_page(page, suite(*RESTING))
+    open_page(page, at_rest)
     wait_for_position(page, "robot")
     open_menu(page, "[data-view=look]")
     page.select_option("#quality", "simple")
@@ -106,7 +106,7 @@ def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(sui
     playwright.expect(names).to_have_text(["blue"])
 
 
-def test_one_robot_needs_no_name(suite, page):
-    open_page(page, suite(*RESTING))
+def test_one_robot_needs_no_name(at_rest, page):
+    open_page(page, at_rest)
     wait_for_position(page, "robot")
     assert page.locator("#labels .dot, #labels .tag").count() == 0

@@ -36,6 +36,7 @@ def wait_for_program(page, name):
 
 
 def visit(page, address, query="tour=off"):
+    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
     page.goto(f"{address}?{query}")
     page.wait_for_function(READY)
 
@@ -43,8 +44,16 @@ def visit(page, address, query="tour=off"):
 @pytest.fixture
 def first_visit(suite, page):
     """The page at a first visit: the robot waits in the ring of line. Also its address."""
-    address = suite("--playground", "line", "--program", "welcome")
-    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    return opened(page, suite("--playground", "line", "--program", "welcome"))
+
+
+@pytest.fixture
+def seen_visit(greeting, page):
+    """The same for tests that start nothing."""
+    return opened(page, greeting)
+
+
+def opened(page, address):
     visit(page, address)
     page.locator(STARTS).wait_for()
     wait_for_program(page, "welcome")
@@ -53,12 +62,13 @@ def first_visit(suite, page):
 
 def test_drive_it_one_click_and_the_arrow_keys_drive(first_visit):
     page, _ = first_visit
+    page.set_viewport_size({"width": 1366, "height": 650})  # a laptop of a school: the tray is folded
     page.wait_for_function(RESTS)
     page.get_by_role("button", name="Drive with the arrows").click()
     wait_for_program(page, "thesis_basic")
     playwright.expect(page.locator(STARTS)).to_have_count(0)
     playwright.expect(page.locator("#view")).to_be_focused()
-    playwright.expect(page.locator("#pad")).to_be_attached()
+    playwright.expect(page.locator("#pad")).to_be_visible()
     page.keyboard.down("ArrowUp")
     page.wait_for_function("() => window.thymio.state().robot.buttons.forward")
     page.keyboard.up("ArrowUp")
@@ -109,8 +119,8 @@ def test_who_only_watches_sees_it_follow_the_line(first_visit):
     page.wait_for_function(MOVES)
 
 
-def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(first_visit):
-    page, address = first_visit
+def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(seen_visit):
+    page, address = seen_visit
     page.keyboard.press("Escape")
     playwright.expect(page.locator(STARTS)).to_have_count(0)
     visit(page, address)
@@ -123,10 +133,9 @@ def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(first
     playwright.expect(page.locator(STARTS)).to_have_count(0)
 
 
-def test_without_browser_storage_a_choice_lasts_in_this_visit(first_visit):
-    page, address = first_visit
+def test_without_browser_storage_a_choice_lasts_in_this_visit(greeting, page):
     page.add_init_script(NO_STORAGE)
-    visit(page, address)
+    visit(page, greeting)
     page.locator(STARTS).wait_for()
     page.keyboard.press("Escape")
     page.reload()
@@ -135,8 +144,8 @@ def test_without_browser_storage_a_choice_lasts_in_this_visit(first_visit):
     playwright.expect(page.locator(STARTS)).to_have_count(0)
 
 
-def test_the_greeting_is_over_the_robot_and_in_every_language(first_visit):
-    page, _ = first_visit
+def test_the_greeting_is_over_the_robot_and_in_every_language(seen_visit):
+    page, _ = seen_visit
     hello = page.locator(".welcome-hello")
     for language, text in (("de", "Hallo, ich bin Thymio."), ("fr", "Bonjour"), ("it", "Ciao"), ("en", "Hello")):
         choose_language(page, language)
@@ -151,11 +160,10 @@ def test_the_greeting_is_over_the_robot_and_in_every_language(first_visit):
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1024, 768), (390, 844), (640, 400)])
-def test_everything_is_in_sight_and_accessible_on_every_screen(first_visit, size):
-    page, address = first_visit
+def test_everything_is_in_sight_and_accessible_on_every_screen(greeting, page, size):
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.emulate_media(reduced_motion="reduce")
-    visit(page, address, "welcome=on")
+    visit(page, greeting, "welcome=on")
     page.locator(STARTS).wait_for()
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)
@@ -166,9 +174,9 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(first_visit, size
         assert page.evaluate(FINDINGS) == []
 
 
-def test_the_keys_are_listed_in_a_dialog_that_escape_closes(first_visit):
-    page, address = first_visit
-    visit(page, address, "tour=off&welcome=off")
+def test_the_keys_are_listed_in_a_dialog_that_escape_closes(greeting, page):
+    visit(page, greeting, "tour=off&welcome=off")
+    wait_for_program(page, "welcome")
     open_menu(page, "#help-open")
     page.get_by_role("menuitem", name="Keys").click()
     dialog = page.get_by_role("dialog", name="Keys")
@@ -181,8 +189,8 @@ def test_the_keys_are_listed_in_a_dialog_that_escape_closes(first_visit):
     assert page.evaluate("window.thymio.state().program.state") == "running"
 
 
-def test_the_documentation_ships_with_the_page(first_visit):
-    page, _ = first_visit
+def test_the_documentation_ships_with_the_page(seen_visit):
+    page, _ = seen_visit
     open_menu(page, "#help-open")
     with page.context.expect_page() as opened:
         page.get_by_role("menuitem", name="Documentation").click()

@@ -18,6 +18,11 @@ export class RobotNames {
     return Object.hasOwn(this.names, robot) ? this.names[robot] : "";
   }
 
+  /** The name to show: the given one, else its own. @param {string} robot */
+  title(robot) {
+    return this.of(robot) || robot;
+  }
+
   /** @param {string} robot @param {string} name  empty: none */
   set(robot, name) {
     const { [robot]: _, ...others } = this.names;

@@ -14,8 +14,10 @@ export function exposeForTests({ store, scene, dragController, creator }) {
     value: Object.freeze({
       state: () => snapshot(store.state),
       frames: () => scene.frames,
+      level: () => scene.quality.level,
+      isPainted: () => scene.world.surroundings.wood !== null,
       screenPosition: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) =>
-        scene.screenPosition(x, y, z),
+        scene.projection.toWindow(x, y, z),
       dragged: () => dragController.dragged,
       built: () => creator.snapshot(),
       /** @param {string} part @param {string} [robot] */

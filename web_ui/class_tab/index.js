@@ -166,7 +166,7 @@ function troubleOf({ language, store, scene, workspace, frame }, t) {
       element.hidden = member === null || !needsLook(member.state);
       if (member === null || element.hidden) return;
       const { robot, number, state, line } = member;
-      const name = robotNames.of(robot) || robot;
+      const name = robotNames.title(robot);
       setText(dot, number);
       setAttribute(dot, "style", `--color: ${robotColor(Object.keys(robots), robot)}`);
       setText(title, t(kinds[/** @type {keyof typeof kinds} */ (state)], { name, line }));

@@ -71,7 +71,7 @@ export class Tiles {
     const button = /** @type {HTMLElement} */ (element.querySelector("button"));
     const word = /** @type {HTMLElement} */ (element.querySelector(".class-state"));
     setAttribute(button, "aria-pressed", String(isSelected));
-    setText(/** @type {HTMLElement} */ (element.querySelector(".class-name")), robotNames.of(robot) || robot);
+    setText(/** @type {HTMLElement} */ (element.querySelector(".class-name")), robotNames.title(robot));
     if (word.dataset.state === state) return;
     word.dataset.state = state;
     const symbol = ICONS[state];

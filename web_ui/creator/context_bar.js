@@ -73,8 +73,8 @@ export function contextBar({ labels, model, scene }) {
     const height = item.kind === "robot" ? ROBOT_HEIGHT_M : (valuesOf(item).height_m ?? 0);
     const reach = hasKnob(item) ? 0 : reachOf(item) + RING_BEYOND_M;
     const { left, top } = scene.canvas.getBoundingClientRect();
-    const base = AROUND.map((angle) => scene.screenPosition(x + reach * Math.cos(angle), y + reach * Math.sin(angle), 0));
-    const spots = [...base, scene.screenPosition(x, y, height)];
+    const base = AROUND.map((angle) => scene.projection.toWindow(x + reach * Math.cos(angle), y + reach * Math.sin(angle), 0));
+    const spots = [...base, scene.projection.toWindow(x, y, height)];
     return spots.flatMap((spot) => (spot === null ? [] : [{ x: spot.x - left, y: spot.y - top }]));
   };
 

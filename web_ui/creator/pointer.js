@@ -29,7 +29,7 @@ export function watchCreatorPointer({ stage, canvas, model, scene }) {
     if (latest === null) return;
     const position = latest;
     latest = null;
-    const ray = scene.rayOf(position);
+    const ray = scene.projection.rayOf(position);
     const place = atHeight(ray, 0);
     model.pointer = place === null ? null : [place.x, place.y];
     if (down?.isDrag) model.selecting.drag(ray, position.altKey);
@@ -55,7 +55,7 @@ export function watchCreatorPointer({ stage, canvas, model, scene }) {
       return;
     }
     if (event.button !== 0) return;
-    const isDrag = model.placing === null && model.selecting.grab(scene.rayOf(event));
+    const isDrag = model.placing === null && model.selecting.grab(scene.projection.rayOf(event));
     down = { id: event.pointerId, x: event.clientX, y: event.clientY, isDrag, click: true };
     latest = event;
     if (isDrag) canvas.setPointerCapture(event.pointerId);
@@ -82,7 +82,7 @@ export function watchCreatorPointer({ stage, canvas, model, scene }) {
     down = null;
     if (isDrag) model.selecting.drop();
     else if (model.placing !== null) model.placing.put();
-    else model.selecting.click(scene.rayOf(event));
+    else model.selecting.click(scene.projection.rayOf(event));
   });
   on("pointercancel", () => {
     down = null;

@@ -119,3 +119,23 @@ export function explain(line, column, vocabulary) {
   }
   return null;
 }
+
+/** What a name of a kind may also be, for `isTaken`. */
+const TAKEN = /** @type {Readonly<Record<import("./names.js").Place["kind"], Kind[]>>} */ ({
+  value: ["variable", "constant"],
+  subroutine: ["subroutine"],
+  event: ["event"],
+  native: ["native"],
+});
+
+/**
+ * Whether the robot, the file or the language already uses a name; names that the text defines do not count.
+ *
+ * @param {string} name
+ * @param {import("./names.js").Place["kind"]} kind
+ * @param {Omit<Vocabulary, "definitions">} vocabulary
+ */
+export function isTaken(name, kind, vocabulary) {
+  const known = items({ ...vocabulary, variables: [], definitions: [] });
+  return known.some((item) => item.name === name && (item.kind === "keyword" || TAKEN[kind].includes(item.kind)));
+}

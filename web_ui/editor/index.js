@@ -20,7 +20,10 @@ import { footOf } from "./foot.js";
 import { mistakeCard } from "./mistake_card.js";
 import { MistakeGuide } from "./mistake_guide.js";
 import { repairLabel } from "./mistakes.js";
+import { isTaken } from "./help.js";
+import { navigation } from "./navigation.js";
 import { ProgramChecker } from "./program_checker.js";
+import { signatureHelp } from "./signature.js";
 import { createText } from "./text.js";
 import { toolbox } from "./tools/index.js";
 import { ALL } from "./workspace.js";
@@ -52,6 +55,11 @@ class TextView {
         redraw();
       },
     });
+    this.navigation = navigation({
+      t,
+      isTaken: (name, kind) => isTaken(name, kind, this.#vocabulary()),
+      report: (text, kind) => this.report(text, kind),
+    });
     this.text = createText({
       parent: code,
       kept: session.texts,
@@ -68,7 +76,11 @@ class TextView {
       toggleBreakpoint: (line) => void this.markers.toggle(line),
       repairLabel: (content, repair) => repairLabel(t, content, repair),
       correct: () => this.guide.correct(),
-      extensions: [mistakeCard({ t, correct: () => this.guide.correct() })],
+      extensions: [
+        mistakeCard({ t, correct: () => this.guide.correct() }),
+        signatureHelp((name) => this.#native(name)),
+        this.navigation.extension,
+      ],
     });
     const { view } = this.text;
     this.markers = new DebugMarkers({
@@ -196,24 +208,40 @@ class TextView {
     };
   }
 
+  /** @param {string} name */
+  #native(name) {
+    return this.parts.selection.target?.natives.find((each) => each.name === name) ?? null;
+  }
+
   /** What the text adds to the menu of the file. */
   #entries() {
     const { t, session, redraw } = this.parts;
-    const find = h(
-      "button",
-      {
-        type: "button",
-        class: "btn",
-        "data-verb": "find",
-        onclick: () => {
-          /** @type {HTMLElement | null} */ (find.closest("[popover]"))?.hidePopover();
-          this.text.find();
+    /** @param {string} name @param {import("../ui/icons.js").IconName} sign @param {string} keys @param {() => void} run */
+    const entry = (name, sign, keys, run) => {
+      const button = h(
+        "button",
+        {
+          type: "button",
+          class: "btn",
+          "data-verb": name,
+          onclick() {
+            /** @type {HTMLElement | null} */ (button.closest("[popover]"))?.hidePopover();
+            run();
+          },
         },
-      },
-      icon("search", { small: true }),
-      h("span", { class: "grow" }, t("editor.find")),
-      h("kbd", { class: "kbd" }, "Ctrl+F"),
-    );
+        icon(sign, { small: true }),
+        h("span", { class: "grow" }, t(`editor.${name}`)),
+        h("kbd", { class: "kbd" }, keys),
+      );
+      return button;
+    };
+    const { openOutline, goToDefinition, rename } = this.navigation.commands;
+    const entries = [
+      entry("find", "search", "Ctrl+F", () => this.text.find()),
+      entry("outline", "list", "Ctrl+Shift+O", () => openOutline(this.text.view)),
+      entry("definition", "text", "F12", () => goToDefinition(this.text.view)),
+      entry("rename", "pen", "F2", () => rename(this.text.view)),
+    ];
     /** @param {string} name @param {string} sign @param {number} step */
     const sizer = (name, sign, step) =>
       h(
@@ -230,7 +258,7 @@ class TextView {
         },
         sign,
       );
-    return [find, h("div", { class: "row" }, sizer("smaller", "A−", -1), sizer("larger", "A+", 1))];
+    return [...entries, h("div", { class: "row" }, sizer("smaller", "A−", -1), sizer("larger", "A+", 1))];
   }
 
   /** @param {import("./breakpoints.js").Place} place  where the program is halted or failed */

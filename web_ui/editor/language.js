@@ -34,6 +34,17 @@ function body(node, state) {
   return to > from ? { from, to } : null;
 }
 
+/**
+ * The indentation of a line behind the last word of the program: it belongs to the section before it.
+ *
+ * @param {import("@codemirror/language").TreeIndentContext} context
+ */
+function indentBehind({ node, pos, textAfter, unit }) {
+  const before = node.childBefore(pos)?.name;
+  const isInSection = before === "Handler" || before === "Subroutine";
+  return isInSection && !/^\s*(onevent|sub)\b(?!\.)/.test(textAfter) ? unit : 0;
+}
+
 const BLOCK = continuedIndent({ except: /^\s*(end|else|elseif)\b(?!\.)/ });
 const SECTION = continuedIndent({ except: /^\s*(onevent|sub)\b(?!\.)/ });
 
@@ -61,7 +72,7 @@ export const asebaLanguage = LRLanguage.define({
       indentNodeProp.add({
         "IfStatement WhenStatement WhileStatement ForStatement ElseClause ElseifClause": BLOCK,
         "Handler Subroutine": SECTION,
-        Program: () => 0,
+        Program: indentBehind,
       }),
       foldNodeProp.add({ "IfStatement WhenStatement WhileStatement ForStatement Handler Subroutine": body }),
       foldNodeProp.add({ BlockComment: ({ from, to }) => ({ from: from + 2, to: to - 2 }) }),

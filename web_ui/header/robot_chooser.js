@@ -23,7 +23,7 @@ export function robotChooserPanel({ text, store, announce }) {
   );
 
   /** @param {string} robot */
-  const titleOf = (robot) => robotNames.of(robot) || robot || t("app.robot");
+  const titleOf = (robot) => robotNames.title(robot) || t("app.robot");
   const entries = () => {
     const { robots, selected, toAll } = store.state;
     const names = Object.keys(robots);

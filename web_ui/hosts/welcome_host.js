@@ -97,7 +97,9 @@ export class WelcomeHost {
     if (context === null) return;
     // The tour shows what the starts would hide.
     const showsStarts = this.isWanted && !context.tour.isOpen && canStart(state, context.creator.isOpen);
-    const showsOffer = context.tour.isOffered && state.connection === "connected" && state.identified;
+    // It would lie over an open workspace.
+    const hasRoom = context.workspace.tab === null;
+    const showsOffer = hasRoom && context.tour.isOffered && state.connection === "connected" && state.identified;
     if ((showsStarts || showsOffer) && this.module === null) {
       if (!this.isAsked) void this.#load(true).then(() => context.scene.invalidate());
       return;

@@ -11,6 +11,7 @@ import { RuntimeClient } from "./runtime_client.js";
 
 /** From rcl_interfaces/msg/ParameterType. */
 const DOUBLE_ARRAY = 8;
+const MB = 1_000_000;
 /** Maximum size of a program file in bytes. */
 export const LARGEST_PROGRAM = 1_000_000;
 /**
@@ -23,6 +24,9 @@ export const LARGEST_PLAYGROUND = 3_000_000;
  * Longer than the 20 ms between two button polls even at a quarter of real time (docs/spec/thymio-robot.md section 3).
  */
 const SHORTEST_PRESS_MS = 120;
+
+/** The reason for which the simulator does not place something: the name of what is there. */
+const OCCUPIED = /: occupied by '(.*)'$/s;
 
 /** File kinds by file name extension. */
 const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
@@ -169,10 +173,9 @@ export class Actions {
     const answer = await this.client.call("/simulator/set_poses", { parameters: [{ name, value }] });
     const result = answer.value?.results?.[0] ?? { successful: answer.ok, reason: answer.message };
     if (!result.successful) {
-      this.#report("/simulator/set_poses", {
-        ok: false,
-        message: this.t("move.refused", { reason: result.reason }),
-      });
+      const by = OCCUPIED.exec(result.reason)?.[1];
+      const text = by === undefined ? this.t("move.refused") : this.t("move.refusedBy", { by });
+      this.#report("/simulator/set_poses", { ok: false, message: result.reason }, text);
     } else {
       this.#report("/simulator/set_poses", { ok: true, message: "" });
       if (this.store.state.simulator?.paused) {
@@ -244,13 +247,16 @@ export class Actions {
    */
   async loadFile(file, refuse = (text) => this.#refuse(text)) {
     const { name } = file;
+    const most = isProgram(file) ? LARGEST_PROGRAM : LARGEST_PLAYGROUND;
+    const isTooLarge = file.size > most;
+    const tooLarge = this.t("file.tooLarge", { name, size: most / MB });
     if (isProgram(file)) {
-      if (file.size > LARGEST_PROGRAM) return refuse(this.t("file.tooLarge", { name }));
+      if (isTooLarge) return refuse(tooLarge);
       const text = await textOf(file);
       if (text === null) return refuse(this.t("file.notText", { name }));
       await this.loadProgram(file.name, text);
     } else if (KINDS.playground.test(file.name)) {
-      if (file.size > LARGEST_PLAYGROUND) return refuse(this.t("file.tooLarge", { name }));
+      if (isTooLarge) return refuse(tooLarge);
       await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));
     } else refuse(this.t("file.unknown", { name }));
   }
@@ -273,11 +279,12 @@ export class Actions {
    * Show an error until the same action succeeds.
    *
    * @param {string} cause
-   * @param {{ ok: boolean, message: string }} answer
+   * @param {{ ok: boolean, message: string }} answer   message: in English
+   * @param {string} [text]   what failed, in the language of the page
    */
-  #report(cause, { ok, message }) {
+  #report(cause, { ok, message: technical }, text = this.t("action.refused")) {
     this.store.dispatch({ type: "solved", cause });
-    if (!ok) this.store.dispatch({ type: "notice", level: "error", text: message, cause });
+    if (!ok) this.store.dispatch({ type: "notice", level: "error", text, technical, cause });
   }
 }
 

@@ -4,6 +4,7 @@
 import { fileNameOf } from "../playground/document.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock } from "../ui/dom.js";
+import { keepFocus } from "../ui/focus.js";
 import { icon } from "../ui/icons.js";
 import { card } from "./card.js";
 
@@ -71,7 +72,11 @@ export function ownPanel({ text, actions, thumbnails, creator, announce }) {
         shown = drafts.version;
         buttons = [];
         const all = drafts.list();
-        list.replaceChildren(...all.map(draftCard));
+        keepFocus(
+          list,
+          () => list.replaceChildren(...all.map(draftCard)),
+          () => list.querySelector("button"),
+        );
         element.hidden = all.length === 0;
       }
       const reason = disabledReason(state, pageText);

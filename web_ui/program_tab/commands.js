@@ -166,8 +166,8 @@ export class ProgramCommands {
 
   /** Start a built-in behavior on the robots, and show it. @param {string} name */
   async openExample(name) {
-    const { ok, message } = await this.actions.loadExample(name);
-    if (!ok) return this.report(message, "error");
+    const { ok } = await this.actions.loadExample(name); // which reports a failure
+    if (!ok) return;
     this.workspace.follow(); // only now: until then the robot has another program
     this.back();
   }
@@ -239,8 +239,7 @@ export class ProgramCommands {
   /** @param {Verb} verb */
   async control(verb) {
     const answers = await Promise.all(this.selection.controlled.map((name) => this.runtime.control(name, verb)));
-    const refused = answers.find(({ ok }) => !ok);
-    if (refused !== undefined) this.report(refused.message, "error");
+    if (answers.some(({ ok }) => !ok)) this.report(this.t("editor.notNow"), "error");
   }
 
   /** Whether a robot of the tab offers this service. @param {Verb} verb */

@@ -5,6 +5,9 @@ import { icon } from "../ui/icons.js";
 import { makeSheet } from "../ui/sheet.js";
 import { WHOLE } from "./toolbox_file.js";
 
+/** Files of programs and of what languages import, as a file dialog offers them. @param {import("./commands.js").ProgramCommands} commands */
+export const acceptedFiles = ({ imports }) => [".aesl", ".aseba", ".txt", ".json", ...imports].join();
+
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
@@ -59,7 +62,7 @@ export function fileMenu({ t, session, commands, redraw }) {
     id: "editor-file",
     label: t("file.open"),
     help: t("file.open"),
-    accept: [".aesl", ".aseba", ".txt", ".json", ...commands.imports].join(),
+    accept: acceptedFiles(commands),
     open: (file) => void commands.open(file),
     look: "btn",
   });

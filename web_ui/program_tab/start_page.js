@@ -1,8 +1,9 @@
 // How to begin a program: one of the samples of a language, an example, or one of the last programs.
 
 import { exampleList, languageOf } from "../examples/index.js";
-import { h } from "../ui/dom.js";
+import { fileButton, h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
+import { acceptedFiles } from "./file_menu.js";
 import { TEXT } from "./language_choice.js";
 
 /** @typedef {import("../editor/file_store.js").StoredFile} StoredFile */
@@ -86,10 +87,17 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
     icon("back", { small: true }),
     t("new.back"),
   );
+  const open = fileButton({
+    id: "start-file",
+    label: t("file.open"),
+    help: t("file.open"),
+    accept: acceptedFiles(commands),
+    open: (file) => void commands.open(file),
+  });
   const element = h(
     "div",
     { class: "program-start", hidden: true },
-    h("div", { class: "program-start-head" }, h("h2", {}, t("new.title")), back),
+    h("div", { class: "program-start-head" }, h("h2", {}, t("new.title")), h("div", { class: "row" }, back, open)),
     samples,
     examplePart,
     recentPart,

@@ -72,6 +72,17 @@ export class Camera {
     this.camera.updateProjectionMatrix();
   }
 
+  /** The size of one CSS pixel near what is looked at, in meters. */
+  get pixelSize() {
+    return 1 / this.pixelsOf(1, this.controls.target);
+  }
+
+  /** How many CSS pixels a length takes there. @param {number} meters @param {THREE.Vector3} place */
+  pixelsOf(meters, place) {
+    const high = 2 * this.camera.position.distanceTo(place) * Math.tan((this.camera.fov * Math.PI) / 360);
+    return (meters / high) * this.size.height;
+  }
+
   /** Prepare for drawing. */
   ready() {
     this.#setNear();

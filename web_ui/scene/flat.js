@@ -17,6 +17,7 @@ import { drawSketch } from "./sketch.js";
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
 const MARGIN = 1.06;
+const ZOOM_STEP = 1.15;
 const FOLLOW_M = 0.9; // height of the visible area while following a robot
 const ABOVE_M = 5;
 const HALF_BEAM = 0.15; // rad
@@ -98,6 +99,16 @@ export class FlatView {
     }
     if (sketch !== null) drawSketch(context, sketch, this.pixelRatio / scale);
     context.setTransform(1, 0, 0, 1, 0, 0);
+  }
+
+  /** Zoom in or out. @param {number} steps */
+  zoomBy(steps) {
+    this.zoom = Math.min(8, Math.max(0.5, this.zoom * ZOOM_STEP ** steps));
+  }
+
+  /** The size of one CSS pixel in meters. */
+  get pixelSize() {
+    return ((this.camera.top - this.camera.bottom) * this.pixelRatio) / Math.max(1, this.#size.height);
   }
 
   /** The displayed size of the canvas in pixels; its own size if it is not displayed. */

@@ -3,31 +3,23 @@
 import * as THREE from "three";
 
 import { watchDrags } from "../move/drag.js";
-import { Camera } from "./camera.js";
+import { isSensed } from "../state/names.js";
 import { robotColor } from "../state/robot_colors.js";
-import { FlatView } from "./flat.js";
-import { Ghost } from "./ghost.js";
-import { createRenderer, isSoftware } from "./graphics.js";
-import { groundOf } from "./ground_of.js";
+import { Camera } from "./camera.js";
 import { lightAs } from "./lights.js";
 import { FrameLoop } from "./loop.js";
-import { ValueLabels, valueLabelsOf } from "./value_labels.js";
-import { photograph } from "./photographer.js";
-import { PlaygroundModel } from "./playground.js";
+import { Painter } from "./painter.js";
+import { Photographer } from "./photographer.js";
 import { watchPointer } from "./pointer.js";
+import { Projection } from "./projection.js";
 import { pictureRatio, Quality } from "./quality.js";
-import { RobotsLayer } from "./robots_layer.js";
-import { SketchModel } from "./sketch.js";
-import { drawAll, StillGround } from "./still_ground.js";
-import { Surroundings } from "./surroundings.js";
-import { isSensed } from "../state/names.js";
+import { ValueLabels, valueLabelsOf } from "./value_labels.js";
+import { World } from "./world.js";
 
 /** @typedef {import("../state/index.js").State} State */
 /** @typedef {import("./camera.js").ViewName} ViewName */
 /** @typedef {import("./pointer.js").Target} Target */
 
-/** If a lost WebGL context is not restored within this time, the view switches to 2D. */
-const LOST_FOR_GOOD_MS = 4000;
 /** Distance of a name above its robot in the 2D view. */
 const FLAT_LABEL_PX = 24;
 /** Robots smaller than this on the screen, in drawn pixels, use the coarse model. */
@@ -54,56 +46,31 @@ export class SceneView {
     this.state = state;
     this.beforeDraw = beforeDraw;
     this.dragController = dragController;
-    this.ghost = new Ghost();
     this.sketch = sketch;
-    this.sketchModel = new SketchModel();
     this.framed = false;
     this.frames = 0;
-    this.size = { width: 0, height: 0 }; // CSS pixels; cached, since reading it after moving a label forces a layout
     this.showSensors = true;
     this.showNumbers = false;
     this.isCalm = false;
-    this.renderer = createRenderer(canvas);
-    this.isSoftware = isSoftware(this.renderer);
-    this.quality = new Quality({ isSoftware: this.isSoftware });
-    this.loop = new FrameLoop({
-      quality: this.quality,
-      draw: (nowMs) => this.#frame(nowMs),
-      resize: () => this.#resize(),
-    });
+    this.painter = new Painter({ canvas, flatCanvas, changed: () => this.invalidate(), contextLost });
+    this.quality = new Quality({ isSoftware: this.painter.isSoftware });
+    this.loop = new FrameLoop({ quality: this.quality, draw: (nowMs) => this.#frame(nowMs) });
     this.valueLabels = new ValueLabels(labels);
-    this.flat = new FlatView(flatCanvas);
-    this.wantsFlat = false;
-    this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
-    /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.photoRequests = [];
-    this.scene = new THREE.Scene();
-    this.still = new StillGround();
-    this.surroundings = new Surroundings(() => this.#redraw());
-    this.playground = new PlaygroundModel(() => this.#redraw(), undefined, { isStill: true });
-    this.objects = new PlaygroundModel(() => this.invalidate());
-    this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle, select });
-    this.scene.add(this.surroundings.group, this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
+    this.photographer = new Photographer(() => this.invalidate());
+    this.world = new World({
+      labels,
+      robotTitle,
+      select,
+      groundChanged: () => this.#redraw(),
+      changed: () => this.invalidate(),
+    });
+    this.robots = this.world.robots;
     this.camera = new Camera(canvas, () => this.invalidate());
-    let lostTimer = 0;
-    canvas.addEventListener("webglcontextlost", () => {
-      contextLost("lost");
-      lostTimer = window.setTimeout(() => {
-        this.isLost = true;
-        contextLost("gone");
-        this.invalidate();
-      }, LOST_FOR_GOOD_MS);
-    });
-    canvas.addEventListener("webglcontextrestored", () => {
-      window.clearTimeout(lostTimer);
-      this.isLost = false;
-      this.still.forget();
-      contextLost(null);
-      this.invalidate();
-    });
+    this.projection = new Projection(canvas, this.painter.size, () => this.eye);
     watchDrags({
       element: canvas,
-      rayOf: (event) => (this.sketch() === null ? this.rayOf(event) : null),
+      rayOf: (event) => (this.sketch() === null ? this.projection.rayOf(event) : null),
       dragController,
       isButton: (event) => buttons.isAt(event),
     });
@@ -120,8 +87,7 @@ export class SceneView {
         this.invalidate();
       },
     });
-    new ResizeObserver(() => this.#resize()).observe(canvas);
-    this.#resize();
+    this.invalidate();
   }
 
   /** Request one frame; several calls before it have the effect of one. */
@@ -134,24 +100,14 @@ export class SceneView {
     this.camera.setView(view, this.#selectedPose());
   }
 
-  /** Whether 3D drawing is available now. */
-  get has3d() {
-    return this.renderer !== null && !this.isLost;
-  }
-
-  /** Whether the view is drawn in 2D from above, because 3D is missing or by choice. */
-  get isFlat() {
-    return this.wantsFlat || !this.has3d;
-  }
-
   /** The active camera. */
   get eye() {
-    return this.isFlat ? this.flat.camera : this.camera.camera;
+    return this.painter.isFlat ? this.painter.flat.camera : this.camera.camera;
   }
 
   /** @param {boolean} flat */
   setFlat(flat) {
-    this.wantsFlat = flat;
+    this.painter.wantsFlat = flat;
     this.invalidate();
   }
 
@@ -170,6 +126,7 @@ export class SceneView {
   /** Space at the edges of the canvas that is covered, in CSS pixels. @param {import("./camera.js").Insets} insets */
   setInsets(insets) {
     this.camera.setInsets(insets);
+    this.invalidate();
   }
 
   /** @param {boolean} shown */
@@ -178,15 +135,21 @@ export class SceneView {
     this.invalidate();
   }
 
+  /** @param {boolean} shown */
+  setSensors(shown) {
+    this.showSensors = shown;
+    this.invalidate();
+  }
+
   /** @param {string} choice  one of `QUALITIES` */
   setQuality(choice) {
     this.quality.choose(choice);
-    this.#resize();
+    this.invalidate();
   }
 
   /** Zoom in or out. @param {number} steps */
   zoom(steps) {
-    if (this.isFlat) this.flat.zoom = Math.min(8, Math.max(0.5, this.flat.zoom * 1.15 ** steps));
+    if (this.painter.isFlat) this.painter.flat.zoomBy(steps);
     else this.camera.zoom(steps);
     this.invalidate();
   }
@@ -199,37 +162,16 @@ export class SceneView {
    * @returns {Promise<Blob | null>}
    */
   picture({ scale = 1 } = {}) {
-    const nowMs = performance.now();
-    const ratio = pictureRatio(this.size, window.devicePixelRatio, scale);
-    this.renderer?.setPixelRatio(ratio);
-    this.flat.pixelRatio = ratio;
-    this.#updateRobots(this.state(), nowMs); // robots that are large in the image need the fine model
-    this.#draw(nowMs, true); // WebGL content is readable only until the browser has shown the frame
-    const shown = this.isFlat ? this.flat.canvas : this.canvas;
-    const picture = new Promise((/** @type {(png: Blob | null) => void} */ resolve) => shown.toBlob(resolve, "image/png"));
-    this.flat.pixelRatio = 1;
+    const { flat, size } = this.painter;
+    flat.pixelRatio = pictureRatio(size.css, window.devicePixelRatio, scale);
+    this.#drawWhole(flat.pixelRatio); // WebGL content is readable only until the browser has shown the frame
+    const { canvas } = this.painter;
+    const picture = new Promise((/** @type {(png: Blob | null) => void} */ resolve) => canvas.toBlob(resolve, "image/png"));
+    flat.pixelRatio = 1;
+    this.#drawWhole(this.#ratio);
     this.quality.forget();
-    this.#resize();
-    return picture;
-  }
-
-  /**
-   * A thumbnail of another world, drawn in one of the next frames.
-   *
-   * @param {State} world
-   * @returns {Promise<HTMLCanvasElement>}
-   */
-  photograph(world) {
-    return new Promise((resolve) => {
-      this.photoRequests.push({ world, resolve });
-      this.invalidate();
-    });
-  }
-
-  /** @param {boolean} shown */
-  setSensors(shown) {
-    this.showSensors = shown;
     this.invalidate();
+    return picture;
   }
 
   /**
@@ -240,25 +182,12 @@ export class SceneView {
    */
   partPosition(part, robot = this.state().selected) {
     const place = this.robots.visibleModel(robot)?.partPosition(part) ?? null;
-    return place === null ? null : this.#toWindow(place);
-  }
-
-  /** The line of sight through a pointer position. @param {{ clientX: number, clientY: number }} event */
-  rayOf({ clientX, clientY }) {
-    const { left, top, width, height } = this.canvas.getBoundingClientRect();
-    const place = new THREE.Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
-    const caster = new THREE.Raycaster();
-    caster.setFromCamera(place, this.eye);
-    return caster.ray;
+    return place === null ? null : this.projection.toWindow(place.x, place.y, place.z);
   }
 
   /** The size of one CSS pixel on the ground near the camera's target, in meters. */
   get pixelSize() {
-    const { height } = this.size;
-    if (this.isFlat) return (this.flat.camera.top - this.flat.camera.bottom) / Math.max(1, height);
-    const { camera, controls } = this.camera;
-    const far = camera.position.distanceTo(controls.target);
-    return (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(1, height);
+    return this.painter.isFlat ? this.painter.flat.pixelSize : this.camera.pixelSize;
   }
 
   /** Fit the next world of the creator into the view. */
@@ -267,72 +196,59 @@ export class SceneView {
     this.invalidate();
   }
 
-  /**
-   * Project a point of the world to CSS pixels of the window.
-   *
-   * @param {number} x
-   * @param {number} y
-   * @param {number} z
-   */
-  screenPosition(x, y, z) {
-    return this.#toWindow(new THREE.Vector3(x, y, z));
-  }
-
   /** Draw the state; returns whether something still moves. @param {number} nowMs */
   #frame(nowMs) {
     const state = this.state();
     this.beforeDraw(nowMs);
+    this.photographer.drawNext(this.painter.has3d ? this.painter.renderer : null);
+    this.painter.fit(this.#ratio, this.camera);
     const sketch = this.sketch();
-    const grown = this.playground.update(state.markers);
-    if (grown) {
-      this.still.forget();
-      this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
-      this.surroundings.update(sketch === null ? groundOf(state.markers.values()) : null);
+    this.dragController.refresh();
+    if (this.world.update(state, sketch, this.dragController)) {
+      this.painter.still.forget();
+      this.camera.frame(this.world.playground.corners(), sketch !== null && this.framed);
     }
     this.framed = sketch !== null;
-    this.objects.update(state.objects);
-    this.dragController.refresh();
-    this.ghost.update(this.dragController.dragged, this.dragController.mode);
-    this.sketchModel.update(sketch);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);
-    const photoRequest = this.photoRequests.shift();
-    photoRequest?.resolve(photograph(photoRequest.world, this.has3d ? this.renderer : null));
     this.#draw(nowMs);
-    this.frames += 1;
-    if (this.photoRequests.length > 0) this.invalidate();
     this.#placeLabels();
+    this.frames += 1;
     return moving;
+  }
+
+  /** Pixels per CSS pixel. */
+  get #ratio() {
+    return Math.min(window.devicePixelRatio, this.quality.settings.pixelRatio);
+  }
+
+  /** Draw now, with nothing kept from the frame before. @param {number} ratio */
+  #drawWhole(ratio) {
+    const nowMs = performance.now();
+    this.painter.fit(ratio, this.camera);
+    this.#updateRobots(this.state(), nowMs); // the larger they are, the finer is their model
+    this.#draw(nowMs, true);
   }
 
   /** Desk and ground have changed. */
   #redraw() {
-    this.still.forget();
+    this.painter.still.forget();
     this.invalidate();
-  }
-
-  /** @param {THREE.WebGLRenderer} renderer @param {boolean} isWhole */
-  #draw3d(renderer, isWhole) {
-    const camera = this.camera.ready();
-    // From a table robots fall, and its top then hides them: no image of the ground can.
-    const mayBeKept = this.isSoftware && !isWhole && this.surroundings.ground?.isWalled === true;
-    if (mayBeKept) this.still.draw(renderer, this.scene, camera);
-    else drawAll(renderer, this.scene, camera);
   }
 
   /** @param {number} nowMs @param {boolean} [isWhole]  nothing kept from the frame before */
   #draw(nowMs, isWhole = false) {
-    this.flat.canvas.hidden = !this.isFlat;
-    if (!this.isFlat) {
-      if (this.renderer !== null) this.#draw3d(this.renderer, isWhole);
-      return;
-    }
+    this.painter.draw(this.world, this.camera, { isWhole, drawFlat: () => this.#drawFlat(nowMs) });
+  }
+
+  /** @param {number} nowMs */
+  #drawFlat(nowMs) {
+    const { flat } = this.painter;
     const state = this.state();
-    this.flat.aim(this.camera.corners, this.camera.goesAlong ? this.#selectedPose() : null);
-    this.scene.updateMatrixWorld(); // the renderer would do this; hit tests need it
     const names = Object.keys(state.robots);
-    this.flat.draw(state, {
+    flat.aim(this.camera.corners, this.camera.goesAlong ? this.#selectedPose() : null);
+    flat.draw(state, {
       nowMs,
       senses: (name) => this.#isSensing(name),
       held: this.dragController.dragged,
@@ -362,50 +278,22 @@ export class SceneView {
 
   /** Whether a robot at this position is too small on the screen for fine detail. @param {THREE.Matrix4} frame */
   #isSmall(frame) {
-    const { camera } = this.camera;
-    const away = camera.position.distanceTo(new THREE.Vector3().setFromMatrixPosition(frame));
-    const high = this.size.height * (this.renderer?.getPixelRatio() ?? 1);
-    const pixelsPerRadian = high / (2 * Math.tan((camera.fov * Math.PI) / 360));
-    return (SIZE_M / away) * pixelsPerRadian < SMALL_PX;
+    const place = new THREE.Vector3().setFromMatrixPosition(frame);
+    return this.camera.pixelsOf(SIZE_M, place) * this.painter.size.fitted.ratio < SMALL_PX;
   }
 
   #placeLabels() {
-    this.robots.placeNames((place) => this.#project(place), this.isFlat ? FLAT_LABEL_PX : 0);
+    const toCanvas = (/** @type {THREE.Vector3} */ place) => this.projection.toCanvas(place);
+    this.robots.placeNames(toCanvas, this.painter.isFlat ? FLAT_LABEL_PX : 0);
     const { robots, selected } = this.state();
     const group = this.robots.visibleModel(selected)?.group;
     const numbers = this.showNumbers && group !== undefined ? valueLabelsOf(robots[selected]) : [];
-    this.valueLabels.show(numbers, ({ x, y, z }) =>
-      group === undefined ? null : this.#project(group.localToWorld(new THREE.Vector3(x, y, z))),
-    );
+    this.valueLabels.show(numbers, ({ x, y, z }) => group ? toCanvas(group.localToWorld(new THREE.Vector3(x, y, z))) : null);
   }
 
   #selectedPose() {
     const { robots, selected } = this.state();
     const pose = robots[selected]?.latest?.pose ?? null;
     return pose === null ? null : (this.robots.drawnPose(selected) ?? pose);
-  }
-
-  /** World → CSS pixels of the canvas. @param {THREE.Vector3} place */
-  #project(place) {
-    const { x, y, z } = place.project(this.eye);
-    if (z > 1 || z < -1) return null;
-    return { x: ((x + 1) / 2) * this.size.width, y: ((1 - y) / 2) * this.size.height };
-  }
-
-  /** @param {THREE.Vector3} place */
-  #toWindow(place) {
-    const inside = this.#project(place);
-    const { left, top } = this.canvas.getBoundingClientRect();
-    return inside === null ? null : { x: left + inside.x, y: top + inside.y };
-  }
-
-  #resize() {
-    const { clientWidth, clientHeight } = this.canvas;
-    if (clientWidth === 0 || clientHeight === 0) return;
-    this.size = { width: clientWidth, height: clientHeight };
-    this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, this.quality.settings.pixelRatio));
-    this.renderer?.setSize(clientWidth, clientHeight, false);
-    this.camera.resize(clientWidth, clientHeight);
-    this.invalidate();
   }
 }

@@ -10,15 +10,14 @@ export class FrameLoop {
   /**
    * @param {object} options
    * @param {Quality} options.quality
-   * @param {(nowMs: number) => boolean} options.draw   returns whether something still moves
-   * @param {() => void} options.resize                the resolution has changed
+   * @param {(nowMs: number) => boolean} options.draw   with the settings of the quality; returns whether something still
+   *   moves
    */
-  constructor({ quality, draw, resize }) {
+  constructor({ quality, draw }) {
     this.quality = quality;
     this.draw = draw;
-    this.resize = resize;
     this.isRequested = false;
-    this.restTimer = 0;
+    /** @type {number | null} while nothing moves and it is not yet called rest */ this.restTimer = null;
   }
 
   /** Request one frame; several calls before it have the effect of one. */
@@ -35,19 +34,23 @@ export class FrameLoop {
       this.invalidate();
       return;
     }
-    window.clearTimeout(this.restTimer);
     const moving = this.draw(nowMs);
-    if (moving) this.invalidate();
-    if (this.quality.note(nowMs, moving)) this.resize();
-    if (this.quality.isReduced) this.#sharpenLater(moving);
+    const isLess = this.quality.note(nowMs, moving);
+    if (moving || isLess) this.invalidate();
+    this.#rest(!moving);
   }
 
-  /** @param {boolean} moving */
-  #sharpenLater(moving) {
-    if (moving && this.quality.rest(false)) this.resize();
-    if (moving || this.quality.isResting) return;
-    this.restTimer = window.setTimeout(() => {
-      if (this.quality.rest(true)) this.resize();
-    }, REST_MS);
+  /** Resolution is less only while something moves. Messages that move nothing do not put rest off. @param {boolean} isStill */
+  #rest(isStill) {
+    if (!isStill) {
+      if (this.restTimer !== null) window.clearTimeout(this.restTimer);
+      this.restTimer = null;
+      if (this.quality.rest(false)) this.invalidate();
+    } else if (this.restTimer === null && this.quality.isReduced && !this.quality.isResting) {
+      this.restTimer = window.setTimeout(() => {
+        this.restTimer = null;
+        if (this.quality.rest(true)) this.invalidate();
+      }, REST_MS);
+    }
   }
 }

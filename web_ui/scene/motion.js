@@ -21,7 +21,8 @@ export function poseAt(previous, latest, nowMs) {
   const to = latest.pose;
   const duration = Math.min(latest.arrivedMs - previous.arrivedMs, LONGEST_MS);
   const progress = duration > 0 ? (nowMs - latest.arrivedMs) / duration : 1;
-  if (progress >= 1 || Math.hypot(to.x - from.x, to.y - from.y) > LEAP_M) return { pose: to, arrived: true };
+  const isLeap = Math.hypot(to.x - from.x, to.y - from.y) > LEAP_M;
+  if (progress >= 1 || isLeap || isSame(from, to)) return { pose: to, arrived: true };
   const part = Math.max(progress, 0);
   return {
     pose: {
@@ -34,6 +35,11 @@ export function poseAt(previous, latest, nowMs) {
     },
     arrived: false,
   };
+}
+
+/** Whether a robot stands: then there is nothing to draw between two messages. @param {Pose} one @param {Pose} other */
+function isSame(one, other) {
+  return /** @type {(keyof Pose)[]} */ (Object.keys(one)).every((key) => one[key] === other[key]);
 }
 
 /**

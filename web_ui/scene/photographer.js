@@ -18,13 +18,28 @@ const FROM = new THREE.Vector3(-0.22, -0.85, 0.95).normalize();
 /** Oversampling, which smooths the edges. */
 const SIZE = { width: 480, height: 320 };
 
-/**
- * @param {State} world
- * @param {THREE.WebGLRenderer | null} renderer  null: 2D from above
- * @returns {HTMLCanvasElement}
- */
-export function photograph(world, renderer) {
-  return renderer === null ? fromAbove(world) : inSpace(world, renderer);
+export class Photographer {
+  /** @param {() => void} wanted   there is something to draw in the next frame */
+  constructor(wanted) {
+    this.wanted = wanted;
+    /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.requests = [];
+  }
+
+  /** A thumbnail, drawn in one of the next frames. @param {State} world @returns {Promise<HTMLCanvasElement>} */
+  request(world) {
+    return new Promise((resolve) => {
+      this.requests.push({ world, resolve });
+      this.wanted();
+    });
+  }
+
+  /** Draw the next one; call it before the view is drawn. @param {THREE.WebGLRenderer | null} renderer  null: 2D from above */
+  drawNext(renderer) {
+    const request = this.requests.shift();
+    if (request === undefined) return;
+    request.resolve(renderer === null ? fromAbove(request.world) : inSpace(request.world, renderer));
+    if (this.requests.length > 0) this.wanted();
+  }
 }
 
 /** @param {State} world @param {THREE.WebGLRenderer} renderer */

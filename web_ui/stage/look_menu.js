@@ -73,11 +73,11 @@ export function lookMenu(context) {
       if (!sheet.matches(":popover-open")) return;
       quality.value = scene.quality.choice;
       numbers.input.checked = scene.showNumbers;
-      flat.input.checked = scene.isFlat;
-      flat.input.disabled = !scene.has3d;
+      flat.input.checked = scene.painter.isFlat;
+      flat.input.disabled = !scene.painter.has3d;
       calm.input.checked = motion.wanted;
       const { pixelRatio } = scene.quality.settings;
-      setText(now, scene.isFlat || pixelRatio >= 1 ? "" : t("view.limited", { share: Math.round(pixelRatio * 100) }));
+      setText(now, scene.painter.isFlat || pixelRatio >= 1 ? "" : t("view.limited", { share: Math.round(pixelRatio * 100) }));
     },
   };
 }

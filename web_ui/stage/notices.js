@@ -3,6 +3,7 @@
 // shown; those before it follow when it is gone.
 
 import { h } from "../ui/dom.js";
+import { keepFocus } from "../ui/focus.js";
 import { icon } from "../ui/icons.js";
 
 /** How long success messages are shown. */
@@ -28,6 +29,9 @@ export function noticesPanel({ text, store }) {
   const pageText = text("page");
   const element = h("div", { class: "notices", role: "alert" });
   /** @type {import("../state/index.js").Notice[] | null} */ let shown = null;
+  /** What the simulator said, in English. @param {string} line */
+  const technicalLine = (line) =>
+    h("details", { class: "small muted" }, h("summary", {}, pageText("details")), h("p", { lang: "en" }, line));
   /** @type {Map<number, ReturnType<typeof setTimeout>>} */ const ends = new Map();
 
   /** @param {number} id */
@@ -58,20 +62,28 @@ export function noticesPanel({ text, store }) {
       if (notices === shown) return;
       shown = notices;
       time(notices);
-      element.replaceChildren(
-        ...notices.map(({ id, level, text }) =>
+      const messages = notices.map(({ id, level, text: words, technical }) =>
+        h(
+          "div",
+          { class: `notice message ${level}` },
+          ...(level === "info" ? [] : [icon("warning")]),
           h(
             "div",
-            { class: `notice message ${level}` },
-            ...(level === "info" ? [] : [icon("warning")]),
-            h("p", { class: "grow" }, text),
-            h(
-              "button",
-              { type: "button", class: "btn icon", "aria-label": pageText("notice.dismiss"), onclick: () => dismiss(id) },
-              icon("close"),
-            ),
+            { class: "grow" },
+            h("p", {}, words || pageText("notice.simulator")),
+            ...(technical === "" ? [] : [technicalLine(technical)]),
+          ),
+          h(
+            "button",
+            { type: "button", class: "btn icon", "aria-label": pageText("notice.dismiss"), onclick: () => dismiss(id) },
+            icon("close"),
           ),
         ),
+      );
+      keepFocus(
+        element,
+        () => element.replaceChildren(...messages),
+        () => element.querySelector("button"),
       );
     },
   };

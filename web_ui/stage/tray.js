@@ -10,6 +10,11 @@ import { buttonPad } from "./pad.js";
 /** Storage key: whether the user has folded the tray. */
 const FOLDED_KEY = "trayFolded";
 
+/** Unfold the tray, as a click on its button does. */
+export function unfoldTray() {
+  /** @type {HTMLElement | null} */ (document.querySelector("#tray[data-folded] #tray-unfold"))?.click();
+}
+
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function trayPanel(context) {
   const { text, frame } = context;

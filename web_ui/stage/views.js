@@ -76,6 +76,7 @@ export function viewsPanel(context) {
   );
   scene.setInsets({ top: ROW_PX });
   /** @type {boolean | null} */ let isPhone = null;
+  /** @type {boolean | null} */ let hasIcons = null;
   let shownView = "";
   return {
     slot: "views",
@@ -86,6 +87,10 @@ export function viewsPanel(context) {
         foldCameras(isPhone);
         foldTools(isPhone);
         fit();
+      }
+      if (hasIcons !== isTiny(window.innerHeight)) {
+        hasIcons = isTiny(window.innerHeight);
+        fit(); // the width may be the same
       }
       lock(/** @type {HTMLButtonElement} */ (move), disabledReason({ connection, readOnly }, pageText));
       const { view } = scene.camera;

@@ -45,7 +45,8 @@ import { applyTransforms } from "./transforms.js";
 /**
  * A notice for the user; `cause` identifies its reason, so that it disappears when the reason is resolved.
  *
- * @typedef {{ id: number, level: "info" | "warning" | "error", text: string, cause: string }} Notice
+ * @typedef {{ id: number, level: "info" | "warning" | "error", text: string, technical: string, cause: string }} Notice
+ *   text: in the language of the page, empty: a general sentence; technical: in English, behind "Details"
  */
 /**
  * @typedef {object} State
@@ -92,7 +93,7 @@ import { applyTransforms } from "./transforms.js";
  *   | { type: "upload", what: UploadKind, name: string, text: string }
  *   | { type: "uploaded", what: UploadKind, message: string | null, fault?: Fault | null }
  *   | { type: "forget", what: UploadKind }
- *   | { type: "notice", level: Notice["level"], text: string, cause?: string }
+ *   | { type: "notice", level: Notice["level"], text: string, technical?: string, cause?: string }
  *   | { type: "solved", cause: string }
  *   | { type: "dismiss", id: number }} Message
  */
@@ -173,15 +174,11 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   status(state, { status }) {
     if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // shown where it was set
     if (status.id === "access") return state; // the connection panel shows it, translated
-    return withNotice(
-      state,
-      /** @type {const} */ (["info", "warning", "error"])[status.level] ?? "error",
-      status.message,
-      statusCause(status.id ?? ""),
-    );
+    const level = /** @type {const} */ (["info", "warning", "error"])[status.level] ?? "error";
+    return withNotice(state, { level, text: "", technical: status.message, cause: statusCause(status.id ?? "") });
   },
   removeStatus: (state, { ids }) => withoutNotices(state, ids.map(statusCause)),
-  fault: (state, { what }) => withNotice(state, "error", what),
+  fault: (state, { what }) => withNotice(state, { level: "error", text: "", technical: what }),
   select: (state, { robot }) => withoutStaleReadings({ ...state, selected: robot, toAll: false }, state.selected),
   address: (state, { all }) => ({ ...state, toAll: all && Object.keys(state.robots).length > 1 }),
   showSensors: (state, { shown }) => ({ ...state, sensorsShown: shown }),
@@ -194,7 +191,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     return withUpload(state, what, { ...upload, phase: fault === null ? "accepted" : "refused", fault });
   },
   forget: (state, { what }) => withUpload(state, what, null),
-  notice: (state, { level, text, cause }) => withNotice(state, level, text, cause),
+  notice: (state, { level, text, technical, cause }) => withNotice(state, { level, text, technical, cause }),
   solved: (state, { cause }) => withoutNotices(state, [cause]),
   dismiss: (state, { id }) => ({ ...state, notices: state.notices.filter((notice) => notice.id !== id) }),
 });
@@ -294,11 +291,16 @@ function selection(wanted, robots) {
   return wanted in robots ? wanted : (Object.keys(robots)[0] ?? "");
 }
 
-/** @param {State} state @param {Notice["level"]} level @param {string} text @param {string} [cause] @returns {State} */
-function withNotice(state, level, text, cause = "") {
-  if (state.notices.some((notice) => notice.text === text)) return state;
+/**
+ * @param {State} state
+ * @param {{ level: Notice["level"], text: string, technical?: string, cause?: string }} notice
+ * @returns {State}
+ */
+function withNotice(state, { level, text, technical = "", cause = "" }) {
+  if (state.notices.some((notice) => notice.text === text && notice.technical === technical)) return state;
   const id = state.noticeCount + 1;
-  return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-MAX_NOTICES) };
+  const notices = [...state.notices, { id, level, text, technical, cause }].slice(-MAX_NOTICES);
+  return { ...state, noticeCount: id, notices };
 }
 
 /** Remove the notices of resolved causes. @param {State} state @param {readonly string[]} causes @returns {State} */

@@ -1,7 +1,9 @@
 // The three ways to start, over the lower part of the scene, and the robot's greeting.
 
 import { titleOf } from "../examples/index.js";
+import { unfoldTray } from "../stage/tray.js";
 import { h } from "../ui/dom.js";
+import { keepFocus } from "../ui/focus.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
 import { offeredExamples } from "./offered_examples.js";
@@ -38,6 +40,7 @@ export function startsOver(context, t, slot, close) {
   };
   const drive = () => {
     void load(DRIVE);
+    unfoldTray(); // in a low window it is folded, and the arrows are in it
     scene.canvas.focus(); // the arrow keys work at once
     pulse();
   };
@@ -61,7 +64,7 @@ export function startsOver(context, t, slot, close) {
         attributes: { "data-example": "" },
         act: () => {
           close();
-          workspace.select("program");
+          void context.program.openStart(); // the ways to begin, also when the robot runs an example
         },
       },
     ],
@@ -113,7 +116,9 @@ export function startsOver(context, t, slot, close) {
       size.disconnect();
       leaveFree(0);
       document.body.classList.remove(OPEN);
-      for (const each of [hello, element, sheet.element]) each.remove();
+      keepFocus(slot, () => {
+        for (const each of [hello, element, sheet.element]) each.remove();
+      });
       scene.invalidate();
     },
   };
@@ -146,7 +151,7 @@ function card(symbol, meaning, title, about, action) {
 function greetingPlace({ scene }, { robots, selected }) {
   const pose = robots[selected]?.latest?.pose;
   if (pose === undefined) return null;
-  const at = scene.screenPosition(pose.x, pose.y, pose.z + OVER_ROBOT_M);
+  const at = scene.projection.toWindow(pose.x, pose.y, pose.z + OVER_ROBOT_M);
   if (at === null) return null;
   const { left, top, width, height } = scene.canvas.getBoundingClientRect();
   const [x, y] = [Math.round(at.x - left), Math.round(at.y - top)];

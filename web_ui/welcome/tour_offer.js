@@ -1,6 +1,7 @@
 // The card below "?" that offers the tour.
 
 import { h } from "../ui/dom.js";
+import { keepFocus } from "../ui/focus.js";
 
 const MARGIN_PX = 8;
 /** From the tip of the card to its right edge, where there is room. */
@@ -51,7 +52,11 @@ export function tourOffer({ tour, scene }, t) {
   return {
     destroy() {
       window.removeEventListener("resize", place);
-      element.remove();
+      keepFocus(
+        element,
+        () => element.remove(),
+        () => document.querySelector("#help-open"),
+      );
     },
   };
 }

@@ -149,8 +149,8 @@ def test_a_late_subscriber_gets_the_last_fault(ros, runtime, prox):
     assert status.data("faults") == {
         "en": "index 9 is outside an array of 3",
         "de": "der Index 9 liegt außerhalb eines Feldes mit 3 Elementen",
-        "fr": "l'indice 9 est hors d'un tableau de 3",
-        "it": "l'indice 9 è fuori da un array di 3",
+        "fr": "l’indice 9 est hors d’un tableau de 3",
+        "it": "l’indice 9 è fuori da un array di 3",
     }
     assert status.messages[-1].level == DiagnosticStatus.ERROR
     assert call(ros, "run") == (True, "running")
