@@ -98,6 +98,8 @@ def test_no_sentence_is_left_in_english(language: str, file: str) -> None:
 @pytest.mark.parametrize("file", FILES)
 def test_apostrophes_and_quotation_marks_are_typographic(language: str, file: str) -> None:
     """Straight quotes surround pieces of code only."""
+    if (language, file) == ("en", "blockly_core"):
+        return  # Blockly's own words, which `blockly_texts.test.js` compares with it
     opening, closing = {"de": "„“", "fr": "«»", "it": "«»"}.get(language, "“”")
     for key, text in own_texts(language, file).items():
         assert re.search(r"\w'\w", text) is None, key
@@ -110,7 +112,7 @@ def test_french_has_no_break_spaces_at_its_punctuation(file: str) -> None:
     for key, text in own_texts("fr", file).items():
         if key.startswith("skeleton."):
             continue  # comments of programs: pupils type plain spaces
-        text = re.sub(r"&\w+;", "", text)  # entities of XML
+        text = re.sub(r"&\w+;|%\d", "", text)  # entities of XML, places for values
         assert re.search(r"(?<!«)[ \xa0](?!!=)[;?!%]| :|« | »", text) is None, key
         assert re.search(r"[^\W\d]([;?!%]|:(?=\s))|\w»|«\w", text) is None, key
 

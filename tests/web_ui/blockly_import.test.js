@@ -36,7 +36,7 @@ test("a workspace alone becomes a file with its program", async () => {
   assert.equal(difference(file), null);
 });
 
-test("a Scratch project becomes a file, and what was left out is told", async () => {
+test("a Scratch project becomes a file, and what was left out is listed", async () => {
   const { text, problem, leftOut } = await importFile(project("thymio_stopMotors"), t);
   assert.deepEqual([problem, leftOut], ["", []]);
   assert.match(readFile(text).code ?? "", /motor\.left\.target = 0/);
@@ -51,7 +51,7 @@ test("other files are refused with their reason", async () => {
   assert.match(await reason(bytesOf('<xml>\n<block type="fly"></block>\n</xml>')), /Line 2.*"fly"/);
 });
 
-test("a workspace is told from a playground", () => {
+test("a workspace is not taken for a playground", () => {
   for (const text of ["<xml></xml>", '<?xml version="1.0"?>\n<xml xmlns="x">', "\uFEFF<b:xml>"]) assert.ok(looksLikeBlocks(bytesOf(text)), text);
   for (const text of ["<aseba-playground>", '<?xml version="1.0"?><playground/>', "{}"]) assert.ok(!looksLikeBlocks(bytesOf(text)), text);
 });

@@ -3,5 +3,6 @@
 import { LANGUAGES } from "../../web_ui/hosts/program_host.js";
 import { sampleText } from "../../web_ui/vpl/view/samples.js";
 
-const names = LANGUAGES.find(({ id }) => id === "vpl")?.samples.map(({ name }) => name) ?? [];
-console.log(JSON.stringify(Object.fromEntries(names.map((name) => [name, sampleText(name)]))));
+const vpl = LANGUAGES.find(({ id }) => id === "vpl");
+const samples = [...(vpl?.samples ?? []), ...(vpl?.more ?? [])];
+console.log(JSON.stringify(Object.fromEntries(samples.map(({ name }) => [name, sampleText(name)]))));

@@ -21,7 +21,7 @@ test("the command prints the text that is generated for a file", () => {
 
 test("a program with an error has exit code 1, in the wanted language", () => {
   const broken = CURRENT.replace(/<block type="action" name="move" value0="0".*\n.*\n/, "");
-  const message = "a.aesl: Ligne 2 : il manque une action. Que doit faire le robot ?\n";
+  const message = "a.aesl: Ligne 2\u00a0: il manque une action. Que doit faire le robot\u202f?\n";
   assert.deepEqual(answer(broken.replace("<set/>", '<set><block type="event" name="clap"/></set>'), "--lang", "fr"), {
     output: "",
     errors: message,

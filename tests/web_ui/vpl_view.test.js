@@ -34,7 +34,8 @@ const NAMES = [...BLOCKS.keys()];
 const en = translator("en", texts);
 const FILES = new URL("../data/web/vpl/", import.meta.url);
 const read = (/** @type {string} */ name) => readFileSync(new URL(name, FILES), "utf8");
-const SAMPLES = LANGUAGES.find(({ id }) => id === "vpl")?.samples.map(({ name }) => name) ?? [];
+const VPL = LANGUAGES.find(({ id }) => id === "vpl");
+const SAMPLES = [...(VPL?.samples ?? []), ...(VPL?.more ?? [])].map(({ name }) => name);
 
 /**
  * Blocks that the controls reach from a new one, in at most `depth` steps.
