@@ -48,7 +48,7 @@ def test_writing_a_program_as_one_is_used_to(suite, page):
 
     page.focus(".cm-content")
     signature = page.locator(".signature")
-    for line in WRITTEN.splitlines():
+    for line in WRITTEN:
         page.keyboard.type(line)
         if line.startswith("call"):
             assert signature.count() == 0, "the call is finished"

@@ -166,6 +166,7 @@ def test_the_focus_is_not_lost_with_what_had_it(suite, page, tmp_path):
     expect(page, "#view").to_be_focused()
     go_to(page, "#help-open", "Shift+Tab")
     page.keyboard.press("Enter")
+    page.locator("[role=menuitem]:focus").wait_for()
     for _ in range(2):
         page.keyboard.press("ArrowDown")
     playwright.expect(page.get_by_role("menuitem", name="Keys")).to_be_focused()

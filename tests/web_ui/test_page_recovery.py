@@ -31,7 +31,7 @@ def test_the_page_reconnects_to_a_restarted_simulator_and_discards_old_state(sui
     suite.end()
     page.wait_for_function("() => !window.thymio.connected")
     banner = page.locator(".banner:not([hidden])")
-    playwright.expect(banner).to_contain_text("Retrying every second")
+    playwright.expect(banner).to_contain_text("tries again every second")
     suite("--playground", "base", "--program", "none", ports=ports)
     wait_for_port(ports[1])
     page.wait_for_function("() => window.thymio.connected")

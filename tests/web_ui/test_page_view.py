@@ -34,7 +34,7 @@ def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(at_rest, pa
     page.add_init_script(NO_WEBGL)
     open_page(page, at_rest)
     page.wait_for_function(f"({FLAT_COLORS})() > 4")
-    playwright.expect(page.locator("#trouble")).to_contain_text("2D")
+    playwright.expect(page.locator("#trouble")).to_contain_text("from above")
     page.locator("#view").focus()
     page.keyboard.press("f")
     place = wait_for_position(page, "button.center")

@@ -8,6 +8,7 @@ import { Fault } from "../playground/rules.js";
 import { Drafts } from "../playground_tab/drafts.js";
 import { CONNECTION } from "../state/index.js";
 import { disabledReason } from "../state/disabled_reason.js";
+import { keepFocus } from "../ui/focus.js";
 
 /** @typedef {import("../creator/index.js").Creator} Creator */
 /** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
@@ -80,11 +81,15 @@ export class CreatorHost {
     this.isSuspended = false;
     context.workspace.select("playground");
     if (!this.isOpen) {
+      const panel = this.element("#panel-playground");
+      const hadFocus = panel.contains(document.activeElement);
       this.isOpen = true;
       window.addEventListener("pagehide", this.#keep);
       document.body.classList.add("creator-open");
       context.dragController.setMode(false);
       this.#build();
+      // What had the focus is hidden now.
+      if (hadFocus) firstControl(panel)?.focus();
     }
     this.scene().setView("home");
   }
@@ -140,7 +145,11 @@ export class CreatorHost {
     this.session?.keep();
     this.isOpen = false;
     window.removeEventListener("pagehide", this.#keep);
-    this.creator?.destroy();
+    keepFocus(
+      document.body,
+      () => this.creator?.destroy(),
+      () => document.querySelector("#tab-playground"),
+    );
     this.creator = null;
     document.body.classList.remove("creator-open");
     this.#showBar(false);
@@ -221,4 +230,10 @@ export class CreatorHost {
     this.#showBar(true);
     this.scene().invalidate();
   }
+}
+
+/** @param {Element} panel */
+function firstControl(panel) {
+  const controls = /** @type {HTMLElement[]} */ ([...panel.querySelectorAll("button, input")]);
+  return controls.find((each) => each.checkVisibility());
 }
