@@ -287,6 +287,7 @@ def test_each_of_two_robots_has_its_program(suite, page):
     open_editor(page)
     page.wait_for_function("Object.keys(window.thymio.state().robots).length === 2")
     wait_for_service(page, "/aseba_runtime/check")
+    expect(page, "#program-state").to_have_text("not started")
     names = page.evaluate("Object.keys(window.thymio.state().robots)")
     for name, text in zip(names, ("var mine = 11\n", "var mine = 22\n"), strict=True):
         choose_robot(page, name)

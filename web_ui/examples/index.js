@@ -22,6 +22,8 @@ export const COLORS = /** @type {Record<string, string>} */ ({
 
 /** The behavior that only waits for a choice (docs/behaviors.md). */
 export const WELCOME = "welcome";
+/** What a robot without a program reports as its name. */
+export const NO_PROGRAM = "none";
 /** What pupils use first. */
 const FIRST = ["thesis_basic", "line_follower", "thesis_explorer"];
 /** What is no program to look at. */

@@ -8,7 +8,7 @@ import { isInRobot, isUnsaved } from "../editor/documents.js";
 import { HelpTexts } from "../editor/help_texts.js";
 import { RobotSelection } from "../editor/robot_selection.js";
 import { ALL } from "../editor/workspace.js";
-import { exampleTitle, isExample, WELCOME } from "../examples/index.js";
+import { exampleTitle, isExample, NO_PROGRAM, WELCOME } from "../examples/index.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { h, setAttribute } from "../ui/dom.js";
 import { ProgramCommands } from "./commands.js";
@@ -235,7 +235,7 @@ export class ProgramTab {
     this.file.render({ reason, isUnsaved: isUnsaved(current), hasMistake });
     this.badge.render({
       values: status?.values ?? {},
-      title: status === null ? "" : exampleTitle(status.name, this.exampleText),
+      title: status === null || status.name === NO_PROGRAM ? "" : exampleTitle(status.name, this.exampleText),
       timePaused: state.simulator?.paused ?? false,
       isTextInRobot: isInRobot(current),
       wasInRobot: current.loaded !== null && current.own,
