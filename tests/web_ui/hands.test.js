@@ -8,7 +8,7 @@ import { watchKeyboard } from "../../web_ui/input/keyboard.js";
 import { isLifted } from "../../web_ui/stage/hands/at_once.js";
 import { handCounts, PLACES } from "../../web_ui/stage/hands/hand_counts.js";
 import { HandSettings } from "../../web_ui/stage/hands/settings.js";
-import { firstThatFits, NAMES } from "../../web_ui/stage/names_fit.js";
+import { firstThatFits, NAMES } from "../../web_ui/ui/names_fit.js";
 
 test("a hand is seen by the sensor behind it, less by those beside it, and not by the rear ones", () => {
   assert.deepEqual(handCounts("center", 1), [0, 1935, 4500, 1935, 0, -1, -1]);

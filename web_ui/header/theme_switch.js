@@ -31,7 +31,7 @@ export function themeSwitch({ text, theme, scene }) {
     render() {
       if (theme.isDark === shown) return;
       shown = theme.isDark;
-      button.replaceChildren(icon(shown ? "moon" : "sun"));
+      button.replaceChildren(icon(shown ? "moon" : "sun"), h("span", { class: "word" }, t("theme")));
     },
   };
 }

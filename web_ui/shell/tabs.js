@@ -2,6 +2,7 @@
 
 import { h, setAttribute } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
+import { firstThatFits } from "../ui/names_fit.js";
 import { TABS } from "./workspace.js";
 
 /** @typedef {import("./workspace.js").Tab} Tab */
@@ -50,8 +51,9 @@ export function fillTabs(list, { text, workspace }) {
     },
     icon("close"),
   );
+  const end = h("div", { class: "tab-end", "data-slot": "tab-end" });
   const owned = h("div", { class: "tab-list", role: "tablist", "aria-label": t("work") }, ...tabs.map(({ button }) => button));
-  list.replaceChildren(owned, h("span", { class: "grow" }), h("div", { class: "tab-end", "data-slot": "tab-end" }), fold);
+  list.replaceChildren(owned, h("span", { class: "grow" }), end, fold);
   owned.addEventListener("keydown", (event) => {
     const shown = tabs.filter(({ button }) => !button.hidden);
     const at = shown.findIndex(({ button }) => button === document.activeElement);
@@ -61,13 +63,20 @@ export function fillTabs(list, { text, workspace }) {
     shown[(at + step + shown.length) % shown.length].button.focus(); // Enter opens it
   });
 
+  const fit = () =>
+    firstThatFits(["icons", "words", "tight"], (names) => {
+      list.dataset.names = names;
+      return list.scrollWidth <= list.clientWidth;
+    });
   const show = () => {
     for (const { tab, button } of tabs) {
       button.hidden = !workspace.offered.includes(tab);
       setAttribute(button, "aria-selected", String(tab === workspace.tab));
       setAttribute(button, "tabindex", tab === (workspace.tab ?? "robot") ? "0" : "-1");
     }
+    fit();
   };
   show();
+  new ResizeObserver(fit).observe(end); // the name of the program's file
   return show;
 }

@@ -5,7 +5,7 @@ import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
-import { fitNames } from "./names_fit.js";
+import { fitNames } from "../ui/names_fit.js";
 
 export const FACTORS = [0.25, 0.5, 1, 2, 5, 10];
 /** Step lengths in ticks of 10 ms. */

@@ -6,8 +6,8 @@ import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";
 import { foldedList } from "../ui/folded_list.js";
 import { icon } from "../ui/icons.js";
+import { fitNames, NAMES } from "../ui/names_fit.js";
 import { lookMenu } from "./look_menu.js";
-import { fitNames, NAMES } from "./names_fit.js";
 import { savePicture } from "./picture.js";
 
 /** The row of buttons at the upper edge: worlds are fitted into the space below it. */

@@ -4,7 +4,7 @@ import { disabledReason } from "../../state/disabled_reason.js";
 import { h } from "../../ui/dom.js";
 import { foldedList } from "../../ui/folded_list.js";
 import { icon } from "../../ui/icons.js";
-import { fitNames } from "../names_fit.js";
+import { fitNames } from "../../ui/names_fit.js";
 import { clapHand, liftHand, tapHand } from "./at_once.js";
 import { frontHand } from "./front_hand.js";
 import { penHand } from "./pen.js";
