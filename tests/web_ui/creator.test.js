@@ -492,7 +492,7 @@ test("a sentence says how a thing can be pushed", () => {
 test("the bar of the selected item is over it, else below it, and always inside the scene", () => {
   const [bar, scene] = [{ width: 280, height: 50 }, { width: 600, height: 500 }];
   /** @param {number} x @param {number} y */
-  const at = (x, y) => placeOver(bar, [{ x: x - 20, y: y - 30 }, { x: x + 20, y: y + 30 }], scene);
+  const at = (x, y) => placeOver(bar, [{ x: x - 20, y: y - 30 }, { x: x + 20, y: y + 30 }], scene, 74);
   assert.deepEqual(at(300, 300), { x: 160, y: 208 });
   assert.deepEqual(at(300, 100), { x: 160, y: 142 }); // the views are above
   assert.deepEqual(at(20, 300), { x: 12, y: 208 });
@@ -501,6 +501,6 @@ test("the bar of the selected item is over it, else below it, and always inside 
     const place = at(300, y);
     assert.ok(place.y >= 74 && place.y + bar.height <= scene.height, String(y));
   }
-  const large = placeOver(bar, [{ x: 0, y: 0 }, { x: 600, y: 500 }], { width: 240, height: 100 });
+  const large = placeOver(bar, [{ x: 0, y: 0 }, { x: 600, y: 500 }], { width: 240, height: 100 }, 74);
   assert.deepEqual(large, { x: 12, y: 74 });
 });

@@ -11,8 +11,6 @@ import { hasKnob, RING_BEYOND_M } from "./pick.js";
 
 /** Distance of the bar from the item, and from the edges of the scene. */
 const GAP_PX = 12;
-/** The views lie at the top of the scene. */
-const TOP_PX = 74;
 const ROBOT_HEIGHT_M = 0.055;
 const AROUND = [0, 1, 2, 3, 4, 5, 6, 7].map((eighth) => (eighth * Math.PI) / 4);
 
@@ -22,17 +20,18 @@ const AROUND = [0, 1, 2, 3, 4, 5, 6, 7].map((eighth) => (eighth * Math.PI) / 4);
  * @param {Size} bar
  * @param {readonly Spot[]} spots   corners of the item
  * @param {Size} scene
+ * @param {number} top   where the buttons over the view end
  * @returns {Spot}   its upper left corner
  */
-export function placeOver(bar, spots, scene) {
+export function placeOver(bar, spots, scene, top) {
   const [xs, ys] = [spots.map(({ x }) => x), spots.map(({ y }) => y)];
   const middle = (Math.min(...xs) + Math.max(...xs)) / 2;
   const above = Math.min(...ys) - GAP_PX - bar.height;
   const below = Math.max(...ys) + GAP_PX;
   const lowest = scene.height - bar.height - GAP_PX;
-  const y = above >= TOP_PX ? above : below <= lowest ? below : TOP_PX;
+  const y = above >= top ? above : below <= lowest ? below : top;
   const x = Math.min(Math.max(middle - bar.width / 2, GAP_PX), Math.max(GAP_PX, scene.width - bar.width - GAP_PX));
-  return { x: Math.round(x), y: Math.round(Math.max(TOP_PX, Math.min(y, lowest))) };
+  return { x: Math.round(x), y: Math.round(Math.max(top, Math.min(y, lowest))) };
 }
 
 /**
@@ -91,7 +90,9 @@ export function contextBar({ labels, model, scene }) {
       element.setAttribute("aria-label", `${labels.kind(item.kind)} ${item.name}`);
       turn.hidden = !canTurn(item);
       const bar = { width: element.offsetWidth, height: element.offsetHeight };
-      const { x, y } = placeOver(bar, spots, { width, height });
+      const views = /** @type {HTMLElement} */ (document.querySelector(".views"));
+      const top = views.offsetTop + views.offsetHeight + GAP_PX;
+      const { x, y } = placeOver(bar, spots, { width, height }, top);
       const next = `translate(${x}px, ${y}px)`;
       if (next === transform) return;
       element.style.transform = transform = next;

@@ -10,6 +10,9 @@ import { TABS } from "./workspace.js";
 /** @type {Readonly<Record<Tab, import("../ui/icons.js").IconName>>} */
 export const TAB_ICONS = { robot: "robot", program: "program", playground: "playground", class: "class" };
 
+/** @type {ResizeObserver | null} watches the room that the tabs have */
+let room = null;
+
 /**
  * Fill the list of tabs; call again for another language.
  *
@@ -77,6 +80,9 @@ export function fillTabs(list, { text, workspace }) {
     fit();
   };
   show();
-  new ResizeObserver(fit).observe(end); // the name of the program's file
+  room?.disconnect();
+  room = new ResizeObserver(fit);
+  room.observe(list);
+  room.observe(end); // the name of the program's file
   return show;
 }
