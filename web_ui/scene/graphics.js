@@ -9,14 +9,7 @@ const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 /** Null if the browser has no WebGL: panels and buttons still work. @param {HTMLCanvasElement} canvas */
 export function createRenderer(canvas) {
   try {
-    const context = canvas.getContext("webgl2", {
-      alpha: false, // the browser need not blend it with what is behind
-      stencil: false,
-      antialias: !isSoftwareHere(),
-      powerPreference: "low-power",
-    });
-    if (context === null) return null;
-    const renderer = new THREE.WebGLRenderer({ canvas, context });
+    const renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftwareHere(), powerPreference: "low-power" });
     renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // colors are display values already (colors.js)
     return renderer;
   } catch {
