@@ -149,12 +149,10 @@ def measure(options: argparse.Namespace) -> Report:
                     for fineness in options.fineness:
                         rates[robots, fineness].append(drawing(browser, page, robots, fineness, options))
                     browser.close()
-    return _report(loadings, rates, options)
+    return _report(loadings, rates)
 
 
-def _report(
-    loadings: list[Loading], rates: dict[tuple[int, str], list[tuple[float, float]]], options: argparse.Namespace
-) -> Report:
+def _report(loadings: list[Loading], rates: dict[tuple[int, str], list[tuple[float, float]]]) -> Report:
     best = min(loadings, key=lambda loading: loading.frame_ms)
     frame_s = statistics.median(each.frame_ms for each in loadings) / 1000
     loaded_kb = best.compressed / 1000
@@ -178,10 +176,6 @@ def _report(
         for (robots, fineness), found in medians.items()
         if fineness == "medium" and robots in ENOUGH_FPS
     ]
-    for fineness in options.fineness:
-        share = 100 * medians[options.robots, fineness][0] / medians[1, fineness][0]
-        what = f"frames per second, {options.robots} robots to one, {fineness} resolution"
-        goals.append(Goal(what, 80, share, "%", is_least=True))
     head = ["", "frames per second", "CPU of the browser, ms per frame"]
     return Report([Table(["", "measured"], rows), Table(head, frames)], goals)
 
