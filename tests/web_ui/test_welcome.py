@@ -10,7 +10,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
 from tests.web_ui.page_support import MARKS, choose_language, open_menu, open_tab, wait_for_frame
-from tests.web_ui.test_page_access import AXE, FINDINGS
+from tests.web_ui.test_page_access import AXE, FINDINGS, OVERLAPPING
 from tests.web_ui.test_page_recovery import NO_STORAGE
 
 pytestmark = MARKS
@@ -172,6 +172,10 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(greeting, page, s
     if AXE.exists():
         page.add_script_tag(path=str(AXE))
         assert page.evaluate(FINDINGS) == []
+    page.keyboard.press("Escape")  # the starts are gone, the offer of the tour stays, and covers nothing
+    page.locator(".view-row").wait_for()
+    page.wait_for_function(f"() => ({OVERLAPPING})().length === 0")
+    assert page.locator(".welcome-tour").count() == 1
 
 
 def test_the_keys_are_listed_in_a_dialog_that_escape_closes(greeting, page):

@@ -1,4 +1,4 @@
-// The card below "?" that offers the tour.
+// The card that offers the tour: below "?", and never over a control.
 
 import { h } from "../ui/dom.js";
 import { keepFocus } from "../ui/focus.js";
@@ -34,24 +34,32 @@ export function tourOffer({ tour, scene }, t) {
     event.stopPropagation();
     decline();
   });
-  /** Under the button in the header, wherever the width of the window puts it. */
+  /** Under the button in the header; where the buttons over the view are shown, below those, if the view has room for it. */
   const place = () => {
     const button = document.querySelector("#help-open")?.getBoundingClientRect();
-    if (button === undefined) return;
+    const stage = document.querySelector("#scene")?.getBoundingClientRect();
+    if (button === undefined || stage === undefined) return;
     const { innerWidth } = window;
+    const views = document.querySelector(".view-row")?.getBoundingClientRect();
+    const isBelowViews = views !== undefined && views.height > 0;
     const middle = (button.left + button.right) / 2;
     const most = innerWidth - element.offsetWidth - MARGIN_PX;
-    const right = Math.max(MARGIN_PX, Math.min(innerWidth - middle - TIP_PX, most));
+    const wanted = isBelowViews ? innerWidth - views.right : innerWidth - middle - TIP_PX;
+    const right = Math.max(MARGIN_PX, Math.min(wanted, most));
+    const top = isBelowViews ? views.bottom + MARGIN_PX : button.bottom + BELOW_PX;
+    element.toggleAttribute("data-below-views", isBelowViews);
     element.style.right = `${Math.round(right)}px`;
-    element.style.top = `${Math.round(button.bottom + BELOW_PX)}px`;
+    element.style.top = `${Math.round(top)}px`;
     element.style.setProperty("--tip", `${Math.round(innerWidth - right - middle)}px`);
+    element.style.visibility = isBelowViews && top + element.offsetHeight > stage.bottom ? "hidden" : "";
   };
   document.body.append(element);
   place();
-  window.addEventListener("resize", place);
+  const room = new ResizeObserver(place);
+  for (const part of document.querySelectorAll("#scene, .view-row")) room.observe(part);
   return {
     destroy() {
-      window.removeEventListener("resize", place);
+      room.disconnect();
       keepFocus(
         element,
         () => element.remove(),
