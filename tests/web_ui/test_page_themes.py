@@ -1,4 +1,4 @@
-"""Themes: no serious finding of axe in the dark one, also in open sheets; the scene is darker while time is paused."""
+"""Themes: no serious finding of axe in open sheets; forced colors; the scene is darker while time is paused."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.page_support import MARKS, open_hands, open_menu, open_page, open_tab, wait_for_frame
-from tests.web_ui.test_page_access import AXE, FINDINGS
+from tests.web_ui.test_page_access import AXE, findings
 
 pytestmark = MARKS
 
@@ -15,9 +15,7 @@ DIMMED = "() => getComputedStyle(document.querySelector('#scene'), '::after').op
 
 
 @pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm install in web_ui")
-@pytest.mark.parametrize("theme", ["dark", "light"])
-def test_axe_finds_nothing_serious_in_sheets(suite, page, theme):
-    page.emulate_media(color_scheme=theme, reduced_motion="reduce")
+def test_axe_finds_nothing_serious_in_sheets(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.add_script_tag(path=str(AXE))
     for hand in ("hand", "tilt", "pen", "remote", "room"):
@@ -25,21 +23,21 @@ def test_axe_finds_nothing_serious_in_sheets(suite, page, theme):
         if hand == "pen":
             page.click("[data-pen=down]")
         wait_for_frame(page)
-        assert page.evaluate(FINDINGS) == [], hand
+        assert findings(page) == [], hand
         page.keyboard.press("Escape")
     open_menu(page, "[data-view=look]")
-    assert page.evaluate(FINDINGS) == []
+    assert findings(page) == []
     page.keyboard.press("Escape")
     page.locator("#pause").click()
     page.wait_for_function(f"() => ({DIMMED})() === '1'")
     open_menu(page, "#step-length")
-    assert page.evaluate(FINDINGS) == []
+    assert findings(page) == []
     page.keyboard.press("Escape")
     page.locator("#pause").click()
     page.wait_for_function(f"() => ({DIMMED})() === '0'")
 
 
-def test_controls_have_borders_in_forced_colors(at_rest, page):
+def test_controls_and_what_is_chosen_are_seen_in_forced_colors(at_rest, page):
     page.emulate_media(forced_colors="active")
     open_page(page, at_rest)
     open_tab(page, "robot")
@@ -49,3 +47,9 @@ def test_controls_have_borders_in_forced_colors(at_rest, page):
     )
     assert len(borders) > 15
     assert [name for name, width in borders if width == "0px"] == []
+    grounds = page.evaluate(
+        "() => ['#tab-robot', '#tab-program', '[data-view=beams]', '[data-view=top]']"
+        ".map((one) => getComputedStyle(document.querySelector(one)).backgroundColor)"
+    )
+    assert grounds[0] not in grounds[1::2], "what is chosen has another color"
+    assert grounds[2] not in grounds[1::2], "what is pressed has another color"
