@@ -69,7 +69,7 @@ def many(page: Any) -> None:
     page.locator("#tab-class").wait_for()
     open_tab(page, "class")
     page.locator(".class-tile").nth(19).wait_for()
-    page.wait_for_function("() => document.querySelectorAll('#labels .dot').length === 20")
+    page.wait_for_function("() => document.querySelectorAll('#labels .dot:not([hidden])').length === 20")
 
 
 def help_menu(page: Any) -> None:
