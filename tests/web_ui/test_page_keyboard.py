@@ -13,8 +13,10 @@ from tests.web_ui.page_support import (
     build_playground,
     choose_language,
     drop_file,
+    open_details,
     open_editor,
     open_page,
+    open_tab,
     wait_for_service,
 )
 
@@ -29,6 +31,22 @@ motor.right.target = 150 * button.forward
 """
 MOST_TABS = 150
 STATE = "() => window.thymio.state()"
+STOP = """() => {
+    const one = document.activeElement;
+    if (one === null || one === document.body) return null;
+    const {left, top, right, bottom} = one.getBoundingClientRect();
+    const parts = [0.5, 0.1, 0.9];
+    const isSeen = parts.some((x) => parts.some((y) => {
+        const hit = document.elementFromPoint(left + x * (right - left), top + y * (bottom - top));
+        return hit !== null && (one.contains(hit) || one.closest("label, .switch")?.contains(hit));
+    }));
+    const hasRing = [one, one.parentElement, one.nextElementSibling].some((element) => {
+        const {boxShadow, outlineStyle} = element === null ? {} : getComputedStyle(element);
+        return element && (boxShadow !== "none" || outlineStyle !== "none");
+    });
+    const tabs = one.role === "tab" ? one.closest("[role=tablist]").outerHTML.slice(0, 100) : null;
+    return {name: one.id || one.outerHTML.slice(0, 100), isSeen, hasRing, tabs, isText: one.matches(".cm-content")};
+}"""
 
 
 def go_to(page: Any, selector: str, key: str = "Tab") -> None:
@@ -153,6 +171,41 @@ def test_letter_keys_work_with_caps_lock(at_rest, page):
     for key, selected in (("N", "ground"), ("N", "thymio"), ("Shift+N", "ground")):
         page.keyboard.press(key)
         page.wait_for_function("(name) => window.thymio.built().selected === name", arg=selected)
+
+
+def stops(page: Any) -> list[str]:
+    """Names of all elements that Tab leads to, once around; each is seen when it has the focus, and shows that."""
+    page.locator(".skip").focus()
+    found: list[dict[str, Any]] = []
+    while len(found) < MOST_TABS:
+        stop = page.evaluate(STOP)
+        if stop is None or (found and stop["name"] == found[0]["name"]):
+            break
+        found.append(stop)
+        if stop["isText"]:
+            page.keyboard.press("Escape")  # then Tab leaves it
+        page.keyboard.press("Tab")
+    assert [stop for stop in found if not (stop["isSeen"] and stop["hasRing"])] == []
+    lists = [stop["tabs"] for stop in found if stop["tabs"] is not None]
+    assert len(lists) == len(set(lists)) > 0, "one stop per list of tabs: arrows lead to the others"
+    return [stop["name"] for stop in found]
+
+
+def test_tab_leads_everywhere_and_the_focus_is_always_seen(suite, page):
+    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+    page.wait_for_function(f"() => Object.keys(({STATE})().robots).length === 2")
+    stage = {"robot-chooser", "stop", "view", "pause", "tray-fold"}
+    open_details(page)
+    assert stage <= set(stops(page))
+    open_tab(page, "class")
+    page.locator(".class-tile").first.wait_for()
+    assert stage <= set(stops(page))
+    open_tab(page, "playground")
+    assert stage <= set(stops(page))
+    build_playground(page)
+    assert {"stop", "view", "creator-try", "creator-more", "creator-snap"} <= set(stops(page))
+    open_editor(page)
+    assert stage | {"file-menu", "tool-tab-values"} <= set(stops(page))
 
 
 def test_the_focus_is_not_lost_with_what_had_it(suite, page, tmp_path):
