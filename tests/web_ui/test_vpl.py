@@ -20,13 +20,13 @@ from tests.web_ui.page_support import (
     open_page,
     open_tab,
     wait_for_frame,
+    watch_it_avoid,
 )
 from tests.web_ui.test_page_access import AXE, FINDINGS
 
 pytestmark = MARKS
 
 FILES = Path(__file__).parents[1] / "data" / "web" / "vpl"
-PLACE = "() => { const { x, y } = window.thymio.state().robot.latest.pose; return [x, y]; }"
 ROWS = "() => document.querySelectorAll('.vpl-row').length"
 
 
@@ -104,10 +104,10 @@ def set_slider(page: Any, look: str, value: str) -> None:
     raise AssertionError(f"{look} never showed {value}")
 
 
-def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page):
+def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page, ros):
     page.set_viewport_size({"width": 1280, "height": 900})
-    open_page(page, suite("--playground", "arena", "--program", "none"))
-    page.add_script_tag(path=str(AXE))
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.add_script_tag(content=AXE.read_text(encoding="utf-8"))
     begin(page, "empty")
     assert page.evaluate(FINDINGS) == []
 
@@ -157,15 +157,11 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     drag(page, place(1, "actions", 1), ".vpl-palette.action")
     assert blocks(page, 1) == ["prox", "move"]
 
-    # it runs, its rows flash, and the robot drives
-    page.wait_for_function("() => window.thymio.state().robot.latest.pose !== undefined")
-    start = page.evaluate(PLACE)
+    # it runs, its rows flash, and the robot avoids
     page.get_by_role("button", name="Run program").click()
     expect(page, "#program-state").to_have_attribute("data-state", "running")
     page.wait_for_function("() => document.querySelector('.vpl-ran:not([hidden])') !== null")
-    page.wait_for_function(
-        f"([x, y]) => {{ const [a, b] = ({PLACE})(); return Math.hypot(a - x, b - y) > 0.03; }}", arg=start
-    )
+    watch_it_avoid(page, ros)
 
     # as text, read-only; turned into text; back
     page.locator("[data-language=text]").click()
@@ -246,7 +242,7 @@ def test_a_program_is_built_by_fingers_on_a_phone(suite, phone):
     assert 0 <= box["x"] <= 390 - box["width"]
     close_sheet(phone)
     expect(phone, place(0, "event")).to_have_attribute("aria-label", "Buttons: forward, left")
-    phone.add_script_tag(path=str(AXE))
+    phone.add_script_tag(content=AXE.read_text(encoding="utf-8"))
     assert phone.evaluate(FINDINGS) == []
 
 
