@@ -355,7 +355,7 @@ test("the history outlives the view as long as the text is the same", () => {
   assert.ok(again.canUndo);
   workspace.replaceText(sampleText("avoid"));
   again.open();
-  assert.deepEqual([again.canUndo, again.program.rows.length], [false, 7]);
+  assert.deepEqual([again.canUndo, again.program.rows.length], [false, 5]);
 });
 
 test("every mode keeps or names what it has", () => {
