@@ -28,7 +28,7 @@ AXE = Path(__file__).parents[2] / "web_ui/node_modules/axe-core/axe.min.js"
 FINDINGS = """async () => (await axe.run(".program")).violations
     .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html.slice(0, 120)).join(" ")}`)"""
 BLOCKS = ".blocklySvg .blocklyBlockCanvas"
-CODE = ".blocks-code"
+CODE = ".program-code"
 VERDICT = ".blocks-verdict"
 FLYOUT = ".blocklyFlyout:visible"
 

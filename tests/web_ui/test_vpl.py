@@ -128,7 +128,7 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     set_slider(page, "right", "200")
     assert page.evaluate(FINDINGS) == []
     close_sheet(page)
-    expect(page, ".vpl-code").to_contain_text("motor.left.target = 200")
+    expect(page, ".program-code").to_contain_text("motor.left.target = 200")
 
     # the second row: near in the middle; then one like it is an error at its place
     drag(page, "[data-new-block=prox]", "[data-row='1'] .vpl-slot.event")

@@ -21,7 +21,7 @@ import { blocksOf, makeProgram } from "../../web_ui/vpl/program.js";
 import { controlsOf, used } from "../../web_ui/vpl/view/controls.js";
 import { added, draggedOut, dropped } from "../../web_ui/vpl/view/dropping.js";
 import { VplEditing } from "../../web_ui/vpl/view/editing.js";
-import { pieces } from "../../web_ui/vpl/view/marked_text.js";
+import { pieces } from "../../web_ui/program_tab/marked_text.js";
 import { picture } from "../../web_ui/vpl/view/picture.js";
 import { questionNotices } from "../../web_ui/vpl/view/questions.js";
 import { sampleText } from "../../web_ui/vpl/view/samples.js";

@@ -175,11 +175,9 @@ class BlocksView {
     this.#place = selection.isTextRunning ? runPlace(values, document.blocks, context.language) : NOWHERE;
     if (this.#isLoaded) this.field.highlight(this.#place.block);
     if (this.#place.fault !== before) this.#showMistakes();
-    this.frame.panel.element.hidden = !this.#isTextShown;
-    if (this.#isTextShown) {
-      const selected = this.#selected === null ? null : document.linesOf(this.#selected);
-      this.frame.panel.render({ program: document.code, selected, running: this.#place.line });
-    }
+    const selected = this.#selected === null ? null : document.linesOf(this.#selected);
+    const [isShown, about] = [this.#isTextShown, this.t("view.marked")];
+    this.frame.pane.render({ isShown, text: document.code, selected, about, running: this.#place.line });
     this.frame.hint.hidden = !this.#isLoaded || !document.canEdit || !isEmpty(document.state);
   }
 
