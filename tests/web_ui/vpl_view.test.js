@@ -26,6 +26,7 @@ import { picture } from "../../web_ui/vpl/view/picture.js";
 import { questionNotices } from "../../web_ui/vpl/view/questions.js";
 import { sampleText } from "../../web_ui/vpl/view/samples.js";
 import { sentence } from "../../web_ui/vpl/view/sentences.js";
+import { newStorage } from "./support.js";
 
 /** @typedef {import("../../web_ui/vpl/blocks.js").Block} Block */
 /** @typedef {import("../../web_ui/vpl/view/place.js").Spot} Spot */
@@ -251,12 +252,7 @@ test("in extended mode an event becomes a condition where the conditions are", (
 
 /** A document with this text, opened in the view. @param {string} text */
 function opened(text) {
-  /** @type {Map<string, string>} */ const values = new Map();
-  const fileStore = new FileStore({
-    getItem: (key) => values.get(key) ?? null,
-    setItem: (key, value) => void values.set(key, value),
-    removeItem: (key) => void values.delete(key),
-  });
+  const fileStore = new FileStore(newStorage());
   const workspace = new Workspace({ fileStore, now: () => 0, changed: () => {} });
   assert.equal(workspace.open("a.aesl", text), null);
   const kept = new Map();
