@@ -196,8 +196,13 @@ def other_page(browser) -> Iterator[Any]:
 
 
 def checked_page(browser: Any, **options: Any) -> Iterator[Any]:
-    """A page with its own browser profile; asserts at the end that there were no problems."""
-    options = {"viewport": {"width": 1024, "height": 768}, "bypass_csp": True} | options  # waiting evaluates
+    """A page with its own browser profile; asserts at the end that there were no problems.
+
+    A pixel covers two by two of CSS, because the 3D view is drawn by software here; tests that compare pictures need
+    `device_scale_factor=1`.
+    """
+    size = {"viewport": {"width": 1024, "height": 768}, "device_scale_factor": 0.5}
+    options = size | {"bypass_csp": True} | options  # waiting evaluates
     page = browser.new_page(**options)
     page.set_default_timeout(DEADLINE_MS)
     problems: list[str] = []

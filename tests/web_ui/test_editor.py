@@ -381,8 +381,8 @@ def test_the_mark_in_the_text_offers_the_correction_too(writing):
 def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(editor, tmp_path):
     text = (
         "<!DOCTYPE aesl-source>\n<network>\n<mystery/>\n"
-        '<node nodeId="{01234567-89ab-cdef-0123-456789abcdef}" name="Thymio_4 on LAPTOP - 8636">emit pair_run 0\n'
-        "<toolsPlugins><ThymioVisualProgramming><vplroot/></ThymioVisualProgramming></toolsPlugins></node>\n</network>\n"
+        '<node nodeId="{01234567-89ab-cdef-0123-456789abcdef}" name="Thymio_4 on LAPTOP - 8636">var a = 0\n'
+        "<toolsPlugins><AnotherEditor><kept/></AnotherEditor></toolsPlugins></node>\n</network>\n"
     )
     path = tmp_path / "suite.aesl"
     path.write_text(text)
@@ -396,4 +396,4 @@ def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(ed
     editor.keyboard.insert_text("call leds.top(0, 0, 0)\n")
     with editor.expect_download() as download:
         choose_in_file_menu(editor, "save")
-    assert download.value.path().read_text() == text.replace("emit pair_run", "call leds.top(0, 0, 0)\nemit pair_run")
+    assert download.value.path().read_text() == text.replace("var a = 0", "call leds.top(0, 0, 0)\nvar a = 0")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from PIL import Image
 
+from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import MARKS, build_playground, open_page, open_tab
 
 pytestmark = MARKS
@@ -61,6 +63,12 @@ CONTEXT = "document.querySelector('#view').getContext('webgl2').getExtension('WE
 FRAMES = """async () => {
     for (let frame = 0; frame < 4; frame++) await new Promise((end) => requestAnimationFrame(end));
 }"""
+
+
+@pytest.fixture
+def page(browser) -> Iterator[Any]:
+    """A page in full resolution, because its picture is compared."""
+    yield from checked_page(browser, device_scale_factor=1)
 
 
 @pytest.fixture

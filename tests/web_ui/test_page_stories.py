@@ -75,7 +75,7 @@ def test_the_track_follower_follows_the_track(class_page):
 
 def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
     class_page.get_by_role("tab", name="Program").click()
-    class_page.get_by_role("button", name="Follow a line").click()
+    class_page.get_by_role("region", name="Text").get_by_role("button", name="Follow a line").click()
     text = class_page.get_by_role("textbox", name="Program text")
     playwright.expect(text).to_contain_text("Follow a line")
     text.press("Control+a")

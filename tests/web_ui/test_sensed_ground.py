@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -11,6 +13,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from PIL import Image
 
+from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import MARKS, open_menu, open_page, wait_until_still
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.playground import reader
@@ -34,6 +37,12 @@ def playground() -> str:
         shapes.append({"kind": "track", "name": name, "points_m": points, "width_m": width, "color": "#000000"})
     robots = [{"name": "thymio", "x_m": -0.24, "y_m": 0.19, "yaw_rad": 1.5708}]
     return json.dumps({"format": 1, "title": "Strips", "shapes": shapes, "robots": robots})
+
+
+@pytest.fixture
+def page(browser) -> Iterator[Any]:
+    """A page in full resolution, because its picture is compared."""
+    yield from checked_page(browser, device_scale_factor=1)
 
 
 def test_the_view_is_dark_exactly_where_the_sensors_measure_dark(suite, page, tmp_path):

@@ -121,7 +121,7 @@ def address(browser, _shared, tmp_path_factory) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def shared_page(browser) -> Iterator[Any]:
     """One page for all states: it is loaded again for each, and stored nothing."""
-    for page in checked_page(browser, reduced_motion="reduce"):
+    for page in checked_page(browser, device_scale_factor=1, reduced_motion="reduce"):
         page.add_init_script(font_script())
         page.add_init_script("localStorage.clear()")
         yield page
