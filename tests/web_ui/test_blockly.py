@@ -165,6 +165,8 @@ def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(bl
     if AXE.exists():
         page.add_script_tag(content=AXE.read_text(encoding="utf-8"))
         assert page.evaluate(FINDINGS) == []
+        new_block(page, "Motors", "thymio_motors_start")  # the list of new blocks is open
+        assert page.evaluate(FINDINGS) == []
 
     # drive while nothing is at the left, turn when something is ahead; then the same in the look of Scratch
     far = (canvas["x"] + 320, canvas["y"] + 180)

@@ -219,7 +219,7 @@ def phone(browser) -> Iterator[Any]:
     yield from checked_page(browser, has_touch=True, viewport={"width": 390, "height": 844})
 
 
-def test_a_program_is_built_by_fingers_on_a_phone(suite, phone):
+def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(suite, phone):
     open_page(phone, suite("--playground", "base", "--program", "none"))
     begin(phone, "buttons")
     assert blocks(phone, 0) == ["button", "move", "colortop"]
@@ -243,6 +243,19 @@ def test_a_program_is_built_by_fingers_on_a_phone(suite, phone):
     close_sheet(phone)
     expect(phone, place(0, "event")).to_have_attribute("aria-label", "Buttons: forward, left")
     phone.add_script_tag(content=AXE.read_text(encoding="utf-8"))
+    assert phone.evaluate(FINDINGS) == []
+
+    choose_in_file_menu(phone, "new")
+    phone.locator("[data-new=blocks-empty]").tap()
+    phone.locator(".blocklyToolboxCategory", has_text="Motors").tap()
+    new = ".blocklyFlyout:visible .thymio_motors_start"
+    phone.locator(new).first.wait_for()
+    box, area = (phone.locator(each).first.bounding_box() for each in (new, ".blocks-place"))
+    fingers.start(a=(box["x"] + 4, box["y"] + 20))
+    fingers.move(a=(area["x"] + 60, area["y"] + 60))
+    fingers.end()
+    expect(phone, ".blocklyBlockCanvas > .thymio_motors_start:visible").to_have_count(1)
+    expect(phone, ".blocks-verdict").to_have_text("No mistakes")
     assert phone.evaluate(FINDINGS) == []
 
 
