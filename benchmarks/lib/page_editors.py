@@ -50,16 +50,11 @@ def open_editor(page: Any, name: str) -> Opening:
         page.click("#file-menu")
         page.click("#file-sheet [data-verb=new]")
         page.locator(opener).wait_for()
-    bodies: list[bytes] = []
-
-    def note(request: Any) -> None:
-        bodies.append(request.response().body())
-
-    page.on("requestfinished", note)
+    requests: list[Any] = []
+    page.on("request", lambda request: requests.append(request))
     paint_ms = page.evaluate(PAINTED, [opener, shown])
-    page.wait_for_load_state("networkidle")
-    page.remove_listener("requestfinished", note)
-    return Opening(paint_ms, sum(len(gzip.compress(body, 6)) for body in bodies))
+    loaded = [request for request in requests if not request.url.startswith(("data:", "blob:"))]
+    return Opening(paint_ms, sum(len(gzip.compress(request.response().body(), 6)) for request in loaded))
 
 
 def dragging(page: Any, seconds: float) -> float:
