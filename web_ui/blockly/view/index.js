@@ -277,6 +277,7 @@ class BlocksView {
 
   #showMistakes() {
     const { t, checker, parts } = this;
+    const { t: editorText } = parts;
     const before = summary(this.#mistakes, t);
     this.#mistakes = blockMistakes(this.#document, checker.verdict, t);
     const { fault, block } = this.#place;
@@ -286,7 +287,7 @@ class BlocksView {
     const { foot } = this.frame;
     if (words !== "") foot.report(words, this.hasMistake() ? "error" : "warning");
     else if (faults.length > 0) foot.report(faults[0].text, "error");
-    else foot.report(this.#isChecked ? parts.t("mistakes.none") : "", this.#isChecked ? "good" : "");
+    else foot.report(this.#isChecked ? editorText("mistakes.none") : "", this.#isChecked ? "good" : "");
     if (words !== "" && words !== before) parts.context.announce(words);
   }
 }
