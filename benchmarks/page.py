@@ -1,4 +1,4 @@
-"""The page in a real browser: loading, requests, frames per second and processor time.
+"""The page in a real browser: loading, requests, frames per second and processor time; its editors.
 
 Measured are the first frame of the 3D view, what is loaded before the editor is opened, requests to other hosts, and
 the frames per second with one robot and with many, each driving in its own circle. The suite, the browser and (without
@@ -19,12 +19,13 @@ from typing import Any
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from benchmarks.lib.command import MissingError
+from benchmarks.lib.page_editors import EDITORS, ROWS, Opening, dragging, open_editor
 from benchmarks.lib.processes import suite
 from benchmarks.lib.report import Goal, Report, Table
 from benchmarks.lib.scenes import grid
 from thymio_sim_ros import resources
 
-QUICK = {"rounds": 1, "seconds": 0.5, "settle": 0.1, "robots": 2, "fineness": ["simple"]}
+QUICK = {"rounds": 1, "seconds": 0.5, "settle": 0.1, "robots": 2, "fineness": ["simple"], "editors": ["VPL"]}
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--disable-background-networking", "--no-first-run"]
 DEADLINE_MS = 120_000
@@ -42,6 +43,12 @@ const watch = () => {
 requestAnimationFrame(watch);
 """
 PAINT = "() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
+
+
+PAINT_S = 1.5
+"""Longest time to the first paint of an editor."""
+MOST_KB = {"VPL": 60, "Blockly": 400}
+"""What an editor may load when it is opened, compressed."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +71,18 @@ def visit(browser: Browser, address: str, size: tuple[int, int]) -> tuple[Page, 
     bodies: list[bytes] = []
     urls: list[str] = []
     page.on("request", lambda request: urls.append(request.url))
-    page.on("requestfinished", lambda request: bodies.append(request.response().body()))
+
+    def note(request: Any) -> None:
+        bodies.append(request.response().body())
+
+    page.on("requestfinished", note)
     sizes: list[float] = []
     developer = page.context.new_cdp_session(page)
     developer.send("Network.enable")
     developer.on("Network.loadingFinished", lambda event: sizes.append(event["encodedDataLength"]))
     page.goto(f"{address}?tour=off&welcome=off")
     page.wait_for_function("() => window.firstFrameMs")
+    page.remove_listener("requestfinished", note)
     loading = Loading(
         paint_ms=page.evaluate(PAINT),
         frame_ms=page.evaluate("() => window.firstFrameMs"),
@@ -116,6 +128,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--size", default="1280x800", help="of the window, in pixels")
     names = ("auto", "fine", "medium", "simple")
     fineness = "resolutions; medium is full, with nothing left out"
+    parser.add_argument("--editors", nargs="+", choices=list(EDITORS), default=list(EDITORS), help="editors to open")
     parser.add_argument("--fineness", nargs="+", choices=names, default=["medium", "auto"], help=fineness)
 
 
@@ -131,6 +144,8 @@ def measure(options: argparse.Namespace) -> Report:
     rates: dict[tuple[int, str], list[tuple[float, float]]] = {
         (robots, fineness): [] for robots in counts for fineness in options.fineness
     }
+    openings: dict[str, list[Opening]] = {name: [] for name in options.editors}
+    drags: list[float] = []
     with sync_playwright() as playing, tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         program = folder / "circle.aesl"
@@ -148,8 +163,33 @@ def measure(options: argparse.Namespace) -> Report:
                         loadings.append(loading)
                     for fineness in options.fineness:
                         rates[robots, fineness].append(drawing(browser, page, robots, fineness, options))
+                    page.close()
+                    for editor in options.editors if robots == 1 else ():
+                        page, _ = visit(browser, address, (width, height))
+                        openings[editor].append(open_editor(page, editor))
+                        if editor == "VPL":
+                            drags.append(dragging(page, options.seconds))
+                        page.close()
                     browser.close()
-    return _report(loadings, rates)
+    report = _report(loadings, rates)
+    table, goals = _editors(openings, drags)
+    return Report([*report.tables, table], [*report.goals, *goals])
+
+
+def _editors(openings: dict[str, list[Opening]], drags: list[float]) -> tuple[Table, list[Goal]]:
+    rows: list[list[str | float]] = []
+    goals: list[Goal] = []
+    for editor, found in openings.items():
+        paint_s = statistics.median(each.paint_ms for each in found) / 1000
+        loaded_kb = min(each.compressed for each in found) / 1000
+        rows.append([editor, paint_s, loaded_kb])
+        goals.append(Goal(f"first paint of an editor, {editor}", PAINT_S, paint_s, "s"))
+        if editor in MOST_KB:
+            goals.append(Goal(f"loaded for an editor, compressed, {editor}", MOST_KB[editor], loaded_kb, "kB"))
+    if drags:
+        what = f"frames per second while a row of {ROWS} is dragged, time paused"
+        goals.append(Goal(what, 60, round(statistics.median(drags)), is_least=True))
+    return Table(["editor", "first paint, s", "loaded when opened, compressed, kB"], rows), goals
 
 
 def _report(loadings: list[Loading], rates: dict[tuple[int, str], list[tuple[float, float]]]) -> Report:

@@ -1,10 +1,12 @@
-"""The track of a shipped playground, for tests that watch a robot follow it."""
+"""The way of a robot in a shipped playground, for tests that watch it follow a track or avoid things."""
 
 from __future__ import annotations
 
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.testing import Classroom, no_contact
 from thymio_sim_ros.testing.line_following import SENSOR_CENTER, TrackLine
 
 
@@ -26,3 +28,12 @@ def farthest_in_laps(runner: Runner, laps: float, playground: str = "line", trac
         driven += line.offset(last, along)
         farthest, last = max(farthest, distance), along
     return farthest
+
+
+def assert_avoids(program: ThymioProgram) -> None:
+    """Two minutes in the arena: the robot touches nothing, and no corner holds it."""
+    (thymio,) = Classroom("arena", program)
+    thymio.run(120.0)
+    assert no_contact(thymio)
+    second_minute = thymio.path[len(thymio.path) // 2 :]
+    assert len({(round(at.pose.x_m, 1), round(at.pose.y_m, 1)) for at in second_minute}) > 15

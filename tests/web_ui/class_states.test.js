@@ -7,6 +7,7 @@ import { RobotNames } from "../../web_ui/browser/robot_names.js";
 import { classState, fits, membersOf, needsLook, Troubles } from "../../web_ui/class_tab/class_states.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import classTexts from "../../web_ui/i18n/class.texts.js";
+import { newStorage } from "./support.js";
 
 /** @param {string} state @param {string} [name] @param {Record<string, string>} [values] */
 const program = (state, name = "mine.aesl", values = {}) => ({ state, name, message: "", level: 0, line: "", values: { state, ...values } });
@@ -67,18 +68,13 @@ test("a robot that has waited longest comes first, unless one in trouble is chos
 });
 
 test("names stay in the browser, and broken ones are forgotten", () => {
-  /** @type {Map<string, string>} */ const kept = new Map();
-  const storage = {
-    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
-    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
-    removeItem: (/** @type {string} */ key) => void kept.delete(key),
-  };
+  const storage = newStorage();
   const names = new RobotNames(storage);
   names.set("t1", "  Ada ");
   names.set("t2", "Ben");
   names.set("t2", "");
   assert.deepEqual(["t1", "t2", "toString"].map((robot) => names.of(robot)), ["Ada", "", ""]);
   assert.equal(new RobotNames(storage).of("t1"), "Ada");
-  kept.set("robot.names", "[1");
+  storage.kept.set("robot.names", "[1");
   assert.equal(new RobotNames(storage).of("t1"), "");
 });

@@ -2,17 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Drafts } from "../../web_ui/playground_tab/drafts.js";
-
-/** A browser's storage in memory. @param {Record<string, string>} [content] */
-function newStorage(content = {}) {
-  const kept = new Map(Object.entries(content));
-  return {
-    kept,
-    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
-    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
-    removeItem: (/** @type {string} */ key) => void kept.delete(key),
-  };
-}
+import { newStorage } from "./support.js";
 
 const DRAFT = { id: "a", title: "Mine", inFile: false, text: "{}" };
 

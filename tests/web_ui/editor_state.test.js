@@ -12,16 +12,7 @@ import { roundStep } from "../../web_ui/editor/plot.js";
 import { INITIAL, MAX_LOGGED_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
 import { FileStore, MAX_FILES } from "../../web_ui/editor/file_store.js";
 import { ALL, Workspace } from "../../web_ui/editor/workspace.js";
-
-/** A browser's storage in memory. */
-function newStorage() {
-  /** @type {Map<string, string>} */ const kept = new Map();
-  return /** @type {Storage} */ ({
-    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
-    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
-    removeItem: (/** @type {string} */ key) => void kept.delete(key),
-  });
-}
+import { newStorage } from "./support.js";
 
 function workspace(storage = newStorage()) {
   let shown = 0;

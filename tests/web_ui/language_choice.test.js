@@ -5,6 +5,7 @@ import { newAesl } from "../../web_ui/editor/aesl.js";
 import { FileStore } from "../../web_ui/editor/file_store.js";
 import { Workspace } from "../../web_ui/editor/workspace.js";
 import { LanguageChoice, languageOf } from "../../web_ui/program_tab/language_choice.js";
+import { newStorage } from "./support.js";
 
 const PICTURE = "<toolsPlugins><picture/></toolsPlugins>";
 const LANGUAGES = [
@@ -17,12 +18,7 @@ const withoutPicture = (/** @type {string} */ text) => text.replace(PICTURE, "")
 
 /** A workspace whose open document is this text. @param {string} text */
 function opened(text) {
-  /** @type {Map<string, string>} */ const values = new Map();
-  const fileStore = new FileStore({
-    getItem: (key) => values.get(key) ?? null,
-    setItem: (key, value) => void values.set(key, value),
-    removeItem: (key) => void values.delete(key),
-  });
+  const fileStore = new FileStore(newStorage());
   const workspace = new Workspace({ fileStore, now: () => 0, changed: () => {} });
   assert.equal(workspace.open("a.aesl", text), null);
   return { workspace, choice: new LanguageChoice({ workspace, languages: LANGUAGES }) };

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -205,3 +206,31 @@ def wait_for_position(page: Any, part: str) -> dict[str, float]:
     wait_until_still(page, f"window.thymio.partPosition({json.dumps(part)})")
     place: dict[str, float] = page.evaluate("(part) => window.thymio.partPosition(part)", part)
     return place
+
+
+def watch_it_avoid(page: Any, ros: Any) -> None:
+    """Wait until the robot has driven from the middle of "base" to the wall, turned there and driven on.
+
+    It must touch nothing on its way. The playground is reset first; then time is five times as fast.
+    """
+    from std_msgs.msg import Bool
+
+    def pose() -> dict[str, float]:
+        found: dict[str, float] = page.evaluate("() => window.thymio.state().robot.latest.pose")
+        return found
+
+    def is_far_from(place: dict[str, float]) -> bool:
+        now = pose()
+        return math.hypot(now["x"] - place["x"], now["y"] - place["y"]) > 0.1
+
+    touched: list[bool] = []
+    ros.node.create_subscription(Bool, "/_collision", lambda message: touched.append(message.data), 10)
+    page.click("#time [data-verb=reset]")
+    ros.until(lambda: not is_far_from({"x": 0.0, "y": 0.0}), what="the robot in the middle")
+    page.select_option("#speed", "5")
+    ros.until(lambda: is_far_from({"x": 0.0, "y": 0.0}), what="a robot that drives")
+    ros.until(lambda: abs(pose()["yaw"]) > 0.5, what="a robot that turns")
+    turned = pose()
+    ros.until(lambda: is_far_from(turned), what="a robot that drives on")
+    assert not any(touched)
+    page.select_option("#speed", "1")

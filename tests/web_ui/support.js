@@ -44,3 +44,14 @@ export function serverFrame(code, numbers, payload = new Uint8Array()) {
   }
   return new Uint8Array(Buffer.concat([head, payload])).buffer;
 }
+
+/** A browser's storage in memory. @param {Record<string, string>} [content] */
+export function newStorage(content = {}) {
+  const kept = new Map(Object.entries(content));
+  return {
+    kept,
+    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
+    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
+    removeItem: (/** @type {string} */ key) => void kept.delete(key),
+  };
+}

@@ -19,6 +19,7 @@ from tests.web_ui.page_support import (
     open_page,
     open_tab,
     wait_for_service,
+    watch_it_avoid,
 )
 
 pytestmark = MARKS
@@ -26,10 +27,8 @@ pytestmark = MARKS
 AXE = Path(__file__).parents[2] / "web_ui/node_modules/axe-core/axe.min.js"
 FINDINGS = """async () => (await axe.run(".program")).violations
     .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html }) => html.slice(0, 120)).join(" ")}`)"""
-POSE = "() => window.thymio.partPosition('robot')"
-MOVED = f"([x, y]) => {{ const now = ({POSE})(); return Math.hypot(now.x - x, now.y - y) > 5; }}"
 BLOCKS = ".blocklySvg .blocklyBlockCanvas"
-CODE = ".blocks-code"
+CODE = ".program-code"
 VERDICT = ".blocks-verdict"
 FLYOUT = ".blocklyFlyout:visible"
 
@@ -81,9 +80,9 @@ def category(page, name: str):
 
 
 def grip_of(page, block) -> tuple[float, float]:
-    """A place at the upper left of a block, where it has no field."""
+    """A place at the left edge of a block, where it has no field, below the curve of a hat."""
     box = block.bounding_box()
-    return box["x"] + 6, box["y"] + 8
+    return box["x"] + 4, box["y"] + 20
 
 
 def new_block(page, group: str, kind: str) -> tuple[float, float]:
@@ -102,6 +101,26 @@ def drag(page, start: tuple[float, float], end: tuple[float, float]) -> None:
     page.mouse.up()
 
 
+def add(page, group: str, kind: str, target: tuple[float, float]) -> None:
+    """Drag a new block to a place."""
+    before = page.locator(f"{BLOCKS} .{kind}").count()
+    drag(page, new_block(page, group, kind), target)
+    expect(page, f"{BLOCKS} .{kind}").to_have_count(before + 1)
+
+
+def below(page, kind: str, x: float, y: float) -> tuple[float, float]:
+    """A place at a distance from the corner of the newest block of a kind."""
+    box = page.locator(f"{BLOCKS} .{kind}").last.bounding_box()
+    return box["x"] + x, box["y"] + y
+
+
+def choose(page, kind: str, field: int, option: str) -> None:
+    """Choose an option in a list of the newest block of a kind."""
+    page.locator(f"{BLOCKS} .{kind}").last.locator(".blocklyDropdownField").nth(field).click()
+    page.locator(".blocklyDropDownDiv .blocklyMenuItem").get_by_text(option, exact=True).click()
+    page.locator(".blocklyDropDownDiv .blocklyMenuItem").first.wait_for(state="hidden")
+
+
 @pytest.fixture
 def blocks(suite, page):
     """The tab of a robot at rest."""
@@ -112,7 +131,7 @@ def blocks(suite, page):
     return page
 
 
-def test_a_program_is_built_by_mouse_mended_and_run(blocks):
+def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(blocks, ros):
     page = blocks
     begin(page, "blocks-empty")
     expect(page, ".blocks-hint").to_be_visible()
@@ -144,13 +163,36 @@ def test_a_program_is_built_by_mouse_mended_and_run(blocks):
     expect(page, VERDICT).to_have_text("No mistakes")
 
     if AXE.exists():
-        page.add_script_tag(path=str(AXE))
+        page.add_script_tag(content=AXE.read_text(encoding="utf-8"))
+        assert page.evaluate(FINDINGS) == []
+        new_block(page, "Motors", "thymio_motors_start")  # the list of new blocks is open
         assert page.evaluate(FINDINGS) == []
 
-    start = page.evaluate(POSE)
+    # drive while nothing is at the left, turn when something is ahead; then the same in the look of Scratch
+    far = (canvas["x"] + 320, canvas["y"] + 180)
+    add(page, "Events", "thymio_event_prox", far)
+    choose(page, "thymio_event_prox", 1, "nothing")
+    drag(page, grip_of(page, page.locator(f"{BLOCKS} .thymio_motors_start")), below(page, "thymio_event_prox", 30, 40))
+    add(page, "Events", "thymio_event_prox", (far[0], far[1] + 120))
+    choose(page, "thymio_event_prox", 0, "front middle")
+    add(page, "Motors", "thymio_motors_start", below(page, "thymio_event_prox", 30, 40))
+    choose(page, "thymio_motors_start", 0, "turning right on the spot")
+    expect(page, VERDICT).to_have_text("No mistakes")
     page.click("[data-verb=run]")
-    page.wait_for_function(MOVED, arg=[start["x"], start["y"]])
+    watch_it_avoid(page, ros)
     expect(page, "#program-state").to_have_text("running")
+
+    begin(page, "blocks-scratch_start")
+    add(page, "Events", "thymio_touching", far)
+    add(page, "Motion", "thymio_setMotor", below(page, "thymio_touching", 4, 46))
+    choose(page, "thymio_setMotor", 0, "right")
+    page.locator(f"{BLOCKS} .thymio_setMotor .blocklyShadow .blocklyField").click()
+    page.keyboard.type("-50\n")
+    add(page, "Events", "thymio_notouching", (far[0], far[1] + 140))
+    add(page, "Motion", "thymio_setMotor", below(page, "thymio_notouching", 4, 46))
+    expect(page, VERDICT).to_have_text("No mistakes")
+    page.click("[data-verb=run]")
+    watch_it_avoid(page, ros)
 
 
 def test_blocks_are_put_together_by_keys_and_run_one_by_one(blocks):

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.tracks import assert_avoids
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.testing import Classroom, followed_line, no_contact
+from thymio_sim_ros.testing import Classroom, followed_line
 
 FOLDER = Path(__file__).parents[1] / "data" / "web" / "blockly_samples"
 SAMPLES = sorted(path.stem for path in FOLDER.glob("*.aseba"))
@@ -32,11 +33,7 @@ def test_the_line_is_followed(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["avoid", "scratch_avoid"])
 def test_things_are_avoided(name: str) -> None:
-    (thymio,) = Classroom("arena", sample(name))
-    start = thymio.pose
-    thymio.run(60.0)
-    assert no_contact(thymio)
-    assert abs(thymio.pose.x_m - start.x_m) + abs(thymio.pose.y_m - start.y_m) > 0.05
+    assert_avoids(sample(name))
 
 
 def test_a_script_drives_a_square() -> None:

@@ -16,6 +16,7 @@ from tests.web_ui.page_support import (
     open_page,
     open_tab,
     wait_for_service,
+    watch_it_avoid,
 )
 
 pytestmark = MARKS
@@ -27,6 +28,15 @@ onevent timer0
 count = count + 1
 if count > 30000 then
 count = 0
+end
+"""
+
+AVOIDER = """\
+onevent prox
+motor.left.target = 200
+motor.right.target = 200
+if prox.horizontal[0] > 0 or prox.horizontal[2] > 1500 then
+motor.right.target = -200
 end
 """
 
@@ -82,7 +92,7 @@ def edit_variable(page, name, text):
     return value
 
 
-def test_a_broken_program_is_marked_while_it_is_typed_and_a_good_one_runs(editor):
+def test_a_broken_program_is_marked_while_it_is_typed_and_one_that_avoids_runs(editor, ros):
     write(editor, "onevent prox\nmotor.left.targt = 1\n")
     expect(editor, ".verdict").to_have_text("1 mistake, line 2")
     expect(editor, CARD).to_contain_text("motor.left.target")
@@ -96,6 +106,11 @@ def test_a_broken_program_is_marked_while_it_is_typed_and_a_good_one_runs(editor
     editor.keyboard.press("F9")
     editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
     editor.wait_for_function("() => Number(document.querySelector('[data-variable=count]')?.textContent) > 2")
+
+    write(editor, AVOIDER)
+    expect(editor, ".verdict").to_contain_text("No mistakes")
+    editor.get_by_role("button", name="Run program").click()
+    watch_it_avoid(editor, ros)
 
 
 def test_a_breakpoint_stops_the_program_and_it_is_stepped_by_lines(editor):

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from aseba_vm.languages import LANGUAGES, texts
+from tests.tracks import assert_avoids
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.testing import Classroom, followed_line, no_contact
+from thymio_sim_ros.testing import Classroom, followed_line
 
 FOLDER = Path(__file__).parents[2] / "web_ui" / "program_tab" / "skeletons"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.aseba"))
@@ -48,8 +49,4 @@ def test_the_line_is_followed() -> None:
 
 
 def test_things_are_avoided() -> None:
-    (thymio,) = Classroom("arena", load_program(skeleton("avoid"), "avoid"))
-    start = thymio.pose
-    thymio.run(60.0)
-    assert no_contact(thymio)
-    assert abs(thymio.pose.x_m - start.x_m) + abs(thymio.pose.y_m - start.y_m) > 0.05
+    assert_avoids(load_program(skeleton("avoid"), "avoid"))

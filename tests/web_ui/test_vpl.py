@@ -20,13 +20,13 @@ from tests.web_ui.page_support import (
     open_page,
     open_tab,
     wait_for_frame,
+    watch_it_avoid,
 )
 from tests.web_ui.test_page_access import AXE, FINDINGS
 
 pytestmark = MARKS
 
 FILES = Path(__file__).parents[1] / "data" / "web" / "vpl"
-PLACE = "() => { const { x, y } = window.thymio.state().robot.latest.pose; return [x, y]; }"
 ROWS = "() => document.querySelectorAll('.vpl-row').length"
 
 
@@ -104,10 +104,10 @@ def set_slider(page: Any, look: str, value: str) -> None:
     raise AssertionError(f"{look} never showed {value}")
 
 
-def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page):
+def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page, ros):
     page.set_viewport_size({"width": 1280, "height": 900})
-    open_page(page, suite("--playground", "arena", "--program", "none"))
-    page.add_script_tag(path=str(AXE))
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.add_script_tag(content=AXE.read_text(encoding="utf-8"))
     begin(page, "empty")
     assert page.evaluate(FINDINGS) == []
 
@@ -128,7 +128,7 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     set_slider(page, "right", "200")
     assert page.evaluate(FINDINGS) == []
     close_sheet(page)
-    expect(page, ".vpl-code").to_contain_text("motor.left.target = 200")
+    expect(page, ".program-code").to_contain_text("motor.left.target = 200")
 
     # the second row: near in the middle; then one like it is an error at its place
     drag(page, "[data-new-block=prox]", "[data-row='1'] .vpl-slot.event")
@@ -157,15 +157,11 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     drag(page, place(1, "actions", 1), ".vpl-palette.action")
     assert blocks(page, 1) == ["prox", "move"]
 
-    # it runs, its rows flash, and the robot drives
-    page.wait_for_function("() => window.thymio.state().robot.latest.pose !== undefined")
-    start = page.evaluate(PLACE)
+    # it runs, its rows flash, and the robot avoids
     page.get_by_role("button", name="Run program").click()
     expect(page, "#program-state").to_have_attribute("data-state", "running")
     page.wait_for_function("() => document.querySelector('.vpl-ran:not([hidden])') !== null")
-    page.wait_for_function(
-        f"([x, y]) => {{ const [a, b] = ({PLACE})(); return Math.hypot(a - x, b - y) > 0.03; }}", arg=start
-    )
+    watch_it_avoid(page, ros)
 
     # as text, read-only; turned into text; back
     page.locator("[data-language=text]").click()
@@ -223,7 +219,7 @@ def phone(browser) -> Iterator[Any]:
     yield from checked_page(browser, has_touch=True, viewport={"width": 390, "height": 844})
 
 
-def test_a_program_is_built_by_fingers_on_a_phone(suite, phone):
+def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(suite, phone):
     open_page(phone, suite("--playground", "base", "--program", "none"))
     begin(phone, "buttons")
     assert blocks(phone, 0) == ["button", "move", "colortop"]
@@ -246,7 +242,20 @@ def test_a_program_is_built_by_fingers_on_a_phone(suite, phone):
     assert 0 <= box["x"] <= 390 - box["width"]
     close_sheet(phone)
     expect(phone, place(0, "event")).to_have_attribute("aria-label", "Buttons: forward, left")
-    phone.add_script_tag(path=str(AXE))
+    phone.add_script_tag(content=AXE.read_text(encoding="utf-8"))
+    assert phone.evaluate(FINDINGS) == []
+
+    choose_in_file_menu(phone, "new")
+    phone.locator("[data-new=blocks-empty]").tap()
+    phone.locator(".blocklyToolboxCategory", has_text="Motors").tap()
+    new = ".blocklyFlyout:visible .thymio_motors_start"
+    phone.locator(new).first.wait_for()
+    box, area = (phone.locator(each).first.bounding_box() for each in (new, ".blocks-place"))
+    fingers.start(a=(box["x"] + 4, box["y"] + 20))
+    fingers.move(a=(area["x"] + 60, area["y"] + 60))
+    fingers.end()
+    expect(phone, ".blocklyBlockCanvas > .thymio_motors_start:visible").to_have_count(1)
+    expect(phone, ".blocks-verdict").to_have_text("No mistakes")
     assert phone.evaluate(FINDINGS) == []
 
 

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.tracks import assert_avoids
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
-from thymio_sim_ros.testing import Classroom, followed_line, no_contact, shows
+from thymio_sim_ros.testing import Classroom, followed_line, shows
 from thymio_sim_ros.testing.thymio import Thymio
 from web_ui import build
 
@@ -42,11 +43,7 @@ def test_each_sample_compiles(samples: dict[str, ThymioProgram]) -> None:
 
 
 def test_things_are_avoided(samples: dict[str, ThymioProgram]) -> None:
-    thymio = robot(samples["avoid"], "arena")
-    start = thymio.pose
-    thymio.run(40)
-    assert no_contact(thymio)
-    assert math.hypot(thymio.pose.x_m - start.x_m, thymio.pose.y_m - start.y_m) > 0.05
+    assert_avoids(samples["avoid"])
 
 
 def test_the_line_is_followed(samples: dict[str, ThymioProgram]) -> None:

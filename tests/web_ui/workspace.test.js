@@ -3,16 +3,7 @@ import { test } from "node:test";
 
 import { isLow, layoutOf, workRange, workWidth } from "../../web_ui/shell/layout.js";
 import { Workspace } from "../../web_ui/shell/workspace.js";
-
-/** A storage as browsers have it. @param {Record<string, string>} [kept] */
-function storage(kept = {}) {
-  const values = new Map(Object.entries(kept));
-  return {
-    getItem: (/** @type {string} */ key) => values.get(key) ?? null,
-    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void values.set(key, value),
-    removeItem: (/** @type {string} */ key) => void values.delete(key),
-  };
-}
+import { newStorage } from "./support.js";
 
 test("layouts by width", () => {
   assert.deepEqual([390, 600, 899, 900, 1024, 1180, 1181, 1280].map(layoutOf), [
@@ -39,7 +30,7 @@ test("the stage keeps at least 480 px, the workspace at most 60 %", () => {
 });
 
 test("the first visit is closed; the tab is kept", () => {
-  const kept = storage();
+  const kept = newStorage();
   const first = new Workspace(kept);
   assert.deepEqual([first.tab, first.screen], [null, "drive"]);
   first.select("program");
@@ -49,7 +40,7 @@ test("the first visit is closed; the tab is kept", () => {
 });
 
 test("each tab keeps its own width", () => {
-  const workspace = new Workspace(storage());
+  const workspace = new Workspace(newStorage());
   workspace.select("robot");
   workspace.setWidth(500.4);
   workspace.select("program");
@@ -60,7 +51,7 @@ test("each tab keeps its own width", () => {
 });
 
 test("the class is offered with several robots, and left with the last but one", () => {
-  const workspace = new Workspace(storage());
+  const workspace = new Workspace(newStorage());
   let reports = 0;
   workspace.subscribe(() => (reports += 1));
   workspace.select("class");
@@ -72,7 +63,7 @@ test("the class is offered with several robots, and left with the last but one",
 });
 
 test("a kept class tab waits until there are several robots", () => {
-  const workspace = new Workspace(storage({ "workspace.tab": "class" }));
+  const workspace = new Workspace(newStorage({ "workspace.tab": "class" }));
   assert.equal(workspace.tab, null);
   workspace.offerClass(true);
   assert.equal(workspace.tab, "class");

@@ -1,18 +1,17 @@
 // Command: prints the Aseba text that is generated for the blocks of a file.
 
-import { readFileSync, realpathSync } from "node:fs";
-import { pathToFileURL } from "node:url";
+import { readFileSync } from "node:fs";
 
 import { LANGUAGES, translator } from "../i18n/index.js";
 import texts from "../i18n/blockly.texts.js";
+import { parseArguments, runAsCommand } from "../program_tab/command_line.js";
 import { importSb3 } from "../scratch/import_sb3.js";
 import { difference } from "./compare.js";
 import { readFile } from "./file.js";
 import { generate } from "./generator.js";
 import { fileProblemText, problemText, scratchText } from "./messages.js";
 
-/** @typedef {{ output: string, errors: string, exit: 0 | 1 | 2 }} Answer */
-/** @typedef {{ path: string | null, compare: boolean, language: string }} Options */
+/** @typedef {import("../program_tab/command_line.js").Answer} Answer */
 /** @typedef {import("./state.js").WorkspaceState} WorkspaceState */
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 
@@ -80,25 +79,4 @@ function generated(path, state, t) {
   return { output: code, errors, exit: problems.some(({ severity }) => severity === "error") ? 1 : 0 };
 }
 
-/** @param {string[]} command  @returns {Options | null} */
-function parseArguments(command) {
-  const rest = [...command];
-  const options = { compare: false, language: "en" };
-  /** @type {string[]} */ const paths = [];
-  while (rest.length > 0) {
-    const word = /** @type {string} */ (rest.shift());
-    if (word === "-h" || word === "--help") return { path: null, ...options };
-    if (word === "--compare") options.compare = true;
-    else if (word === "--lang") options.language = rest.shift() ?? "";
-    else if (word.startsWith("-") && word !== "-") return null;
-    else paths.push(word);
-  }
-  return paths.length === 1 && options.language in LANGUAGES ? { path: paths[0], ...options } : null;
-}
-
-if (process.argv[1] !== undefined && import.meta.url === pathToFileURL(realpathSync(process.argv[1])).href) {
-  const { output, errors, exit } = await run(process.argv.slice(2));
-  process.stdout.write(output);
-  process.stderr.write(errors);
-  process.exitCode = exit;
-}
+await runAsCommand(import.meta.url, run);

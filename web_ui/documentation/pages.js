@@ -11,6 +11,7 @@ const SHEETS = ["../styles/tokens.css", "./documentation.css"];
 /** Name of the shipped page → its source, in the order of the index. */
 export const SOURCES = {
   "web-ui": "docs/web-ui.md",
+  "from-blocks-to-ros": "docs/from-blocks-to-ros.md",
   blockly: "docs/blockly.md",
   behaviors: "docs/behaviors.md",
   playgrounds: "playgrounds/README.md",

@@ -30,7 +30,7 @@ export class EditorSession {
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));
     /** @type {import("../program_tab/toolbox_file.js").Toolbox} what a teacher's file hides */
     this.toolbox = readToolbox(storage.getItem(TOOLBOX_KEY) ?? "").toolbox ?? WHOLE;
-    /** @type {import("../blockly/view/index.js").KeptBlocks | null} of the last view of blocks */
+    /** @type {import("../blockly/view/document.js").KeptBlocks | null} of the last view of blocks */
     this.blocks = null;
     /** @type {{ text: string, leftOut: readonly string[] } | null} the last file of another program */
     this.imported = null;

@@ -3,6 +3,7 @@
 
 import { h, setAttribute } from "./dom.js";
 import { icon } from "./icons.js";
+import { watchListKeys } from "./list_keys.js";
 import { makeSheet } from "./sheet.js";
 
 /**
@@ -65,15 +66,7 @@ export function menu({ id, button, label, isChoice = false, entries }) {
   list.addEventListener("beforetoggle", (event) => {
     if (/** @type {ToggleEvent} */ (event).newState === "open") fill();
   });
-  list.addEventListener("keydown", (event) => {
-    const all = rows();
-    const at = all.indexOf(/** @type {HTMLElement} */ (document.activeElement));
-    const to = { ArrowDown: at + 1, ArrowUp: at - 1 + all.length, Home: 0, End: all.length - 1 }[event.key];
-    if (to === undefined) return;
-    event.preventDefault();
-    event.stopPropagation();
-    all[to % all.length]?.focus();
-  });
+  watchListKeys(list, rows);
   return {
     element: h("span", { class: "menu" }, button, list),
     list,

@@ -1,17 +1,17 @@
 // Command: prints the Aseba text that is generated for the VPL program of a file (docs/vpl.md).
 
-import { readFileSync, realpathSync } from "node:fs";
-import { pathToFileURL } from "node:url";
+import { readFileSync } from "node:fs";
 
 import { LANGUAGES, translator } from "../i18n/index.js";
 import texts from "../i18n/vpl.texts.js";
+import { parseArguments, runAsCommand } from "../program_tab/command_line.js";
 import { compareText } from "./compare.js";
 import { VplError } from "./errors.js";
 import { readVpl } from "./file.js";
 import { generate } from "./generator.js";
 
 /** @typedef {import("./program.js").Finding} Finding */
-/** @typedef {{ output: string, errors: string, exit: 0 | 1 | 2 }} Answer */
+/** @typedef {import("../program_tab/command_line.js").Answer} Answer */
 
 const USAGE = `usage: node web_ui/vpl/cli.js [--compare] [--lang CODE] FILE
 
@@ -56,30 +56,9 @@ export function run(command, read = readText) {
   }
 }
 
-/** @param {string[]} command  @returns {{ path: string | null, compare: boolean, language: string } | null} */
-function parseArguments(command) {
-  const rest = [...command];
-  const options = { compare: false, language: "en" };
-  /** @type {string[]} */ const paths = [];
-  while (rest.length > 0) {
-    const word = /** @type {string} */ (rest.shift());
-    if (word === "-h" || word === "--help") return { path: null, ...options };
-    if (word === "--compare") options.compare = true;
-    else if (word === "--lang") options.language = rest.shift() ?? "";
-    else if (word.startsWith("-") && word !== "-") return null;
-    else paths.push(word);
-  }
-  return paths.length === 1 && options.language in LANGUAGES ? { path: paths[0], ...options } : null;
-}
-
 /** @param {string} path */
 function readText(path) {
   return readFileSync(path === "-" ? 0 : path, "utf8");
 }
 
-if (process.argv[1] !== undefined && import.meta.url === pathToFileURL(realpathSync(process.argv[1])).href) {
-  const { output, errors, exit } = run(process.argv.slice(2));
-  process.stdout.write(output);
-  process.stderr.write(errors);
-  process.exitCode = exit;
-}
+await runAsCommand(import.meta.url, run);

@@ -17,6 +17,9 @@ const HIGH_PX = 440;
 /** Distance of a program from the corner, in pixels of the page. */
 const MARGIN_PX = 20;
 
+/** Attributes that describe an element to screen readers. */
+const DESCRIBING = ["aria-roledescription", "aria-label"];
+
 /** @type {History} */
 const NO_HISTORY = { undo: [], redo: [] };
 
@@ -42,7 +45,7 @@ export class BlocksField {
     this.sizes = new ResizeObserver(() => this.resize());
     this.sizes.observe(place);
     this.roles = new MutationObserver(tidyNewBlocks);
-    this.roles.observe(place, { subtree: true, attributeFilter: ["role"] });
+    this.roles.observe(place, { subtree: true, attributeFilter: ["role", ...DESCRIBING] });
     useDialogs(Blockly, t);
     /** Blocks exist in the language of the page. */
     this.ready = defineBlocks(language, t);
@@ -197,13 +200,16 @@ export class BlocksField {
 }
 
 /**
- * New blocks are options of a list, which may not have anything else in it: Blockly's places for blocks are none.
+ * New blocks are options of a list, which may not have anything else in it: Blockly's places for blocks, and the blocks
+ * in them, are none. An element with a description would count in spite of that role.
  *
  * @param {readonly MutationRecord[]} changes
  */
 function tidyNewBlocks(changes) {
   for (const { target } of changes) {
-    if (!(target instanceof Element) || target.getAttribute("role") !== "figure") continue;
-    if (target.closest(".blocklyFlyout") !== null) target.setAttribute("role", "none");
+    if (!(target instanceof Element) || target.closest(".blocklyFlyout") === null) continue;
+    if (target.getAttribute("role") === "figure") target.setAttribute("role", "none");
+    if (target.getAttribute("role") !== "none") continue;
+    for (const name of DESCRIBING) target.removeAttribute(name);
   }
 }

@@ -8,6 +8,16 @@ import { generate, linesOfBlock } from "../generator.js";
 import { sameWorkspace } from "../state.js";
 
 /** @typedef {import("../state.js").WorkspaceState} WorkspaceState */
+/**
+ * Blocks of a file as Blockly had them, for a view that is created again: for another look, or another language.
+ *
+ * @typedef {object} KeptBlocks
+ * @property {string} text
+ * @property {boolean} isOther   whether the program of the file was another one
+ * @property {import("../toolbox.js").Look | null} chosen   by the user
+ * @property {WorkspaceState} state
+ * @property {import("./blocks_field.js").History} history
+ */
 
 export class BlocksDocument {
   /** @type {readonly (string | null)[] | null} */ #blocks = null;

@@ -1,11 +1,11 @@
 // What is around the blocks: the bar, the notice, the text, the foot, and the choice of the look.
 
+import { textPane } from "../../program_tab/text_pane.js";
 import { h } from "../../ui/dom.js";
 import { blocksBar } from "./bar.js";
 import { blocksFoot } from "./foot.js";
 import { lookChoice } from "./look_choice.js";
 import { fileNotice } from "./notice.js";
-import { textPanel } from "./text_panel.js";
 
 /** @typedef {import("../../i18n/index.js").Translate} Translate */
 
@@ -27,11 +27,10 @@ export function blocksFrame(options) {
   const hint = h("p", { class: "blocks-hint", hidden: true }, t("view.empty"));
   const bar = blocksBar({ t, editorText, commands, undo, toggleText });
   const notice = fileNotice({ t, adopt });
-  const turn = () => void commands.detach();
-  const panel = textPanel({ t, turnText: editorText("detach.turn"), turn, choose: chooseLine });
+  const pane = textPane({ t: editorText, turn: () => void commands.detach(), choose: chooseLine });
   const foot = blocksFoot(goToMistake);
   const looks = lookChoice({ t, choose: chooseLook });
-  const body = h("div", { class: "blocks-body" }, h("div", { class: "blocks-frame" }, area, hint), panel.element);
+  const body = h("div", { class: "blocks-body" }, h("div", { class: "blocks-frame" }, area, hint), pane.element);
   const element = h("div", { class: "blocks" }, notice.element, body, foot.element);
-  return { element, area, hint, bar, notice, panel, foot, looks };
+  return { element, area, hint, bar, notice, pane, foot, looks };
 }

@@ -31,16 +31,6 @@ export { withoutBlocks as withoutPicture };
 /** @typedef {import("../../program_tab/tab.js").Parts} Parts */
 /** @typedef {import("../../hosts/program_host.js").ProgramView} ProgramView */
 /** @typedef {import("../toolbox.js").Look} Look */
-/**
- * Blocks of a file as Blockly had them, for a view that is created again: for another look, or another language.
- *
- * @typedef {object} KeptBlocks
- * @property {string} text
- * @property {boolean} isOther   whether the program of the file was another one
- * @property {Look | null} chosen   by the user
- * @property {import("../state.js").WorkspaceState} state
- * @property {import("./blocks_field.js").History} history
- */
 
 const LOOK_KEY = "program.look";
 const TEXT_KEY = "program.blocksText";
@@ -62,8 +52,7 @@ class BlocksView {
   /** @param {Parts} parts */
   constructor(parts) {
     const { t: editorText, context, session, commands, redraw } = parts;
-    const { language } = context;
-    const t = translator(language, WORDS);
+    const t = translator(context.language, WORDS);
     this.parts = parts;
     this.t = t;
     this.#document = new BlocksDocument(session.workspace.current.text);
@@ -86,7 +75,7 @@ class BlocksView {
     this.field = new BlocksField({
       place: frame.area,
       t,
-      language,
+      language: context.language,
       changed: () => this.#changed(),
       selected: (id) => {
         this.#selected = id;
@@ -94,7 +83,7 @@ class BlocksView {
       },
     });
     this.checker = new ProgramChecker({
-      language,
+      language: context.language,
       runtime: context.actions.runtime,
       workspace: session.workspace,
       found: ({ verdict }) => {
@@ -175,11 +164,9 @@ class BlocksView {
     this.#place = selection.isTextRunning ? runPlace(values, document.blocks, context.language) : NOWHERE;
     if (this.#isLoaded) this.field.highlight(this.#place.block);
     if (this.#place.fault !== before) this.#showMistakes();
-    this.frame.panel.element.hidden = !this.#isTextShown;
-    if (this.#isTextShown) {
-      const selected = this.#selected === null ? null : document.linesOf(this.#selected);
-      this.frame.panel.render({ program: document.code, selected, running: this.#place.line });
-    }
+    const selected = this.#selected === null ? null : document.linesOf(this.#selected);
+    const [isShown, about] = [this.#isTextShown, this.t("view.marked")];
+    this.frame.pane.render({ isShown, text: document.code, selected, about, running: this.#place.line });
     this.frame.hint.hidden = !this.#isLoaded || !document.canEdit || !isEmpty(document.state);
   }
 
@@ -297,9 +284,10 @@ class BlocksView {
     const faults = fault === "" ? [] : [{ id: block, text: t("view.fault", { text: fault }) }];
     if (this.#isLoaded) this.field.mark([...this.#mistakes, ...faults]);
     const words = summary(this.#mistakes, t);
-    if (words !== "") this.frame.foot.report(words, this.hasMistake() ? "error" : "warning");
-    else if (faults.length > 0) this.frame.foot.report(faults[0].text, "error");
-    else this.frame.foot.report(this.#isChecked ? editorText("mistakes.none") : "", this.#isChecked ? "good" : "");
+    const { foot } = this.frame;
+    if (words !== "") foot.report(words, this.hasMistake() ? "error" : "warning");
+    else if (faults.length > 0) foot.report(faults[0].text, "error");
+    else foot.report(this.#isChecked ? editorText("mistakes.none") : "", this.#isChecked ? "good" : "");
     if (words !== "" && words !== before) parts.context.announce(words);
   }
 }

@@ -141,6 +141,13 @@ export class VplEditing {
     return { text: code, source: source?.text.trimEnd() === code.trimEnd() ? source : null };
   }
 
+  /** The lines of the selected row in that text, from 0. */
+  get selectedLines() {
+    const rows = this.shown.source?.rows ?? [];
+    const lines = this.selected === null ? null : (rows[this.selected] ?? null);
+    return lines === null ? null : { first: lines.first - 1, last: lines.last - 1 };
+  }
+
   /** The row that a line of the text belongs to. @param {number} line  from 1 */
   rowOf(line) {
     const { source } = this.shown;

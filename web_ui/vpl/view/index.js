@@ -10,6 +10,7 @@
 import { trySetItem } from "../../browser/local_storage.js";
 import { translator } from "../../i18n/index.js";
 import TEXTS from "../../i18n/vpl.texts.js";
+import { textPane } from "../../program_tab/text_pane.js";
 import { h, setText } from "../../ui/dom.js";
 import { blockAt, changeBlock } from "../edits.js";
 import { withoutVpl } from "../file.js";
@@ -28,7 +29,6 @@ import { questionNotices } from "./questions.js";
 import { rowMenu } from "./row_menu.js";
 import { rowList } from "./rows.js";
 import { sampleText } from "./samples.js";
-import { textPane } from "./text_pane.js";
 
 import "./vpl.css";
 
@@ -84,9 +84,10 @@ class VplView {
     this.menu = rowMenu({ t, act: (verb, row) => commands.actOnRow(verb, row) });
     this.notices = noticeList();
     this.pane = textPane({
-      t,
+      t: parts.t,
+      empty: t("pane.empty"),
       turn: () => void parts.commands.detach(),
-      choose: (line) => commands.select(editing.rowOf(line)),
+      choose: (line) => commands.select(editing.rowOf(line + 1)),
     });
     this.status = h("p", { class: "vpl-status", hidden: true });
     this.controls = vplBar({
@@ -174,8 +175,8 @@ class VplView {
     const refusal = editing.question === null ? editing.refusal : null;
     this.rows.render({ program, refusal, selected, slot: commands.slot, isPasting: commands.isPasting });
     this.#showNotices();
-    const { text, source } = editing.shown;
-    this.pane.render({ isShown: isTextShown, text, source, row: selected });
+    const about = selected === null ? "" : t("pane.marked", { row: selected + 1 });
+    this.pane.render({ isShown: isTextShown, text: editing.shown.text, selected: editing.selectedLines, about });
     if (this.#edited !== null) {
       const button = this.rows.element.querySelector(`[data-place="${written(this.#edited)}"]`);
       this.sheet.update(blockAt(program, placeOf(this.#edited)), mode, button);

@@ -2,6 +2,7 @@
 
 import { h, lock } from "../../ui/dom.js";
 import { icon } from "../../ui/icons.js";
+import { watchListKeys } from "../../ui/list_keys.js";
 import { openBeside } from "./open_beside.js";
 
 /** @typedef {"copy" | "insert" | "up" | "down"} RowVerb */
@@ -42,15 +43,7 @@ export function rowMenu({ t, act }) {
     { id: "vpl-row-menu", class: "sheet vpl-row-menu", popover: "auto", role: "menu", "aria-label": t("row", { row: 1 }) },
     ...entries,
   );
-  element.addEventListener("keydown", (event) => {
-    const all = entries.filter(({ disabled }) => !disabled);
-    const at = all.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
-    const to = { ArrowDown: at + 1, ArrowUp: at - 1 + all.length, Home: 0, End: all.length - 1 }[event.key];
-    if (to === undefined) return;
-    event.preventDefault();
-    event.stopPropagation();
-    all[to % all.length]?.focus();
-  });
+  watchListKeys(element, () => entries.filter(({ disabled }) => !disabled));
   return {
     element,
     /** @param {number} index @param {number} last  index of the last row, which is empty @param {Element} button */

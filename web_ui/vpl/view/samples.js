@@ -33,12 +33,10 @@ const SAMPLES = {
   avoid: {
     mode: "basic",
     rows: [
-      { when: near(FAR, FAR, FAR, FAR, FAR), do: [["move", 200, 200], top(GREEN)] },
-      { when: near(NEAR), do: [["move", 150, -150], top(RED)] },
-      { when: near(0, NEAR), do: [["move", 150, -150], top(RED)] },
-      { when: near(0, 0, NEAR), do: [["move", 150, -150], top(RED)] },
-      { when: near(0, 0, 0, NEAR), do: [["move", -150, 150], top(RED)] },
-      { when: near(0, 0, 0, 0, NEAR), do: [["move", -150, 150], top(RED)] },
+      { when: near(FAR, 0, FAR, 0, FAR), do: [["move", 200, 200], top(GREEN)] },
+      { when: near(NEAR), do: [["move", 200, -200], top(RED)] },
+      { when: near(0, 0, NEAR), do: [["move", 200, -200], top(RED)] },
+      { when: near(0, 0, 0, 0, NEAR), do: [["move", 200, -200], top(RED)] },
     ],
   },
   line: {
