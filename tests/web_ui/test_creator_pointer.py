@@ -76,7 +76,7 @@ def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_g
     wait_for_items(page, 3)
     page.mouse.move(*spot(page, -0.3, 0.2))
     page.wait_for_function("Math.abs(window.thymio.built().placing.place[0] + 0.3) < 0.01")
-    page.mouse.wheel(0, 120)
+    page.mouse.wheel(0, 120 * page.evaluate("devicePixelRatio"))  # one notch
     playwright.expect(page.locator(".creator-bar .status")).to_contain_text("-15°")
     page.keyboard.down("Alt")
     click(page, -0.313, 0.207)
