@@ -32,6 +32,7 @@ from thymio_sim_ros.device.outputs import Outputs
 from thymio_sim_ros.device.programs.load import LoadMeter
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import DeviceStatus
+from thymio_sim_ros.device.robot_device import RobotDevice
 from thymio_sim_ros.device.run_control import RunControl
 from thymio_sim_ros.device.variables import DeviceVariables
 from thymio_sim_ros.sim.commands import Command
@@ -117,6 +118,11 @@ class AsebaDevice:
         return self.services.node_id
 
     @property
+    def radio(self) -> tuple[int, int]:
+        """Channel and network of the radio: robots receive events of their own network only."""
+        return self.services.network
+
+    @property
     def status(self) -> DeviceStatus:
         """State of the machine."""
         return self.run_control.status
@@ -161,6 +167,10 @@ class AsebaDevice:
         self.services.reinitialize()
         self._inputs.clear()
 
+    def restart_settings(self) -> None:
+        """Return to the stored settings, as at power-on."""
+        self.services.settings.restart()
+
     def feed(self, sensor: str, words: Sequence[int], now_ns: int | None = None) -> None:
         """Store the words of a reading (int16) and queue the events that it causes.
 
@@ -195,9 +205,9 @@ class AsebaDevice:
 
         self.variables.measure_on_read(self._inputs.addresses_of(sensors), store)
 
-    def receives_from(self, sender: AsebaDevice) -> bool:
+    def receives_from(self, sender: RobotDevice) -> bool:
         """Whether the radios of both devices are set to the same network."""
-        return self.services.network == sender.services.network
+        return self.radio == sender.radio
 
     def declares(self, event: str) -> bool:
         """Whether the program declares a global event of this name."""

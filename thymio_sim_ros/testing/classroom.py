@@ -121,8 +121,7 @@ class Classroom:
 
     def machine(self, robot: str) -> RobotMachine:
         """The machine of a robot."""
-        host = self.runner.hosts[robot]
-        return _ClassroomMachine(host.device, host.program)
+        return _ClassroomMachine(self.runner.devices[robot], self.runner.hosts[robot].program)
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Load a program, which starts at once."""
