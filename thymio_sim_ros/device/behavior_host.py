@@ -17,12 +17,12 @@ from functools import cache
 from pathlib import Path
 
 from thymio_sim_ros import registry
+from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.programs.foreign import foreign_program
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import OFF
-from thymio_sim_ros.device.robot_device import RobotDevice
 
 __all__ = ["ENTRIES", "MENU", "BehaviorHost", "built_in", "is_internal"]
 
@@ -74,7 +74,7 @@ def built_in(name: str, layout: str = THYMIO) -> ThymioProgram:
 class BehaviorHost:
     """A device and the selection of its program. Invariant: the device runs `program`."""
 
-    def __init__(self, device: RobotDevice) -> None:
+    def __init__(self, device: AsebaDevice) -> None:
         self.device = device
         self.program = load_program("", "none", device.layout)
         self._user_program: ThymioProgram | None = None
@@ -122,7 +122,7 @@ class BehaviorHost:
         if self.device.status.state != OFF or self.program is self._first:
             self.device.run_control.resume()
         else:
-            self.device.restart_settings()
+            self.device.services.settings.restart()
             self._begin()
 
     def pop_events(self) -> list[EmittedEvent]:

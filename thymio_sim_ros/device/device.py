@@ -32,7 +32,6 @@ from thymio_sim_ros.device.outputs import Outputs
 from thymio_sim_ros.device.programs.load import LoadMeter
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import DeviceStatus
-from thymio_sim_ros.device.robot_device import RobotDevice
 from thymio_sim_ros.device.run_control import RunControl
 from thymio_sim_ros.device.variables import DeviceVariables
 from thymio_sim_ros.sim.commands import Command
@@ -185,10 +184,6 @@ class AsebaDevice:
         self.services.reinitialize()
         self._inputs.clear()
 
-    def restart_settings(self) -> None:
-        """Return to the stored settings, as at power-on."""
-        self.services.settings.restart()
-
     def feed(self, sensor: str, words: Sequence[int], now_ns: int | None = None) -> None:
         """Store the words of a reading (int16) and queue the events that it causes.
 
@@ -223,7 +218,7 @@ class AsebaDevice:
 
         self.variables.measure_on_read(self._inputs.addresses_of(sensors), store)
 
-    def receives_from(self, sender: RobotDevice) -> bool:
+    def receives_from(self, sender: AsebaDevice) -> bool:
         """Whether the radios of both devices are set to the same network."""
         return self.radio == sender.radio
 

@@ -13,7 +13,7 @@ from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.sim.commands import Command
 
-__all__ = ["RobotDevice", "RobotLocalEvents", "RobotRunControl", "RobotVariables"]
+__all__ = ["RobotDevice", "RobotHost", "RobotLocalEvents", "RobotRunControl", "RobotVariables"]
 
 
 class RobotVariables(Protocol):
@@ -117,15 +117,6 @@ class RobotDevice(Protocol):
     def is_due(self) -> bool:
         """Whether `run` or `pop_commands` has anything to do."""
 
-    def load(self, program: ThymioProgram, *, warm: bool = False, initial_event: EmittedEvent | None = None) -> None:
-        """Replace the program and start it."""
-
-    def reinitialize(self) -> None:
-        """Return to the state of a new robot, before `load`."""
-
-    def restart_settings(self) -> None:
-        """Return to the stored settings, as at power-on."""
-
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store the words of a reading."""
 
@@ -146,3 +137,33 @@ class RobotDevice(Protocol):
 
     def pop_events(self) -> list[EmittedEvent]:
         """Return and clear the emitted events, in order."""
+
+
+class RobotHost(Protocol):
+    """The selection of a robot's program; implemented by `BehaviorHost` and `RemoteHost`."""
+
+    @property
+    def device(self) -> RobotDevice:
+        """The robot."""
+
+    @property
+    def program(self) -> ThymioProgram:
+        """The program that the robot runs."""
+
+    def load(self, program: ThymioProgram) -> None:
+        """Load a user program and start it."""
+
+    def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
+        """Switch the robot on with a built-in program."""
+
+    def restart(self) -> None:
+        """Repeat the last `load` or `start` with a new robot."""
+
+    def resume(self) -> None:
+        """Continue execution; switch a robot that is off on."""
+
+    def pop_events(self) -> list[EmittedEvent]:
+        """Return and clear the emitted events for other robots."""
+
+    def pop_notices(self) -> list[str]:
+        """Return and clear the notices for the user."""

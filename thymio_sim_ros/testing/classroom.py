@@ -121,7 +121,8 @@ class Classroom:
 
     def machine(self, robot: str) -> RobotMachine:
         """The machine of a robot."""
-        return _ClassroomMachine(self.runner.devices[robot], self.runner.hosts[robot].program)
+        host = self.runner.hosts[robot]
+        return _ClassroomMachine(host.device, host.program)
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Load a program, which starts at once."""

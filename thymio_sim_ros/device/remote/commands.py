@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from aseba_vm import TargetDescription
-from thymio_sim_ros.device.remote.ros_handlers import served_natives
 from thymio_sim_ros.device.remote.session import Session
 from thymio_sim_ros.sim.actuators.motors import wheel_speeds
 from thymio_sim_ros.sim.commands import (
@@ -68,12 +66,6 @@ class RemoteCommands:
         self._session = session
         self._override: _Override | None = None
 
-    @staticmethod
-    def missing(kinds: Sequence[str], target: TargetDescription) -> tuple[str, ...]:
-        """Return those of these variables and native functions that a robot lacks, or that cannot be called."""
-        known = {*target.addresses, *served_natives(target)}
-        return tuple(name for name in kinds if name not in known)
-
     def execute(self, command: Command, now_ns: int) -> None:
         """Execute a command. Raises ValueError if the robot cannot do that, or cannot do it now."""
         if self._session.node is None:
@@ -86,6 +78,8 @@ class RemoteCommands:
                 self._drive_for(command, now_ns)
             case SetLeds(group, levels) if group in LED_NATIVES:
                 self._call(LED_NATIVES[group], levels)
+            case SetLeds(levels=levels) if not any(levels):
+                pass  # the lights of battery and card are the robot's own
             case SetLed(number, level):
                 self._call("_leds.set", (number, level))
             case PlayTone(frequency_hz, duration_ns):

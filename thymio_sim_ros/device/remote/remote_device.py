@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 
+from thymio_sim_ros.device.behavior_host import built_in, is_internal
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.notices import Notices
 from thymio_sim_ros.device.programs.load import LoadMeter
-from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.device.remote.ros_handlers import extended
 from thymio_sim_ros.device.remote.run_control import RemoteRunControl
@@ -16,7 +17,7 @@ from thymio_sim_ros.device.remote.session import Session
 from thymio_sim_ros.device.remote.variables import RemoteVariables
 from thymio_sim_ros.sim.commands import Command
 
-__all__ = ["RemoteDevice"]
+__all__ = ["RemoteDevice", "RemoteHost"]
 
 MAX_EVENTS = 256
 """Events of the robot that wait for the owner; further ones are lost, with a notice."""
@@ -54,6 +55,8 @@ class RemoteDevice:
         self.variables = RemoteVariables(session)
         self.run_control = RemoteRunControl(session)
         self.local_events = RemoteLocalEvents(self.notices)
+        self.on_run: Callable[[], None] = lambda: None
+        """Called where a simulated robot would run: whatever waits to be sent is sent then."""
         self._session, self._number = session, number
         self._events: list[EmittedEvent] = []
 
@@ -77,27 +80,17 @@ class RemoteDevice:
         """Whether events wait for the owner."""
         return bool(self._events)
 
-    def load(self, program: ThymioProgram, *, warm: bool = False, initial_event: EmittedEvent | None = None) -> None:
-        """Load a program and start it; a robot that is not connected gets it later.
+    def load(self, program: ThymioProgram) -> None:
+        """Load a program and start it; a robot that is not connected gets it from its owner when it is.
 
-        The reset of a real robot clears its variables; `warm` has no effect. Raises ValueError for a program of another
-        layout.
+        Raises ValueError for a program of another layout.
         """
         if program.layout != self.layout:
             raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
         longer = extended(program, target(self.layout))
         if longer.problem:
             self.notices.add(f"program {program.name}: ROS cannot set lights and sounds beside it: {longer.problem}")
-        self._session.load(longer)
-        self.run_control.begin()
-        if initial_event is not None and self.declares(initial_event.name):
-            self.receive_event(initial_event.name, initial_event.args)
-
-    def reinitialize(self) -> None:
-        """Do nothing: a load restarts the program."""
-
-    def restart_settings(self) -> None:
-        """Do nothing: the robot keeps its settings."""
+        self.run_control.load(longer)
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Do nothing: the robot has sensors of its own."""
@@ -127,7 +120,8 @@ class RemoteDevice:
         """Do nothing: the robot has a clock of its own."""
 
     def run(self, budget: int) -> None:
-        """Do nothing: the robot executes its program itself."""
+        """Send what waits to be sent; the robot executes its program itself."""
+        self.on_run()
 
     def pop_commands(self) -> list[Command]:
         """Return no commands: the robot executes them itself."""
@@ -137,3 +131,39 @@ class RemoteDevice:
         """Return and clear the emitted events, in order."""
         events, self._events = self._events, []
         return events
+
+
+class RemoteHost:
+    """The selection of a remote robot's program; there is no menu. Invariant: the robot runs `program`."""
+
+    def __init__(self, device: RemoteDevice) -> None:
+        self.device = device
+        self.program = load_program("", "none", device.layout)
+
+    def load(self, program: ThymioProgram) -> None:
+        """Load a user program and start it. Raises ValueError for a program of another layout."""
+        self.program = program
+        self.device.load(program)
+
+    def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
+        """Start a built-in program, from which no other can be started.
+
+        Raises FileNotFoundError if there is none of this name, ProgramError if it uses what the robot does not have.
+        """
+        self.load(built_in(name, self.device.layout))
+
+    def restart(self) -> None:
+        """Load the program again."""
+        self.load(self.program)
+
+    def resume(self) -> None:
+        """Continue execution; switch a robot that is off on."""
+        self.device.run_control.resume()
+
+    def pop_events(self) -> list[EmittedEvent]:
+        """Return and clear the emitted events."""
+        return [event for event in self.device.pop_events() if not is_internal(event.name)]
+
+    def pop_notices(self) -> list[str]:
+        """Return and clear the notices for the user."""
+        return self.device.notices.pop()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from aseba_vm import TargetDescription
 from aseba_vm.protocol import Message, reports
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device.layout import described, target
@@ -46,6 +47,16 @@ class RemoteRobot:
         """What the robot calls itself, and its number."""
         node = self._session.node
         return "" if node is None else f"{node.description.name} (node {node.number}, protocol {node.version})"
+
+    @property
+    def target(self) -> TargetDescription:
+        """What the robot has described; before, a Thymio II."""
+        return target(self.device.layout)
+
+    @property
+    def problem(self) -> str:
+        """Why the robot is not connected."""
+        return self._session.problem
 
     def start(self, now_ns: int) -> None:
         """Begin on a new stream; `now_ns` is of a monotonic clock, here and elsewhere."""

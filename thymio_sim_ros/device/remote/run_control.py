@@ -27,7 +27,7 @@ from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.programs.breakpoints import Breakpoints
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.device.programs.status import FAULT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus
-from thymio_sim_ros.device.remote.commands import MOTORS
+from thymio_sim_ros.device.remote.commands import LED_NATIVES, MOTORS
 from thymio_sim_ros.device.remote.ros_handlers import RemoteProgram, extended
 from thymio_sim_ros.device.remote.session import COMPUTER, Session
 
@@ -36,12 +36,19 @@ __all__ = ["RemoteRunControl"]
 MAX_LINE_STEPS = 10_000
 """Instructions after which a step to the next line ends anyway."""
 
+MOST_LIGHTS = 8
+"""Lights of the largest group."""
+
 
 @dataclass(slots=True)
 class _LineStep:
-    """A step to the next line that is being executed: the line where it began, and instructions so far."""
+    """A step to the next line that is being executed: the line where it began, and instructions so far.
+
+    `others` is the number of reports to come that do not belong to a step.
+    """
 
     line: int | None
+    others: int
     count: int = 0
 
 
@@ -69,21 +76,22 @@ class RemoteRunControl:
         pc, program = node.state.pc, self._session.program
         return DeviceStatus(self._state, program.event_of(pc), program.line_of(pc), pc=pc)
 
-    def begin(self) -> None:
-        """Note that a program was loaded and started."""
-        self._state, self._fault, self._line_step, self._program = RUNNING, None, None, None
+    def load(self, program: RemoteProgram) -> None:
+        """Stop the wheels, which a reset does not do on all robots, then load a program and start it."""
+        self._stop_motors()
+        self._session.load(program)
+        self._begin()
 
     def resume(self) -> None:
         """Continue execution; switch the robot on if it is off."""
         program, node = self._program, self._session.node
         if program is not None:
-            self._session.load(program)
-            self.begin()
+            self.load(program)
             return
         if node is not None and node.state is not None and node.state.is_active and node.state.is_step_by_step:
             self._session.command(Step)  # leave a breakpoint
         self._session.command(Run)
-        self.begin()
+        self._begin()
 
     def pause(self) -> None:
         """Stop execution until `step` or `resume`; wheels and lights keep their state."""
@@ -94,14 +102,16 @@ class RemoteRunControl:
     def step(self) -> None:
         """Execute one instruction; between events, the next event is prepared when it arrives."""
         if self._program is None:
-            self.pause()
+            if self._state != PAUSED:
+                self.pause()
             self._session.command(Step)
 
     def step_line(self) -> None:
         """Execute up to the next line or the end of the event."""
         if self._program is None:
+            step = _LineStep(self.status.line, others=int(self._state != PAUSED))
             self.step()
-            self._line_step = _LineStep(self.status.line)
+            self._line_step = step
 
     def stop(self) -> None:
         """Abort the handler and stop the wheels."""
@@ -127,6 +137,9 @@ class RemoteRunControl:
             layout = program.own.layout
             self._session.load(extended(load_program("", "none", layout), target(layout)))
             self._stop_motors()
+            for native in LED_NATIVES.values():
+                self._call(native, (0,) * MOST_LIGHTS)
+            self._call("sound.freq", (0, -1))
             self._state, self._fault, self._line_step, self._program = OFF, None, None, program
 
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
@@ -158,6 +171,9 @@ class RemoteRunControl:
         step = self._line_step
         if step is None:
             return
+        if step.others:
+            step.others -= 1
+            return
         step.count += 1
         line = self._session.program.line_of(state.pc)
         if not state.is_active or step.count >= MAX_LINE_STEPS or line not in (None, step.line):
@@ -177,6 +193,9 @@ class RemoteRunControl:
         self._state, self._line_step = FAULT, None
         self._stop_motors()
 
+    def _begin(self) -> None:
+        self._state, self._fault, self._line_step, self._program = RUNNING, None, None, None
+
     def _places(self) -> dict[int, int]:
         """First address of the code of each line of the user's program."""
         program = self._session.program.program
@@ -186,6 +205,12 @@ class RemoteRunControl:
             if line is not None:
                 places.setdefault(line, pc)
         return places
+
+    def _call(self, native: str, words: Sequence[int]) -> None:
+        """Call a native function if an appended handler does."""
+        number = self._session.program.numbers.get(native)
+        if number is not None:
+            self._session.emit(number, words)
 
     def _stop_motors(self) -> None:
         for name in MOTORS:
