@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Protocol
 
+from aseba_vm.protocol import Message
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.notices import Notices
 from thymio_sim_ros.device.programs.breakpoints import Breakpoints
@@ -13,7 +14,7 @@ from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.sim.commands import Command
 
-__all__ = ["RobotDevice", "RobotHost", "RobotLocalEvents", "RobotRunControl", "RobotVariables"]
+__all__ = ["RobotDevice", "RobotHost", "RobotLocalEvents", "RobotNode", "RobotRunControl", "RobotVariables"]
 
 
 class RobotVariables(Protocol):
@@ -167,3 +168,22 @@ class RobotHost(Protocol):
 
     def pop_notices(self) -> list[str]:
         """Return and clear the notices for the user."""
+
+
+class RobotNode(Protocol):
+    """A robot as a node of an Aseba network, for clients; implemented by `NetworkNode` and `Gateway`."""
+
+    def connect(self, client: int) -> None:
+        """Add a client."""
+
+    def disconnect(self, client: int) -> None:
+        """Remove a client."""
+
+    def handle(self, client: int, message: Message) -> list[Message]:
+        """Execute a message of a client and return the replies for it."""
+
+    def install_bytecode(self) -> None:
+        """Make written bytecode the program."""
+
+    def pop_messages(self) -> list[Message]:
+        """Return and clear the messages for all clients."""

@@ -8,10 +8,11 @@ from thymio_sim_ros.device.behavior_host import built_in, is_internal
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.notices import Notices
+from thymio_sim_ros.device.programs.foreign import foreign_program
 from thymio_sim_ros.device.programs.load import LoadMeter
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import DeviceStatus
-from thymio_sim_ros.device.remote.ros_handlers import extended
+from thymio_sim_ros.device.remote.ros_handlers import RemoteProgram, extended
 from thymio_sim_ros.device.remote.run_control import RemoteRunControl
 from thymio_sim_ros.device.remote.session import Session
 from thymio_sim_ros.device.remote.variables import RemoteVariables
@@ -92,6 +93,14 @@ class RemoteDevice:
             self.notices.add(f"program {program.name}: ROS cannot set lights and sounds beside it: {longer.problem}")
         self.run_control.load(longer)
 
+    def has_bytecode(self, words: Sequence[int]) -> bool:
+        """Whether these are the words of the program as it was loaded."""
+        return self._session.program.program.words == tuple(words)
+
+    def adopt(self, program: ThymioProgram) -> None:
+        """Note that another client has loaded a program."""
+        self._session.adopt(RemoteProgram(program, program.program, problem="another client has loaded its program"))
+
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Do nothing: the robot has sensors of its own."""
 
@@ -144,6 +153,12 @@ class RemoteHost:
         """Load a user program and start it. Raises ValueError for a program of another layout."""
         self.program = program
         self.device.load(program)
+
+    def adopt(self, words: Sequence[int]) -> None:
+        """Make the bytecode that another client has loaded the program; it may be the one that is known."""
+        if not self.device.has_bytecode(words):
+            self.program = foreign_program(words, self.device.layout, self.program.events)
+            self.device.adopt(self.program)
 
     def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
         """Start a built-in program, from which no other can be started.

@@ -13,7 +13,8 @@ from aseba_vm.protocol import Message, reports
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device.layout import described, target
 from thymio_sim_ros.device.remote.commands import RemoteCommands
-from thymio_sim_ros.device.remote.remote_device import RemoteDevice
+from thymio_sim_ros.device.remote.gateway import Gateway
+from thymio_sim_ros.device.remote.remote_device import RemoteDevice, RemoteHost
 from thymio_sim_ros.device.remote.sensing import RemoteSensing
 from thymio_sim_ros.device.remote.session import Session
 from thymio_sim_ros.sim.commands import Command, ResetOdometry
@@ -30,6 +31,10 @@ class RemoteRobot:
         self._session = Session(described(THYMIO_II))
         self.device = RemoteDevice(self._session, number)
         """The robot as the owner of programs needs it; a Thymio II until it has described itself."""
+        self.host = RemoteHost(self.device)
+        """The selection of its program."""
+        self.gateway = Gateway(self._session, self.host, lambda: self.device.on_run())
+        """The robot as a node for other clients."""
         self.connections = 0
         """Number of times that the robot has connected."""
         self.sensing = RemoteSensing(target(self.device.layout))
@@ -69,6 +74,7 @@ class RemoteRobot:
 
     def receive(self, message: Message) -> None:
         """Process a message of the stream."""
+        self.gateway.add(message)
         self._process(self._session.client.receive(message))
 
     def poll(self, now_ns: int) -> None:

@@ -142,6 +142,12 @@ class RemoteRunControl:
             self._call("sound.freq", (0, -1))
             self._state, self._fault, self._line_step, self._program = OFF, None, None, program
 
+    def release(self) -> None:
+        """Note that another client controls the machine: its state is the one that the node reports."""
+        self._fault, self._line_step, self._program = None, None, None
+        if self._state != RUNNING:
+            self._state = PAUSED
+
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
         """Replace all breakpoints: lines of the program's file, from 1; a line without code becomes the next with code.
 

@@ -32,6 +32,12 @@ class Session:
             self.client.load(self.node.number, program.program)
             self.command(Run)
 
+    def adopt(self, program: RemoteProgram) -> None:
+        """Note the program that another client has loaded."""
+        self.program = program
+        if self.node is not None:
+            self.node.set_program(program.program)
+
     def command(self, *kinds: type[Command]) -> None:
         """Send commands that have no content, such as `Run`."""
         if self.node is not None:

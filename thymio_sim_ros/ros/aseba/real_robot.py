@@ -15,7 +15,6 @@ from rclpy.node import Node
 
 from aseba_vm.protocol import encode
 from thymio_sim_ros.device.remote.commands import LED_NATIVES, MOTORS
-from thymio_sim_ros.device.remote.remote_device import RemoteHost
 from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
 from thymio_sim_ros.device.remote.ros_handlers import served_natives
 from thymio_sim_ros.device.remote.sensing import POSE
@@ -78,8 +77,6 @@ class RealRobot:
         self.robot = RemoteRobot(number)
         """The robot without ROS."""
         self.robot.device.on_run = self.flush
-        self.host = RemoteHost(self.robot.device)
-        """The selection of its program."""
         self.on_connected: Callable[[], None] = lambda: None
         """Called when the robot has connected, and may have another layout."""
         self.on_change: Callable[[], None] = lambda: None
