@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ASEBA_PORT", "OFF", "NetworkSettings"]
+__all__ = ["ASEBA_PORT", "LAST_PORT", "OFF", "NetworkSettings"]
 
 ASEBA_PORT = 33333
 """The port of the first robot, as in all Aseba tools."""
+
+LAST_PORT = 65535
 
 OFF = -1
 """Instead of a port: the server does not run."""
