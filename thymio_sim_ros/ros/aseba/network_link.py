@@ -68,7 +68,8 @@ class NetworkLink:
                     robot.names.name,
                     _Robot(robot, self._mailbox),
                     place=robot.number - self._first_id,
-                    node_ids=(robot.number,),
+                    node_ids=(robot.number,) if robot.is_simulated else (),
+                    is_simulated=robot.is_simulated,
                 )
                 self._networks[robot] = network
                 self.thread.call(self.thread.hub.add, network)
