@@ -1,0 +1,1 @@
+"""Servers for programs of the Aseba world."""
