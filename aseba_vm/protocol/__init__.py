@@ -9,6 +9,7 @@
 Source: docs/spec/aseba-protocol.md section 1.
 """
 
+from aseba_vm.protocol import reports
 from aseba_vm.protocol.errors import ProtocolError
 from aseba_vm.protocol.framing import MAX_PAYLOAD, FrameReader
 from aseba_vm.protocol.messages import (
@@ -65,6 +66,8 @@ from aseba_vm.protocol.messages import (
     decode,
     encode,
 )
+from aseba_vm.protocol.node_client import NodeClient
+from aseba_vm.protocol.remote_node import RemoteNode
 
 __all__ = [
     "MAX_PAYLOAD",
@@ -102,11 +105,13 @@ __all__ = [
     "Message",
     "NamedVariable",
     "NativeFunctionDescription",
+    "NodeClient",
     "NodePresent",
     "NodeSpecificError",
     "Pause",
     "ProtocolError",
     "Reboot",
+    "RemoteNode",
     "Reset",
     "Run",
     "SetBreakpoint",
@@ -122,4 +127,5 @@ __all__ = [
     "WriteBytecode",
     "decode",
     "encode",
+    "reports",
 ]
