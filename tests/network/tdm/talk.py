@@ -44,8 +44,7 @@ class Talk:
         """Add a network of nodes that are called thymio_<number>."""
         number = len(self.networks)
         self.networks[number] = nodes
-        names = {node.number: f"thymio_{number}" for node in nodes}
-        self.manager.add_network(number, kind=kind, names=names)
+        self.manager.add_network(number, kind=kind, name=f"thymio_{number}")
         self.exchange()
 
     def join(self, client: int, *, is_local: bool = True, password: str = "") -> None:

@@ -9,7 +9,7 @@ Source: docs/spec/aseba-protocol.md section 2.3.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from uuid import UUID, uuid4
 
@@ -29,7 +29,7 @@ from thymio_sim_ros.network.tdm.conversation.programs import Compilation, Compil
 from thymio_sim_ros.network.tdm.protocol.constants import NodeType, Watch
 from thymio_sim_ros.network.tdm.protocol.messages import CompilationResultFailure, Message, Ping
 
-__all__ = ["DeviceManager", "NetworkNames"]
+__all__ = ["DeviceManager"]
 
 _MS = 1_000_000
 PING_PERIOD_NS = 2500 * _MS
@@ -44,9 +44,6 @@ _DEVICE_NAME = 2
 """Kind of the device's information."""
 _FIRST_VERSION_WITH_INFO = 6
 
-NetworkNames = Mapping[int, str]
-"""Names of nodes by their numbers; others have the name of their description."""
-
 
 @dataclass(slots=True)
 class _Network:
@@ -55,7 +52,8 @@ class _Network:
     link: NodeClient
     group: Group
     kind: NodeType
-    names: NetworkNames
+    name: str
+    """Name of its nodes; empty: that of their descriptions."""
     ids: dict[int, UUID] = field(default_factory=dict)
     """Ids of its nodes by number; a node that returns keeps its id."""
 
@@ -73,9 +71,9 @@ class DeviceManager:
         self._next_ping_ns = now_ns + PING_PERIOD_NS
         self._next_poll_ns = now_ns
 
-    def add_network(self, number: int, *, kind: NodeType, names: NetworkNames) -> None:
-        """Begin to speak with an Aseba network, whose nodes are of one kind."""
-        network = _Network(NodeClient(), Group(self._new_id()), kind, names)
+    def add_network(self, number: int, *, kind: NodeType, name: str = "") -> None:
+        """Begin to speak with an Aseba network, whose nodes are of one kind and have this name, or their own."""
+        network = _Network(NodeClient(), Group(self._new_id()), kind, name)
         network.link.start(self._directory.now_ns)
         self._networks[number] = network
 
@@ -181,7 +179,7 @@ class DeviceManager:
             reports.remove_node(self._directory, known)
         key = network.ids.setdefault(address, self._new_id())
         remote = network.link.nodes[address]
-        name = network.names.get(address, remote.description.name)
+        name = network.name or remote.description.name
         node = ManagedNode(key, network.group, number, network.link, remote, kind=network.kind, name=name)
         self._directory.nodes[key] = node
         source = network.link.source
