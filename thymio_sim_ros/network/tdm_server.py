@@ -15,7 +15,6 @@ import logging
 import time
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from functools import partial
 from http import HTTPStatus
 from socket import SO_SNDBUF, SOL_SOCKET, socket
@@ -28,7 +27,7 @@ from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.origin_policy import is_allowed
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.network.hub import Connection, Hub, Network
-from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.conversation.clients import Closing
 from thymio_sim_ros.network.tdm.conversation.device_manager import DeviceManager
 from thymio_sim_ros.network.tdm.conversation.handshake import ManagerSettings
@@ -37,10 +36,12 @@ from thymio_sim_ros.network.tdm.protocol.constants import NodeType
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
 from thymio_sim_ros.network.tdm_peers import Peer, TcpPeer, WebSocketPeer, is_this_computer
 
-__all__ = ["TDM_PORT", "TDM_WS_PORT", "TdmServer", "TdmSettings"]
+__all__ = ["MAX_CLIENTS", "MAX_UNSENT", "TdmServer"]
 
-TDM_PORT, TDM_WS_PORT = 8596, 8597
-"""The ports where clients look for a device manager."""
+MAX_CLIENTS = 32
+"""Clients of both ports together."""
+MAX_UNSENT = 4 << 20
+"""Bytes that wait for a client that does not read; it is disconnected beyond them."""
 
 _PERIOD_S, _IDLE_PERIOD_S = 0.05, 0.5
 """Time between two looks at what is due, with clients and without."""
@@ -61,35 +62,22 @@ Report = Callable[[str, str], None]
 """Takes a warning: what it is about, so that repetitions can be limited, and the text."""
 
 
-@dataclass(frozen=True, slots=True)
-class TdmSettings:
-    """Ports, limits and access of a server; port 0: a free one.
-
-    Attributes:
-        port: TCP port.
-        ws_port: WebSocket port.
-        address: address on which both listen.
-        password: what clients on other computers must give; empty: nothing.
-        allowed_origins: additional origins of web pages (see `bridge.origin_policy`); `*` allows all.
-        max_clients: further clients are rejected.
-        buffer_limit: bytes that may wait for a client before it is disconnected.
-    """
-
-    port: int = TDM_PORT
-    ws_port: int = TDM_WS_PORT
-    address: str = "localhost"
-    password: str = field(default="", repr=False)
-    allowed_origins: tuple[str, ...] = ()
-    max_clients: int = 32
-    buffer_limit: int = 4 << 20
-
-
 class TdmServer:
     """The device manager of the networks of a hub. All methods belong to the thread of the event loop."""
 
-    def __init__(self, hub: Hub, settings: TdmSettings, report: Report) -> None:
-        """Serve nothing until `start`."""
+    def __init__(
+        self,
+        hub: Hub,
+        settings: NetworkSettings,
+        report: Report,
+        *,
+        password: str = "",
+        max_clients: int = MAX_CLIENTS,
+        max_unsent: int = MAX_UNSENT,
+    ) -> None:
+        """Serve nothing until `start`. `password`: what clients on other computers must give; empty: nothing."""
         self._hub, self._settings, self._report = hub, settings, report
+        self._password, self._max_clients, self._max_unsent = password, max_clients, max_unsent
         self._clock_ns = time.time_ns() - time.monotonic_ns()
         self._id = uuid4()
         self._manager: DeviceManager
@@ -113,8 +101,8 @@ class TdmServer:
         settings = self._settings
         tcp: list[socket] = []
         try:
-            tcp = listen(settings.address, settings.port)
-            websocket = listen(settings.address, settings.ws_port)
+            tcp = listen(settings.address, settings.tdm_port)
+            websocket = listen(settings.address, settings.tdm_ws_port)
         except (OSError, OverflowError) as error:
             for listener in tcp:
                 listener.close()
@@ -123,7 +111,7 @@ class TdmServer:
         for listener in (*tcp, *websocket):  # clients inherit it; otherwise the kernel keeps megabytes of old values
             listener.setsockopt(SOL_SOCKET, SO_SNDBUF, _KERNEL_BUFFER)
         self.port, self.ws_port = tcp[0].getsockname()[1], websocket[0].getsockname()[1]
-        manager = ManagerSettings(self._id, self.ws_port, settings.password)
+        manager = ManagerSettings(self._id, self.ws_port, self._password)
         self._manager = DeviceManager(manager, self._now_ns())
         self._hub.follow(self)
         self._run(self._open(tcp, websocket))
@@ -225,7 +213,7 @@ class TdmServer:
 
     async def _serve(self, peer: Peer) -> None:
         """Process messages of a client until it disconnects."""
-        if len(self._peers) >= self._settings.max_clients:
+        if len(self._peers) >= self._max_clients:
             self._report("tdm clients", f"{len(self._peers)} clients of the device manager: more are rejected")
             peer.abort()
             return
@@ -293,7 +281,7 @@ class TdmServer:
         """Slow clients are sent less, and disconnected if even that is not read."""
         for client, peer in list(self._peers.items()):
             backlog, is_slow = peer.backlog, client in self._congested
-            if backlog > self._settings.buffer_limit:
+            if backlog > self._max_unsent:
                 self._disconnect(client, "it does not read what it is sent")
             elif not is_slow and backlog > _CONGESTED:
                 self._congested.add(client)

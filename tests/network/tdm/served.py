@@ -6,12 +6,13 @@ import asyncio
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from aseba_vm.protocol.messages import Message
 from tests.network.tdm.machine_node import MachineNode
 from thymio_sim_ros.network.hub import Hub, Network
-from thymio_sim_ros.network.tdm_server import TdmServer, TdmSettings
+from thymio_sim_ros.network.settings import NetworkSettings
+from thymio_sim_ros.network.tdm_server import TdmServer
 
 
 class MachineNetwork:
@@ -63,17 +64,17 @@ class Served:
 
 
 @contextmanager
-def served(*nodes: MachineNode, settings: TdmSettings | None = None) -> Iterator[Served]:
+def served(*nodes: MachineNode, allowed_origins: tuple[str, ...] = (), **limits: int) -> Iterator[Served]:
     """Serve nodes, each alone on its network with the name thymio_<place>."""
     ready = threading.Event()
     found: list[Served] = []
     stop = asyncio.Event()
-    wanted = replace(settings or TdmSettings(), address="127.0.0.1", port=0, ws_port=0)
+    settings = NetworkSettings(address="127.0.0.1", tdm_port=0, tdm_ws_port=0, allowed_origins=allowed_origins)
 
     async def serve() -> None:
         hub, reports = Hub(), []
         networks = [MachineNetwork(node, place) for place, node in enumerate(nodes)]
-        server = TdmServer(hub, wanted, lambda about, text: reports.append((about, text)))
+        server = TdmServer(hub, settings, lambda about, text: reports.append((about, text)), **limits)
         server.start()
         for network in networks:
             hub.add(network.network)

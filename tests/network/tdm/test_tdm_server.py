@@ -19,12 +19,12 @@ from tests.network.tdm.raw_client import RawClient
 from tests.network.tdm.served import Served, served
 from tests.network.tdm.talk import values
 from thymio_sim_ros.network.hub import Hub
-from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.protocol import messages as m
 from thymio_sim_ros.network.tdm.protocol.codec import decode, encode, framed
 from thymio_sim_ros.network.tdm.protocol.constants import ErrorCode, Status, Watch
 from thymio_sim_ros.network.tdm_peers import is_this_computer
-from thymio_sim_ros.network.tdm_server import TdmServer, TdmSettings
+from thymio_sim_ros.network.tdm_server import TdmServer
 
 CONNECTIONS = int(os.environ.get("THYMIO_SIM_FUZZ", "4000")) // 20
 """Connections of the test with malicious clients."""
@@ -78,7 +78,7 @@ def test_pages_of_this_computer_may_connect(one: Served, origin: str) -> None:
 
 
 def test_allowed_web_pages_may_connect() -> None:
-    with served(MachineNode(), settings=TdmSettings(allowed_origins=("https://example.org",))) as found:
+    with served(MachineNode(), allowed_origins=("https://example.org",)) as found:
         headers = {"Origin": "https://example.org"}
         with connect(f"ws://127.0.0.1:{found.ws_port}", additional_headers=headers) as client:
             client.send(encode(m.ConnectionHandshake()))
@@ -124,7 +124,7 @@ def test_a_lost_connection_gives_its_node_back(one: Served) -> None:
 
 
 def test_more_clients_than_the_limit_are_rejected() -> None:
-    with served(MachineNode(), settings=TdmSettings(max_clients=2)) as found:
+    with served(MachineNode(), max_clients=2) as found:
         with RawClient(found.tcp_port), RawClient(found.tcp_port), RawClient(found.tcp_port, greet=False) as third:
             third.wait_for_end()
         _wait(lambda: found.server.client_count == 0)
@@ -132,8 +132,7 @@ def test_more_clients_than_the_limit_are_rejected() -> None:
 
 
 def test_a_client_that_does_not_read_is_disconnected_and_others_are_served() -> None:
-    settings = TdmSettings(buffer_limit=200_000)
-    with served(MachineNode(), settings=settings) as found, RawClient(found.tcp_port) as other:
+    with served(MachineNode(), max_unsent=200_000) as found, RawClient(found.tcp_port) as other:
         stalled = socket.socket()
         stalled.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         stalled.connect(("127.0.0.1", found.tcp_port))
@@ -215,7 +214,9 @@ def test_a_taken_port_is_reported_and_nothing_is_served() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         reports: list[tuple[str, str]] = []
-        server = TdmServer(Hub(), TdmSettings(port, 0, "127.0.0.1"), lambda *report: reports.append(report))
+        server = TdmServer(
+            Hub(), NetworkSettings(tdm_port=port, address="127.0.0.1"), lambda *report: reports.append(report)
+        )
         server.start()
         assert server.port == OFF
         ((about, text),) = reports
