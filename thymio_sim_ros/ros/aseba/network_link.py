@@ -67,7 +67,12 @@ class NetworkLink:
             self.thread.call(self.thread.hub.remove, self._networks.pop(robot))
         for robot in self._robots:
             if robot not in self._networks:
-                network = Network(robot.names.name, _Robot(robot, self._mailbox), place=robot.number - self._first_id)
+                network = Network(
+                    robot.names.name,
+                    _Robot(robot, self._mailbox),
+                    place=robot.number - self._first_id,
+                    node_ids=(robot.number,),
+                )
                 self._networks[robot] = network
                 self.thread.call(self.thread.hub.add, network)
 
