@@ -60,6 +60,11 @@ class Connection:
         if self.client in self._network:
             self._network.nodes.send(self.client, messages)
 
+    def remember(self, text: str) -> None:
+        """Tell the nodes the text of the bytecode that follows, an .aesl file or bare text; messages have none."""
+        if self.client in self._network:
+            self._network.remember(self.client, text)
+
     def close(self) -> None:
         """Leave the network; a second call has no effect."""
         self._network.remove(self.client)
@@ -80,6 +85,8 @@ class Network:
         self.place = place
         self.node_ids = tuple(node_ids)
         self.is_simulated = is_simulated
+        self.remember: Callable[[int, str], None] = lambda client, text: None
+        """Takes the text of the bytecode that a client is about to write."""
         self._receivers: dict[int, Receive] = {}
 
     def __contains__(self, client: int) -> bool:

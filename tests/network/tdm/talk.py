@@ -34,6 +34,8 @@ class Talk:
         self.networks: dict[int, list[MachineNode]] = {}
         self.received: dict[int, list[m.Message]] = defaultdict(list)
         self.closed: dict[int, str] = {}
+        self.texts: list[tuple[int, str]] = []
+        """Texts of programs, with their networks."""
         self.is_silent = False
         """Whether nodes do not answer."""
         self._requests = iter(range(100, 100_000))
@@ -78,6 +80,7 @@ class Talk:
 
     def exchange(self) -> None:
         """Deliver messages until nobody sends any."""
+        self.texts += self.manager.pop_texts()
         while messages := self.manager.pop_messages():
             for number, message in messages:
                 for node in () if self.is_silent else self.networks[number]:

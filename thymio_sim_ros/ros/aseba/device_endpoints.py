@@ -6,6 +6,7 @@ from topics of the ROS driver; commands are published on the topics that every r
 
 from __future__ import annotations
 
+import contextlib
 import time
 import uuid
 from collections.abc import Callable, Sequence
@@ -23,7 +24,8 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.network_node import QUESTIONS, NetworkNode
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
-from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
+from thymio_sim_ros.device.programs.foreign import FOREIGN
+from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.device.programs.status import OFF, RUNNING
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
@@ -199,6 +201,11 @@ class DeviceEndpoints:
             return False
         self.device.receive_event(event, args, source=source)
         return True
+
+    def remember(self, text: str) -> None:
+        """Note the text of the bytecode that a client is about to write. One that does not compile is ignored."""
+        with contextlib.suppress(ProgramError):
+            self._host.remember(load_program(text, FOREIGN, self.device.layout))
 
     def handle_messages(
         self, client: int, messages: Sequence[Message], send: Callable[[Sequence[Message], int | None], None]

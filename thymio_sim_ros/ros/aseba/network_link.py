@@ -31,12 +31,13 @@ CAPACITY = 256
 
 @dataclass(frozen=True, slots=True)
 class _Post:
-    """Something from a client of one robot: messages, or that it has come or gone."""
+    """Something from a client of one robot: messages, a text for the next bytecode, or that it has come or gone."""
 
     robot: DeviceEndpoints
     client: int
     messages: Sequence[Message] = ()
     event: str = ""
+    text: str = ""
 
 
 class NetworkLink:
@@ -67,12 +68,14 @@ class NetworkLink:
             self.thread.call(self.thread.hub.remove, self._networks.pop(robot))
         for robot in self._robots:
             if robot not in self._networks:
+                nodes = _Robot(robot, self._mailbox)
                 network = Network(
                     robot.names.name,
-                    _Robot(robot, self._mailbox),
+                    nodes,
                     place=robot.number - self._first_id,
                     node_ids=(robot.number,),
                 )
+                network.remember = nodes.remember
                 self._networks[robot] = network
                 self.thread.call(self.thread.hub.add, network)
 
@@ -91,6 +94,8 @@ class NetworkLink:
             robot.send_to_network = lambda messages: self.thread.call(network.deliver, messages)
         elif post.event == DISCONNECT:
             robot.network_node.disconnect(post.client)
+        elif post.text:
+            robot.remember(post.text)
         else:
             robot.handle_messages(post.client, post.messages, partial(self.thread.call, network.deliver))
 
@@ -110,6 +115,10 @@ class _Robot:
     def send(self, client: int, messages: Sequence[Message]) -> None:
         if messages:
             self._mailbox.post(_Post(self._robot, client, messages))
+
+    def remember(self, client: int, text: str) -> None:
+        """Note the text of the bytecode that follows."""
+        self._mailbox.post(_Post(self._robot, client, text=text))
 
     def is_full(self, client: int) -> bool:
         return self._mailbox.is_full(client)

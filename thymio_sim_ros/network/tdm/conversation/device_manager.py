@@ -153,6 +153,11 @@ class DeviceManager:
         """Return and clear what is to be done for clients, in order."""
         return self._directory.clients.pop()
 
+    def pop_texts(self) -> list[tuple[int, str]]:
+        """Return and clear the texts of the programs that `pop_messages` loads, each with the network's number."""
+        texts, self._directory.texts = self._directory.texts, []
+        return texts
+
     def pop_messages(self) -> list[tuple[int, AsebaMessage]]:
         """Return and clear the messages for networks, each with the network's number, in order."""
         return [

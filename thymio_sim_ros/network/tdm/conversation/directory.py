@@ -22,6 +22,8 @@ class Directory:
         self.clients = Clients()
         self.nodes: dict[UUID, ManagedNode] = {}
         self.now_ns = 0
+        self.texts: list[tuple[int, str]] = []
+        """Texts of programs that are about to be loaded, each with the number of its network."""
 
     @property
     def time_ms(self) -> int:

@@ -24,10 +24,14 @@ MOTORS = ("motor.left.target", "motor.right.target")
 
 @dataclass(frozen=True, slots=True)
 class LoadableProgram:
-    """A compiled program; `lines[row]` is the line, from 1, of the text that the client sent."""
+    """A compiled program; `lines[row]` is the line, from 1, of the text that the client sent.
+
+    `file` is a text, bare or that of an .aesl file, which compiles to the same program without anything else.
+    """
 
     program: Program
     lines: tuple[int, ...]
+    file: str
 
     def line_of(self, pc: int) -> int:
         """Line of an address of the bytecode; 0 if no line belongs to it."""
@@ -72,14 +76,22 @@ class Compilation:
         """Compile; thread-safe."""
         if self.language != Language.AESL:
             programs = []
-            for key, _, target in self.nodes:
+            for key, number, target in self.nodes:
                 found = self._compiled(self.text, target, self.events, self.constants)
                 if isinstance(found, CompilationResultFailure):
                     return found
                 rows = self.text.count("\n") + 1
-                programs.append((key, LoadableProgram(found, tuple(range(1, rows + 1)))))
+                programs.append(
+                    (key, LoadableProgram(found, tuple(range(1, rows + 1)), self._file(target.name, number)))
+                )
             return Compiled(tuple(programs))
         return self._run_file()
+
+    def _file(self, name: str, number: int) -> str:
+        """The text with the events and constants that it needs."""
+        if not self.events and not self.constants:
+            return self.text
+        return aesl.dumps(aesl.Network(self.events, self.constants, nodes=(aesl.Node(name, number, self.text),)))
 
     def _run_file(self) -> Compiled | CompilationResultFailure:
         try:
@@ -95,7 +107,7 @@ class Compilation:
             if isinstance(found, CompilationResultFailure):
                 row, column = node.place(found.character)
                 return CompilationResultFailure(self.request_id, found.message, found.character, row, column)
-            programs.append((key, LoadableProgram(found, tuple(row + 1 for row in node.rows_in_file()))))
+            programs.append((key, LoadableProgram(found, tuple(row + 1 for row in node.rows_in_file()), self.text)))
         if not programs:
             names = ", ".join(sorted({node.name for node in network.nodes}))
             wanted = ", ".join(sorted({target.name for _, _, target in self.nodes}))
@@ -123,4 +135,4 @@ def motor_stop(target: TargetDescription) -> LoadableProgram:
     """The program that command "stop" leaves on a node: it stops the wheels, if there are any."""
     present = [name for name in MOTORS if name in target.addresses]
     text = "\n".join(f"{name} = 0" for name in present)
-    return LoadableProgram(compile(text, target), tuple(range(1, len(present) + 2)))
+    return LoadableProgram(compile(text, target), tuple(range(1, len(present) + 2)), text)
