@@ -79,6 +79,10 @@ class NetworkLink:
                 self._networks[robot] = network
                 self.thread.call(self.thread.hub.add, network)
 
+    def drain(self) -> None:
+        """Handle what clients sent before the node had an executor, which nothing else would wake."""
+        self._mailbox.drain()
+
     def close(self) -> None:
         """Stop the servers; a second call has no effect."""
         self._mailbox.close()
