@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ASEBA_PORT", "OFF", "TDM_PORT", "TDM_WS_PORT", "NetworkSettings"]
+__all__ = ["ASEBA_PORT", "LAST_PORT", "OFF", "TDM_PORT", "TDM_WS_PORT", "NetworkSettings"]
 
 ASEBA_PORT = 33333
 """The port of the first robot, as in all Aseba tools."""
 
 TDM_PORT, TDM_WS_PORT = 8596, 8597
 """The ports where clients look for a Thymio Device Manager: TCP and WebSocket."""
+
+LAST_PORT = 65535
 
 OFF = -1
 """Instead of a port: the server does not run."""
