@@ -50,6 +50,8 @@ _CONGESTED, _DRAINED = 1 << 18, 1 << 15
 """Bytes that wait for a client, from which and below which it counts as slow and as fast again."""
 _KERNEL_BUFFER = 1 << 16
 """Bytes for a client in the kernel; those beyond are counted here."""
+_CLOSE_S = 1.0
+"""Longest time that connections have to close."""
 _FULL_PAUSE_S = 0.005
 """Time after which a client that had to pause, because messages wait for the robots, is read again."""
 
@@ -130,6 +132,9 @@ class TdmServer:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
+        closed = [asyncio.create_task(server.wait_closed()) for server in self._servers]
+        if closed:
+            await asyncio.wait(closed, timeout=_CLOSE_S)
         for link in self._links.values():
             link.close()
         self._compiler.shutdown(wait=False, cancel_futures=True)
