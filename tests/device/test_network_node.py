@@ -49,7 +49,7 @@ from thymio_sim_ros.device.behavior_host import MENU, BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.network_node import NetworkNode
-from thymio_sim_ros.device.programs.foreign import FOREIGN, foreign_program
+from thymio_sim_ros.device.programs.foreign import FOREIGN, MAX_EVENTS, foreign_program
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.sim.commands import MotorTargets
 
@@ -452,7 +452,7 @@ def test_the_last_event_of_the_menu_does_not_reach_a_program_of_the_network(benc
 def test_any_words_are_a_program(words):
     program = foreign_program(words)
     assert program.program.words == tuple(words)
-    assert len(program.events) <= 100
+    assert len(program.events) <= MAX_EVENTS
     for pc in range(len(words) + 3):
         line = program.line_of(pc)
         assert line is None or 1 <= line <= len(program.lines)

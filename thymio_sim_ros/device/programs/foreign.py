@@ -16,7 +16,7 @@ __all__ = ["FOREIGN", "MAX_EVENTS", "foreign_program"]
 FOREIGN = "from the network"
 """Name of a program without a file."""
 
-MAX_EVENTS = 100
+MAX_EVENTS = 40
 """Events with a name, since each has topics; the highest number decides. Events beyond them stay on the network."""
 
 _INIT, _FIRST_LOCAL = 0xFFFF, 0x8000

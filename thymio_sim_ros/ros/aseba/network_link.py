@@ -25,7 +25,7 @@ __all__ = ["NetworkLink"]
 
 CONNECT, DISCONNECT = "connect", "disconnect"
 
-GROUP = 16
+GROUP = 4
 """Messages that are executed without a break; after it other clients and the node's own work have their turn."""
 CAPACITY = 256
 """Messages of one client that may wait before it is asked to pause."""
