@@ -145,16 +145,34 @@ class AsebaDevice:
         """
         if program.layout != self.layout:
             raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
-        for part in (self._network_events, self.local_events, self.variables, self.run_control):
-            part.set_program(program)
-        self._initial_event = None
+        self.adopt(program)
         if initial_event is not None and self.declares(initial_event.name):
             self._initial_event = self._network_events.encode(initial_event.name, initial_event.args, self.node_id)
+        self.run_control.clear_breakpoints()
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._vm.target.bytecode_size - len(words))))
         if warm:
             self._inputs.restore()
         self.run_control.start()
+
+    def adopt(self, program: ThymioProgram) -> None:
+        """Note that the bytecode in the memory is that of `program`: its names and lines apply from now on."""
+        for part in (self._network_events, self.local_events, self.variables, self.run_control):
+            part.set_program(program)
+        self._initial_event = None
+
+    def write_bytecode(self, words: Sequence[int], start: int) -> None:
+        """Write words of bytecode, which must fit, and reset the robot; nothing runs until it is resumed.
+
+        `adopt` follows with the program that the memory then contains.
+        """
+        self._initial_event = None
+        self.run_control.write_bytecode(words, start)
+
+    @property
+    def bytecode(self) -> tuple[int, ...]:
+        """The bytecode memory, unsigned words."""
+        return self._vm.bytecode
 
     def reinitialize(self) -> None:
         """Return to the state of a new robot, to be called before `load`: drop unsaved settings, radio and readings."""
@@ -208,10 +226,12 @@ class AsebaDevice:
 
         Raises KeyError if the program does not declare the event.
         """
-        event = self._network_events.encode(name, args, source)
-        if self.run_control.accepts_events and not self._queue.add_global(event):
-            self.load_meter.count_lost(name)
-            self.notices.add(f"more events arrive than the program can handle: {name} is lost")
+        self._queue_global(self._network_events.encode(name, args, source), name)
+
+    def receive_number(self, number: int, args: Sequence[int], *, source: int) -> None:
+        """Queue the global event with a number instead of a name, as `receive_event` does."""
+        event = GlobalEvent(number, source, tuple(args))
+        self._queue_global(event, self._network_events.name_of(event))
 
     def advance(self, now_ns: int) -> None:
         """Advance simulated time; the next `run` handles the timer events that are due."""
@@ -265,6 +285,11 @@ class AsebaDevice:
     def pop_events(self) -> list[EmittedEvent]:
         """Return and clear the emitted events, in order."""
         return self._network_events.pop()
+
+    def _queue_global(self, event: GlobalEvent, name: str) -> None:
+        if self.run_control.accepts_events and not self._queue.add_global(event):
+            self.load_meter.count_lost(name)
+            self.notices.add(f"more events arrive than the program can handle: {name} is lost")
 
     def _plan_indicators(self, now_ns: int) -> None:
         """Update the indicators at the next multiple of their period."""

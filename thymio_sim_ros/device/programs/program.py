@@ -47,6 +47,7 @@ class ThymioProgram:
 
     `source` is the text of the program, `text` the whole file, and `lines[row]` the line in the file, from 1, of a row
     of the source. `node` is the part of the file with the program; that of bare text has no name.
+    `is_foreign`: it came as bytecode, and its text is the disassembly (`foreign.py`).
     """
 
     name: str
@@ -58,6 +59,7 @@ class ThymioProgram:
     layout: str = THYMIO
     node: aesl.Node = field(default=aesl.Node(""), compare=False)
     text: str = field(default="", compare=False)
+    is_foreign: bool = False
 
     def line_of(self, pc: int) -> int | None:
         """Line in the file, from 1, of an address of the bytecode; None if no line belongs to it."""
