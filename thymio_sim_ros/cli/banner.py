@@ -20,8 +20,11 @@ _ROBOT_S = 0.1
 _LONG_START_S = 5.0
 
 
-def banner(suite: SuiteConfig, robots: Sequence[str]) -> str:
-    """Lines for the user. They contain the tokens: print them on standard output, never in a log."""
+def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = ()) -> str:
+    """Lines for the user, with those of the `servers` for other programs.
+
+    They contain the tokens: print them on standard output, never in a log.
+    """
     tokens = suite.tokens or Tokens()
     page = describe_urls("http", suite.address, suite.port, "/", tokens.full) if suite.web else _NONE
     path = "/" if tokens.full else ""
@@ -31,6 +34,7 @@ def banner(suite: SuiteConfig, robots: Sequence[str]) -> str:
         lines += [f"Read only {url}" for url in _read_only_urls(suite, tokens)]
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
         lines.append(f"Access    {describe_access(suite.address, tokens)}")
+    lines += servers
     return "\n".join([*lines, f"Domain    {describe_domain(os.environ)}", "Stop      Ctrl-C"])
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import ipaddress
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 
 import thymio_sim_ros
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
@@ -24,6 +24,7 @@ from thymio_sim_ros.cli.options import (
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.cli.servers import add_server_options, address_argument, port_argument, select_servers
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
 __all__ = ["run"]
@@ -44,6 +45,8 @@ def run(argv: Sequence[str]) -> int:
         _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
+    servers = select_servers(options, len(robots))
+    suite = replace(suite, network=servers.settings)
     check_ros()
     if (notice := startup_notice(len(robots))) is not None:
         print_text(notice)
@@ -55,7 +58,7 @@ def run(argv: Sequence[str]) -> int:
     from thymio_sim_ros.ros import combined
 
     try:
-        return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots))
+        return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots, servers.lines))
     finally:
         shm_cleanup.remove_new(before)
 
@@ -87,8 +90,8 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
     )
 
 
-def _print_banner(suite: SuiteConfig, robots: Sequence[str]) -> None:
-    print_text(banner(suite, robots))
+def _print_banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str]) -> None:
+    print_text(banner(suite, robots, servers))
     if sys.stdout is not None and sys.stdout.isatty():
         with contextlib.suppress(UnicodeEncodeError):  # a terminal without these characters
             if drawn := qr_code(suite):
@@ -119,7 +122,7 @@ def _parser() -> argparse.ArgumentParser:
 def _add_network_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--address",
-        type=_address_argument,
+        type=address_argument,
         default=SuiteConfig.address,
         metavar="IPV4",
         help="address on which page and bridge listen; 0.0.0.0 is the whole network, where clients need the token in "
@@ -142,31 +145,17 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
         "--no-token", action="store_true", help="give full access without a token to all clients that reach the address"
     )
     parser.add_argument(
-        "--port", type=_port_argument, default=SuiteConfig.port, help="port of the page (default: %(default)s)"
+        "--port", type=port_argument, default=SuiteConfig.port, help="port of the page (default: %(default)s)"
     )
     parser.add_argument(
         "--foxglove-port",
-        type=_port_argument,
+        type=port_argument,
         default=SuiteConfig.foxglove_port,
         help="port of the bridge (default: %(default)s)",
     )
+    add_server_options(parser)
     parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
     parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
-
-
-def _address_argument(text: str) -> str:
-    try:
-        return text if text == ADDRESS else str(ipaddress.IPv4Address(text))
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(
-            f"'{text}' found, expected {ADDRESS}, 0.0.0.0 for the whole network, or an IPv4 address of this computer"
-        ) from error
-
-
-def _port_argument(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 65535:
-        raise argparse.ArgumentTypeError(f"'{text}' found, expected a port from 1 to 65535")
-    return int(text)
 
 
 def _factor_argument(text: str) -> float:

@@ -14,7 +14,19 @@ from aseba_vm.protocol import MAX_PAYLOAD, MAX_WORDS, PROTOCOL_VERSION, Message
 from thymio_sim_ros.device.behavior_host import BehaviorHost, is_internal
 from thymio_sim_ros.device.layout import target
 
-__all__ = ["NetworkNode"]
+__all__ = ["QUESTIONS", "NetworkNode"]
+
+QUESTIONS = (
+    protocol.ListNodes,
+    protocol.GetDescription,
+    protocol.GetNodeDescription,
+    protocol.GetDescriptionFragment,
+    protocol.GetVariables,
+    protocol.GetChangedVariables,
+    protocol.GetExecutionState,
+    protocol.GetDeviceInfo,
+)
+"""Messages that change nothing."""
 
 UUID, NAME, RADIO = 1, 2, 3
 """Kinds of device data."""

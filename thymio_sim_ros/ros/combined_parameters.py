@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, is_free
+from thymio_sim_ros.ros.aseba.parameters import NetworkParams, RuntimeParams, is_free
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
@@ -67,6 +67,7 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
             events=device.events,
             card=str(device.card or ""),
             settings=str(device.settings or ""),
+            network=NetworkParams.of(suite.network),
         ),
     }
     if suite.foxglove:

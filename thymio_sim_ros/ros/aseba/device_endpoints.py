@@ -7,6 +7,7 @@ from topics of the ROS driver; commands are published on the topics that every r
 from __future__ import annotations
 
 import time
+import uuid
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -16,9 +17,11 @@ from rclpy.node import Node
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
+from aseba_vm.protocol import Message
 from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.network_node import QUESTIONS, NetworkNode
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import Assignment
@@ -97,6 +100,10 @@ class DeviceEndpoints:
         self.device = AsebaDevice(node_id=number, options=options)
         self.share: Assignment | None = None
         self._host = BehaviorHost(self.device)
+        self.network_node = NetworkNode(self._host, name=names.name, uuid=uuid.uuid4().bytes)
+        """The robot as a node of an Aseba network."""
+        self.send_to_network: Callable[[Sequence[Message]], None] | None = None
+        """Takes the messages of the node for all clients, while there are clients."""
         self._node = node
         self._bus, self._diagnostics = bus, diagnostics
         self._debug_options = debug_options or DebugOptions()
@@ -193,6 +200,23 @@ class DeviceEndpoints:
         self.device.receive_event(event, args, source=source)
         return True
 
+    def handle_messages(
+        self, client: int, messages: Sequence[Message], send: Callable[[Sequence[Message], int | None], None]
+    ) -> None:
+        """Execute messages of a client of the robot's network, then run, unless they were questions only.
+
+        `send` takes the resulting messages in order, each group with the client that it is for, or None for all.
+        """
+        node = self.network_node
+        for message in messages:
+            replies = node.handle(client, message)
+            for group, receiver in ((node.pop_messages(), None), (replies, client)):
+                if group:
+                    send(group, receiver)
+        node.install_bytecode()
+        if not all(isinstance(message, QUESTIONS) for message in messages):
+            self.run()
+
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store a reading; the caller then calls `run` or `is_due`. An invalid reading is logged."""
         try:
@@ -228,6 +252,8 @@ class DeviceEndpoints:
             self._bus.forward(self, event.name, event.args)
         if self._host.program is not self._program:
             self._set_program()
+        if self.send_to_network is not None and (messages := self.network_node.pop_messages()):
+            self.send_to_network(messages)
         for notice in self._host.pop_notices():
             self._node.get_logger().warning(f"{self.names.name or 'robot'}: {notice}")
         self._publish_status()

@@ -28,6 +28,7 @@ from thymio_sim_ros.loading import shipped_behaviours
 from thymio_sim_ros.ros.aseba.bus import SLICE_S
 from thymio_sim_ros.ros.aseba.check_service import CheckService
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
+from thymio_sim_ros.ros.aseba.network_link import NetworkLink
 from thymio_sim_ros.ros.aseba.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, WrongValueError
 from thymio_sim_ros.ros.aseba.robot_set import ROBOT_ERRORS, RobotSet
@@ -120,12 +121,15 @@ class AsebaRuntime:
             executor.spin_once(timeout_sec=wait_s)
 
     def stop(self) -> None:
-        """Stop the wheels and programs of all robots."""
+        """Stop the network servers, then the wheels and programs of all robots."""
+        if self.network is not None:
+            self.network.close()
         self.robots.stop()
 
     def close(self) -> None:
         """Stop the wheels, then destroy the node."""
         self._jumps.unregister()
+        self.stop()
         self.robots.close()
         self.node.destroy_node()
 
@@ -140,6 +144,12 @@ class AsebaRuntime:
         self._check = CheckService(node, layout=params.layout, robots=lambda: self.robots.names)
         self._follower = SimulatorFollower(node, params, self.robots, link)
         self.robots.set_names(params.robots)
+        self.network = (
+            None
+            if params.network.settings.is_off
+            else NetworkLink(node, self.robots, params.network.settings, first_id=params.first_id)
+        )
+        """The servers by which other programs reach the robots, if any is on."""
         if link is not None:
             follow_clock(node, link.inputs)
         self._follower.start()

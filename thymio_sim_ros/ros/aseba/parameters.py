@@ -17,10 +17,12 @@ from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
-from thymio_sim_ros.ros.rclpy_ext.parameters import param
+from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 
 __all__ = [
+    "NetworkParams",
     "RuntimeParams",
     "WrongValueError",
     "adopt_overrides",
@@ -55,6 +57,42 @@ _FREE = re.compile(
 
 class WrongValueError(ThymioSimError, ValueError):
     """An invalid value of a parameter; the message says why."""
+
+
+@dataclass(frozen=True)
+class NetworkParams:
+    """Parameters of the network servers; -1 is no server, 0 selects a free port."""
+
+    aseba_port: int = param(
+        OFF, "Aseba port of the first robot, further robots have the next ports", low=OFF, high=65535, fixed=True
+    )
+    aseba_address: str = param(
+        "localhost",
+        "Address of the Aseba ports; whoever reaches it controls the robots, as the protocol has no token",
+        fixed=True,
+    )
+    aseba_shared: bool = param(False, "Whether all robots are on one Aseba port", fixed=True)
+    announce: bool = param(True, "Whether the servers are announced by mDNS", fixed=True)
+
+    @classmethod
+    def of(cls, settings: NetworkSettings) -> NetworkParams:
+        """The parameters with these settings."""
+        return cls(
+            aseba_port=settings.aseba_port,
+            aseba_address=settings.aseba_address,
+            aseba_shared=settings.is_aseba_shared,
+            announce=settings.is_announced,
+        )
+
+    @property
+    def settings(self) -> NetworkSettings:
+        """The settings of the servers."""
+        return NetworkSettings(
+            aseba_port=self.aseba_port,
+            aseba_address=self.aseba_address,
+            is_aseba_shared=self.aseba_shared,
+            is_announced=self.announce,
+        )
 
 
 @dataclass(frozen=True)
@@ -102,6 +140,7 @@ class RuntimeParams:
         "firmware", "Event policy: firmware (events wait) or playground (an event ends the running handler)", fixed=True
     )
     card: str = param("", "Folder used as memory card; '' is no card", fixed=True)
+    network: NetworkParams = group(NetworkParams(), "network")
     settings: str = param("", "Folder where the robot's settings are stored; '' does not store them", fixed=True)
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, overload
 
@@ -57,6 +57,8 @@ class RobotSet(Sequence[DeviceEndpoints]):
         self._robots: list[DeviceEndpoints] = []
         self._is_fed = False
         self.bus = Bus(node, self)
+        self.on_change: Callable[[], None] = lambda: None
+        """Called when robots have come or gone."""
 
     @overload
     def __getitem__(self, index: int) -> DeviceEndpoints: ...
@@ -105,6 +107,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
             self._robots.append(self._new_robot(name, self._free_number(names.index(name)), alone=len(names) == 1))
         self._robots.sort(key=lambda endpoints: names.index(endpoints.names.name))
         self._assign_programs(new)
+        self.on_change()
 
     def apply(self, old: Mapping[str, Any], change: ParameterChange) -> None:
         """Apply accepted parameters to all robots: debug options, programs, built-in behavior."""
@@ -177,7 +180,8 @@ class RobotSet(Sequence[DeviceEndpoints]):
         name = endpoints.names.name
         share = change.shares.get(name, endpoints.share)
         is_other = script_parameters.script_of(old, name) != script_parameters.script_of(change.values, name)
-        if is_other or _program(share) != _program(endpoints.share):
+        is_replaced = name in change.shares and endpoints.program.is_foreign  # a tool has loaded another program since
+        if is_other or is_replaced or _program(share) != _program(endpoints.share):
             if "behaviour" not in change.changes:
                 self._behaviour = ""
             self._start_program(endpoints, share or Assignment(None))

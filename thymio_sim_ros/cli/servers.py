@@ -1,0 +1,99 @@
+"""Options of the servers by which other programs reach the robots, and what the banner says about them."""
+
+from __future__ import annotations
+
+import argparse
+import ipaddress
+from dataclasses import dataclass
+
+from thymio_sim_ros.bridge.access import is_loopback
+from thymio_sim_ros.bridge.server_thread import check_free
+from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.network.settings import ASEBA_PORT, OFF, NetworkSettings
+from thymio_sim_ros.suite_config import ADDRESS
+
+__all__ = ["Servers", "add_server_options", "address_argument", "port_argument", "select_servers"]
+
+
+@dataclass(frozen=True, slots=True)
+class Servers:
+    """Settings of the servers, and lines of the banner."""
+
+    settings: NetworkSettings
+    lines: tuple[str, ...]
+
+
+def add_server_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of all servers for other programs."""
+    group = parser.add_argument_group("other programs", "servers for Aseba Studio and other tools (docs/networks.md)")
+    group.add_argument(
+        "--aseba-port",
+        type=port_argument,
+        metavar="PORT",
+        help=f"Aseba port of the first robot, further robots have the next ports (default: {ASEBA_PORT} if it is free)",
+    )
+    group.add_argument("--aseba-shared", action="store_true", help="all robots on one Aseba port")
+    group.add_argument(
+        "--aseba-address",
+        type=address_argument,
+        default=ADDRESS,
+        metavar="IPV4",
+        help="address of the Aseba ports; 0.0.0.0 is the whole network, from which everyone can then control the "
+        "robots, because this protocol has no token (default: %(default)s)",
+    )
+    group.add_argument("--no-aseba", action="store_true", help="no Aseba port")
+    group.add_argument("--no-announcement", action="store_true", help="do not announce the servers by mDNS")
+
+
+def select_servers(options: argparse.Namespace, robots: int) -> Servers:
+    """Return which servers run. One with a default port is off if that port is taken.
+
+    Raises UsageError for a chosen port that cannot be used.
+    """
+    aseba_port, line = _aseba(options, robots)
+    settings = NetworkSettings(
+        aseba_port=aseba_port,
+        aseba_address=options.aseba_address,
+        is_aseba_shared=options.aseba_shared,
+        is_announced=not options.no_announcement,
+    )
+    return Servers(settings, tuple(text for text in (line,) if text))
+
+
+def _aseba(options: argparse.Namespace, robots: int) -> tuple[int, str]:
+    """Return the port, and the line of the banner."""
+    if options.no_aseba or (options.headless and options.aseba_port is None):
+        return OFF, ""
+    first = options.aseba_port or ASEBA_PORT
+    count = 1 if options.aseba_shared else max(robots, 1)
+    try:
+        for port in range(first, first + count):
+            check_free(options.aseba_address, port)
+    except (OSError, OverflowError) as error:
+        reason = error.strerror if isinstance(error, OSError) else f"found port {port}, expected at most 65535"
+        if options.aseba_port is not None:
+            raise UsageError(f"Aseba port {port}: {reason}; choose another with --aseba-port") from error
+        return OFF, (
+            f"Aseba     none: {reason}; Thymio Suite or Aseba Playground may be running; another port: --aseba-port"
+        )
+    places = f"{first}" if count == 1 else f"{first} to {first + count - 1}"
+    host = "localhost" if is_loopback(options.aseba_address) else options.aseba_address
+    everyone = "" if is_loopback(options.aseba_address) else ", open to everyone in your network"
+    return first, f"Aseba     {host} port {places} (Studio: tcp:host={host};port={first}){everyone}"
+
+
+def port_argument(text: str) -> int:
+    """Read a port. Raises ArgumentTypeError."""
+    if not text.isdecimal() or not 1 <= int(text) <= 65535:
+        raise argparse.ArgumentTypeError(f"'{text}' found, expected a port from 1 to 65535")
+    return int(text)
+
+
+def address_argument(text: str) -> str:
+    """Read an address to listen on. Raises ArgumentTypeError."""
+    try:
+        return text if text == ADDRESS else str(ipaddress.IPv4Address(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' found, expected {ADDRESS}, 0.0.0.0 for the whole network, or an IPv4 address of this computer"
+        ) from error
