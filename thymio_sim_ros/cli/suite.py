@@ -45,7 +45,7 @@ def run(argv: Sequence[str]) -> int:
         _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
-    servers = select_servers(options, len(robots))
+    servers = select_servers(options, len(robots), suite.tokens or Tokens())
     suite = replace(suite, network=servers.settings)
     check_ros()
     if (notice := startup_notice(len(robots))) is not None:

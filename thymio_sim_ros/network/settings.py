@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ASEBA_PORT", "OFF", "NetworkSettings"]
+__all__ = ["ASEBA_PORT", "OFF", "TDM_PORT", "TDM_WS_PORT", "NetworkSettings"]
 
 ASEBA_PORT = 33333
 """The port of the first robot, as in all Aseba tools."""
+
+TDM_PORT, TDM_WS_PORT = 8596, 8597
+"""The ports where clients look for a Thymio Device Manager: TCP and WebSocket."""
 
 OFF = -1
 """Instead of a port: the server does not run."""
@@ -22,15 +25,23 @@ class NetworkSettings:
         aseba_address: address on which the Aseba ports listen. The protocol has no token: every program that reaches
             this address controls the robots.
         is_aseba_shared: whether all robots are on one Aseba port.
+        address: address on which servers with a token or password listen.
+        tdm_port: TCP port of the Thymio Device Manager; `OFF` also for its WebSocket port.
+        tdm_ws_port: WebSocket port of the Thymio Device Manager.
+        allowed_origins: additional origins of web pages that may connect; `*` allows all.
         is_announced: whether services are announced by mDNS.
     """
 
     aseba_port: int = OFF
     aseba_address: str = "localhost"
     is_aseba_shared: bool = False
+    address: str = "localhost"
+    tdm_port: int = OFF
+    tdm_ws_port: int = TDM_WS_PORT
+    allowed_origins: tuple[str, ...] = ()
     is_announced: bool = True
 
     @property
     def is_off(self) -> bool:
         """Whether nothing is served."""
-        return self.aseba_port == OFF
+        return self.aseba_port == OFF and self.tdm_port == OFF

@@ -10,6 +10,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.network.aseba_server import AsebaServer
 from thymio_sim_ros.network.hub import Hub
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
@@ -34,10 +35,21 @@ class Server(Protocol):
 class NetworkThread:
     """Runs the servers of a hub. Invariant: hub and servers are used in this thread only."""
 
-    def __init__(self, settings: NetworkSettings, *, warn: Callable[[str], None], info: Callable[[str], None]) -> None:
-        """Start the thread. `warn` and `info` take lines for the log, in any thread."""
+    def __init__(
+        self,
+        settings: NetworkSettings,
+        *,
+        tokens: Tokens | None = None,
+        warn: Callable[[str], None],
+        info: Callable[[str], None],
+    ) -> None:
+        """Start the thread. `tokens`: those that clients on other computers need, where the protocol allows it.
+
+        `warn` and `info` take lines for the log, in any thread.
+        """
         self.hub = Hub()
         self._settings, self._warn, self._info = settings, warn, info
+        self._tokens = tokens or Tokens()
         self._reported_s: dict[str, float] = {}
         self._loop = asyncio.new_event_loop()
         self._stop = asyncio.Event()
@@ -103,6 +115,10 @@ class NetworkThread:
             aseba = AsebaServer(self.hub, settings, self.report)
             aseba.ports_changed = lambda: self._set_ports(aseba)
             servers.append(aseba)
+        if settings.tdm_port != OFF:
+            from thymio_sim_ros.network.tdm_server import TdmServer
+
+            servers.append(TdmServer(self.hub, settings, self.report, password=self._tokens.full))
         return servers
 
     def _set_ports(self, server: AsebaServer) -> None:

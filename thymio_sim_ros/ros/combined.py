@@ -67,8 +67,8 @@ def suite_nodes(
     robots = [names.name for names in simulator.endpoints.robots.names.values()]
     yield simulator
     link = None if peers is None else peers.link(simulator)
-    yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True, link=link)
     foxglove_port, tokens = suite.foxglove_port, suite.tokens
+    yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True, link=link, tokens=tokens)
     if suite.foxglove:
         from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 

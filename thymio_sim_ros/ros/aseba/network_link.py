@@ -13,6 +13,7 @@ from functools import partial
 from rclpy.node import Node
 
 from aseba_vm.protocol import Message
+from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.network.hub import Network
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.network.thread import NetworkThread
@@ -41,8 +42,10 @@ class _Post:
 class NetworkLink:
     """The networks of all robots of a runtime, one for each robot."""
 
-    def __init__(self, node: Node, robots: RobotSet, settings: NetworkSettings, *, first_id: int) -> None:
-        """Start the servers; `first_id`: number of the robot at the first port."""
+    def __init__(
+        self, node: Node, robots: RobotSet, settings: NetworkSettings, *, first_id: int, tokens: Tokens
+    ) -> None:
+        """Start the servers. `first_id`: number of the robot at the first port; `tokens`: those that clients need."""
         log = node.get_logger()
         self._robots, self._first_id = robots, first_id
         self._networks: dict[DeviceEndpoints, Network] = {}
@@ -53,7 +56,7 @@ class NetworkLink:
             weight=lambda post: len(post.messages),
             capacity=CAPACITY,
         )
-        self.thread = NetworkThread(settings, warn=log.warning, info=log.info)
+        self.thread = NetworkThread(settings, tokens=tokens, warn=log.warning, info=log.info)
         robots.on_change = self.update
         self.update()
 
