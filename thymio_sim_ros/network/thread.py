@@ -119,6 +119,10 @@ class NetworkThread:
             from thymio_sim_ros.network.tdm_server import TdmServer
 
             servers.append(TdmServer(self.hub, settings, self.report, password=self._tokens.full))
+        if settings.http_port != OFF:
+            from thymio_sim_ros.network.http.server import HttpServer
+
+            servers.append(HttpServer(self.hub, settings, self.report, tokens=self._tokens))
         return servers
 
     def _set_ports(self, server: AsebaServer) -> None:
