@@ -220,6 +220,22 @@ def test_pause_step_and_the_end_of_a_handler(bench):
     assert places[-1][1] == 2
 
 
+def test_an_event_that_arrives_during_a_pause_waits_before_its_first_instruction(bench):
+    words, _ = bench.write(SOURCE)
+    bench.send(Run(0, ID))
+    bench.run()
+    bench.send(Pause(0, ID), UserMessage(0, 0, (1, 2)))
+    start = table(words)[0]
+    assert bench.run() == [ExecutionStateChanged(ID, start, 3)]
+    assert bench.run() == []
+    assert bench.states(Step(0, ID))[0][0] > start
+    bench.send(Run(0, ID))
+    bench.run()
+    bench.device.run_control.pause()  # on the page: its next step starts the event
+    bench.send(UserMessage(0, 0, (1, 2)))
+    assert [message.flags for message in bench.run()] == []
+
+
 def test_a_pending_event_starts_at_the_end_of_a_handler(bench):
     words, _ = bench.write("var n\nonevent ping\nn = 1\nonevent pong\nn = 2\n")
     bench.send(Run(0, ID))

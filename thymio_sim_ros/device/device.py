@@ -252,6 +252,7 @@ class AsebaDevice:
         Native calls and events count as several instructions (`costs`).
         """
         self._scheduler.run(budget, self.run_control.process_messages)
+        self.run_control.prepare_event()
 
     def pop_commands(self) -> list[Command]:
         """Return and clear the commands for the actuators.

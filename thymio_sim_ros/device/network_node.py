@@ -28,6 +28,9 @@ QUESTIONS = (
 )
 """Messages that change nothing."""
 
+PAUSING = (protocol.Pause, protocol.Step, protocol.Reset)
+"""Messages after which the next event waits before its first instruction."""
+
 UUID, NAME, RADIO = 1, 2, 3
 """Kinds of device data."""
 
@@ -139,6 +142,8 @@ class NetworkNode:
                     self.name = message.data[:MAX_NAME].decode(errors="ignore")
             case _:
                 self._run_control(message)
+                if isinstance(message, PAUSING):
+                    self._control.stops_at_events = True
 
     def _run_control(self, message: Message) -> None:
         match message:
@@ -174,6 +179,7 @@ class NetworkNode:
         before = self._length or len(self._host.program.program.words)
         self._length = end if message.start == 0 else max(end, before)
         self._device.write_bytecode(words, message.start)
+        self._control.stops_at_events = True
 
     def _description(self, version: int) -> Iterator[Message]:
         yield self._header(version)

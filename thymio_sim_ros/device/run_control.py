@@ -54,6 +54,11 @@ class RunControl:
         self._services, self._outputs = services, outputs
         self.observe: Callable[[Message], None] | None = None
         """Called with each message of the machine that is processed."""
+        self.stops_at_events = False
+        """Whether the next event is started as soon as it arrives while the machine is paused between events.
+
+        It then waits before its first instruction, as tools of a network expect it; until the machine runs again.
+        """
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
         self._addresses: list[int] = []
@@ -107,7 +112,7 @@ class RunControl:
     def start(self) -> None:
         """Execute from where the machine is, without the step that leaves a breakpoint."""
         self._vm.resume()
-        self._state, self._fault = RUNNING, None
+        self._state, self._fault, self.stops_at_events = RUNNING, None, False
         self._scheduler.invalidate_timer_periods()
 
     def pause(self) -> None:
@@ -145,6 +150,11 @@ class RunControl:
             self._step(self._vm.step)
         if self._state == PAUSED and not self._scheduler.start_next_if_idle() and not was_active:
             self._vm.report_state()
+
+    def prepare_event(self) -> None:
+        """Start the next pending event if the machine waits for one (`stops_at_events`); it executes nothing."""
+        if self.stops_at_events and self._state == PAUSED and self._scheduler.start_next_if_idle():
+            self._variables.count_write()
 
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
         """Replace all breakpoints at lines of the program's file, from 1. Returns the lines where they were set."""

@@ -68,7 +68,9 @@ class AsebaServer:
             self._ports[place] = port
             try:
                 port.open(self._settings.aseba_address, first + place if first else 0)
-            except (OSError, OverflowError) as error:
+            except OSError as error:
+                self._report(f"aseba {place}", f"Aseba port of {network.name or 'the robot'}: {error.strerror}")
+            except OverflowError as error:  # beyond 65535
                 self._report(f"aseba {place}", f"Aseba port of {network.name or 'the robot'}: {error}")
         self._ports[place].add(network)
         self.ports_changed()

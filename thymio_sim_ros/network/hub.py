@@ -74,11 +74,17 @@ class Connection:
 class Network:
     """The nodes behind one stream, and their clients."""
 
-    def __init__(self, name: str, nodes: Nodes, *, place: int = 0, is_simulated: bool = True) -> None:
-        """`name`: that of the robot, or "" ; `place`: of the robot among all, from 0, which decides its port."""
+    def __init__(
+        self, name: str, nodes: Nodes, *, place: int = 0, node_ids: Sequence[int] = (), is_simulated: bool = True
+    ) -> None:
+        """`name`: that of the robot, or ""; `place`: of the robot among all, from 0, which decides its port.
+
+        `node_ids`: numbers of the nodes when the network was created, if they are known.
+        """
         self.name = name
         self.nodes = nodes
         self.place = place
+        self.node_ids = tuple(node_ids)
         self.is_simulated = is_simulated
         self.program: ThymioProgram | None = None
         """The program of the robot, if it is known."""

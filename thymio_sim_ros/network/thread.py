@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import socket
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.network.announcement import ASEBA, Announcement, Announcer, aseba_properties
 from thymio_sim_ros.network.aseba_server import AsebaServer
-from thymio_sim_ros.network.hub import Hub
+from thymio_sim_ros.network.hub import Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 
 __all__ = ["NetworkThread", "Server"]
@@ -56,6 +58,8 @@ class NetworkThread:
         self._thread = threading.Thread(target=self._run, name="network-servers", daemon=True)
         self._is_closed = False
         self._ports: dict[str, int] = {}
+        self._announcers: dict[str, Announcer] = {}
+        """By address."""
         self._thread.start()
 
     @property
@@ -75,6 +79,13 @@ class NetworkThread:
         self._is_closed = True
         self.call(self._stop.set)
         self._thread.join(_CLOSE_TIMEOUT_S)
+
+    def announce(self, server: str, address: str, announcements: Sequence[Announcement]) -> None:
+        """Announce what a server offers at an address, instead of what it offered before; only in this thread."""
+        if self._settings.is_announced:
+            if address not in self._announcers:
+                self._announcers[address] = Announcer(address, self.report)
+            self._announcers[address].announce(server, announcements)
 
     def report(self, about: str, text: str) -> None:
         """Log a warning, at most once a minute for each subject; only in this thread."""
@@ -102,6 +113,8 @@ class NetworkThread:
         await self._stop.wait()
         for server in reversed(servers):
             await server.close()
+        for announcer in self._announcers.values():
+            await announcer.close()
         others = asyncio.all_tasks() - {asyncio.current_task()}
         for task in others:
             task.cancel()
@@ -127,6 +140,14 @@ class NetworkThread:
 
     def _set_ports(self, server: AsebaServer) -> None:
         self._ports = {network.name: port for port, networks in server.ports.items() for network in networks}
+        self.announce("aseba", self._settings.aseba_address, [_aseba(*item) for item in server.ports.items()])
+
+
+def _aseba(port: int, networks: Sequence[Network]) -> Announcement:
+    robot = networks[0].name if len(networks) == 1 else ""
+    nodes = [node for network in networks for node in network.node_ids]
+    name = f"{robot or 'Thymio'} on {socket.gethostname()}"
+    return Announcement(ASEBA, name, port, aseba_properties(nodes))
 
 
 def _described(context: dict[str, Any]) -> tuple[str, str]:

@@ -70,7 +70,8 @@ class NetworkLink:
         for robot in self._robots:
             if robot not in self._networks:
                 nodes = _Robot(robot, self._mailbox)
-                network = Network(robot.names.name, nodes, place=robot.number - self._first_id)
+                place, ids = robot.number - self._first_id, (robot.number,)
+                network = Network(robot.names.name, nodes, place=place, node_ids=ids)
                 network.remember = nodes.remember
                 self._networks[robot] = network
                 self.thread.call(network.set_program, robot.program)
