@@ -17,7 +17,7 @@ from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from http import HTTPStatus
-from socket import SO_SNDBUF, SOL_SOCKET, socket
+from socket import SO_SNDBUF, SOL_SOCKET, gethostname, socket
 from uuid import uuid4
 
 from websockets.asyncio.server import Server, ServerConnection, serve
@@ -26,6 +26,7 @@ from websockets.http11 import Request, Response
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.origin_policy import is_allowed
 from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.network.announcement import DEVICE_MANAGER, Announcement
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.conversation.clients import Closing
@@ -70,12 +71,14 @@ class TdmServer:
         hub: Hub,
         settings: NetworkSettings,
         report: Report,
+        announce: Callable[[Sequence[Announcement]], None] = lambda announcements: None,
         *,
         password: str = "",
         max_clients: int = MAX_CLIENTS,
         max_unsent: int = MAX_UNSENT,
     ) -> None:
         """Serve nothing until `start`. `password`: what clients on other computers must give; empty: nothing."""
+        self._announce = announce
         self._hub, self._settings, self._report = hub, settings, report
         self._password, self._max_clients, self._max_unsent = password, max_clients, max_unsent
         self._clock_ns = time.time_ns() - time.monotonic_ns()
@@ -116,6 +119,9 @@ class TdmServer:
         self._hub.follow(self)
         self._run(self._open(tcp, websocket))
         self._run(self._advance())
+        properties = ("uuid", str(self._id)), ("ws-port", str(self.ws_port))
+        name = f"Thymio Device Manager on {gethostname()}"
+        self._announce([Announcement(DEVICE_MANAGER, name, self.port, properties)])
 
     async def close(self) -> None:
         """Close ports and connections."""

@@ -9,6 +9,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Protocol
 
 from thymio_sim_ros.bridge.access import Tokens
@@ -131,7 +132,8 @@ class NetworkThread:
         if settings.tdm_port != OFF:
             from thymio_sim_ros.network.tdm_server import TdmServer
 
-            servers.append(TdmServer(self.hub, settings, self.report, password=self._tokens.full))
+            announce = partial(self.announce, "tdm", settings.address)
+            servers.append(TdmServer(self.hub, settings, self.report, announce, password=self._tokens.full))
         if settings.http_port != OFF:
             from thymio_sim_ros.network.http.server import HttpServer
 
