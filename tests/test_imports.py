@@ -57,7 +57,8 @@ RULES = {
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
     f"{OURS}.web": Rule(_names("web", "bridge", "playground_index", "resources", "sim"), frozenset({"aiohttp"})),
     f"{OURS}.network": Rule(
-        _names("addresses", "aseba_vm", "bridge", "device.programs", "network"), frozenset({"websockets", "zeroconf"})
+        _names("addresses", "aseba_vm", "bridge", "device.programs", "network"),
+        frozenset({"serial", "websockets", "zeroconf"}),
     ),
     f"{OURS}.network.http": Rule(
         _names(

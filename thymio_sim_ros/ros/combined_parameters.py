@@ -63,6 +63,8 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
         RUNTIME: RuntimeParams(
             path=suite.program,
             behaviour=suite.behaviour,
+            robot=suite.robot,
+            cmd_vel_timeout=suite.cmd_vel_timeout_s,
             layout=device.layout,
             events=device.events,
             card=str(device.card or ""),

@@ -26,6 +26,8 @@ from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.device.programs.status import OFF, RUNNING
+from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
+from thymio_sim_ros.device.robot_device import RobotDevice, RobotHost, RobotNode
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.event_endpoints import EventEndpoints
 from thymio_sim_ros.ros.aseba.output_endpoints import OutputEndpoints
@@ -89,19 +91,30 @@ class DeviceEndpoints:
         bus: RobotBus,
         diagnostics: RuntimeDiagnostics,
         options: DeviceOptions = DEFAULTS,
+        remote: RemoteRobot | None = None,
         debug_options: DebugOptions | None = None,
         has_driver: bool = False,
         is_fed: bool = False,
         link: SimulatorLink | None = None,
     ) -> None:
-        """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property."""
+        """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property.
+
+        `remote`: the robot behind a network, with sensors and actuators of its own; None: a device with these
+        `options`.
+        """
         self.names = names
         self.number = number
-        self.device = AsebaDevice(node_id=number, options=options)
         self.share: Assignment | None = None
-        self._host = BehaviorHost(self.device)
-        self.network_node = NetworkNode(self._host, name=names.name, uuid=uuid.uuid4().bytes)
+        self._host: RobotHost
+        self.network_node: RobotNode
         """The robot as a node of an Aseba network."""
+        if remote is None:
+            host = BehaviorHost(AsebaDevice(node_id=number, options=options))
+            self._host, self.network_node = host, NetworkNode(host, name=names.name, uuid=uuid.uuid4().bytes)
+        else:
+            self._host, self.network_node = remote.host, remote.gateway
+        self.device: RobotDevice = self._host.device
+        """The robot's machine."""
         self.send_to_network: Callable[[Sequence[Message]], None] | None = None
         """Takes the messages of the node for all clients, while there are clients."""
         self.on_program: Callable[[ThymioProgram], None] = lambda program: None
@@ -114,7 +127,8 @@ class DeviceEndpoints:
         self._last_slice_s = 0.0
         self._replaced = 0
         self._overload = ""
-        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None)
+        rows = None if remote is None else ()
+        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None, rows=rows)
         self.warn = ThrottledLog(node)
         self._status = StatusEndpoints(node, names, number=number)
         self._events = EventEndpoints(node, names, lambda event, args: bus.emit(self, event, args), self.warn)
@@ -339,9 +353,8 @@ class DeviceEndpoints:
             self._bus.run_until_idle()
             status = self.device.status
             response.success = status.state != OFF
-            response.message = (
-                describe_position(status) if response.success else f"{word}: the robot is off; aseba/run switches it on"
-            )
+            off = status.fault or "the robot is off; aseba/run switches it on"
+            response.message = describe_position(status) if response.success else f"{word}: {off}"
             return response
 
         return callback

@@ -158,6 +158,14 @@ class RuntimeParams:
         fixed=True,
         choices=("raw", "driver"),
     )
+    robot: str = param(
+        "",
+        "Address of a real robot, in place of a simulator: tcp:host:port, or ser:device (ser is the first Thymio)",
+        fixed=True,
+    )
+    cmd_vel_timeout: float = param(
+        1.0, "Time after which a velocity for a real robot ends, s; 0 is never", low=0.0, high=3600.0, fixed=True
+    )
     layout: str = param(
         "thymio", "Variables and native functions: thymio (firmware 14) or playground (Aseba Playground)", fixed=True
     )
