@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import http.client
 import json
+import os
 import random
 import shutil
 import socket
@@ -25,6 +26,8 @@ DATA = Path(__file__).parents[2] / "data" / "network"
 PROGRAM = (DATA / "http.aesl").read_bytes()
 N = "/nodes/thymio-II"
 DEADLINE_S = 20.0
+MUTATED = int(os.environ.get("THYMIO_SIM_FUZZ", "1200"))
+"""Requests of the test with mutated ones."""
 
 
 @pytest.fixture
@@ -294,7 +297,7 @@ def test_mutated_requests_do_no_harm(server):
 
     def attack(seed):
         mine = random.Random(seed)
-        for _ in range(300):
+        for _ in range(MUTATED // 4):
             talk(server, mutated(mine, mine.choice(REQUESTS)), is_whole=True)
 
     attackers = [threading.Thread(target=attack, args=(rng.random(),)) for _ in range(4)]
