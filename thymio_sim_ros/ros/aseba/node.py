@@ -83,7 +83,7 @@ class AsebaRuntime:
         self.node = parameter_node(
             "aseba_runtime",
             context=context,
-            names_file=lambda name: name.endswith("script.path"),
+            is_set_again=self._is_set_again,
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
         )
@@ -168,6 +168,11 @@ class AsebaRuntime:
         node.create_timer(DIAGNOSTICS_S, lambda: self._diagnostics.publish_all(self.robots), clock=wall)
         node.create_timer(DIAGNOSTICS_S, self._follower.check_publisher, clock=wall)
         node.create_timer(SUBSCRIBERS_S, self.robots.poll_subscribers, clock=wall)
+
+    def _is_set_again(self, parameter: str) -> bool:
+        """Whether a parameter acts even if its value is the same: the file may differ, or a tool's program runs."""
+        is_replaced = any(endpoints.program.is_foreign for endpoints in getattr(self, "robots", ()))
+        return parameter.endswith("script.path") or (is_replaced and parameter.endswith("script.source"))
 
     def _publish_behaviours(self) -> None:
         """Publish the retained list of built-in behaviors."""
