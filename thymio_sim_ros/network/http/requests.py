@@ -1,4 +1,4 @@
-"""Requests of the HTTP interface as values: path and body in, an action out (docs/spec/aseba-protocol.md part 3).
+"""Requests of the HTTP interface as values: path and body in, an action out (docs/spec/aseba-protocol.md section 3).
 
 A path is decoded before it is split, and empty parts are ignored, as in the reference: `%2F` separates too.
 """
