@@ -47,12 +47,19 @@ class VirtualDisplay:
             self._key(name, is_shifted=letter in _SHIFTED or letter.isupper())
         self._x11.XSync(self._display, 0)
 
+    def select_all(self) -> None:
+        """Press Ctrl-A."""
+        self._press("Control_L", "a")
+        self._x11.XSync(self._display, 0)
+
     def close(self) -> None:
         """Close the connection to the display."""
         self._x11.XCloseDisplay(self._display)
 
     def _key(self, name: str, *, is_shifted: bool) -> None:
-        keys = ["Shift_L", name] if is_shifted else [name]
+        self._press(*(["Shift_L", name] if is_shifted else [name]))
+
+    def _press(self, *keys: str) -> None:
         codes = [self._x11.XKeysymToKeycode(self._display, self._x11.XStringToKeysym(key.encode())) for key in keys]
         for code in codes:
             self._xtst.XTestFakeKeyEvent(self._display, code, 1, 0)
