@@ -59,7 +59,7 @@ def test_a_program_loaded_by_http_is_shown_with_its_text_and_its_topics_work(ros
     ros.until(lambda: status["program"] == "by HTTP")
     described = json.loads(targets[-1].data)["program"]
     assert "# doubled" in described["source"]
-    assert "foreign" not in described
+    assert not described["foreign"]
     assert get_variables(ros, "n") == [[3]]
     answers = ros.collect(Int16MultiArray, "/aseba/events/pong")
     assert ask("GET", "/nodes/1/ping/21") == (204, "")

@@ -1,4 +1,4 @@
-"""Replies of the HTTP interface as values, in the JSON forms of the reference (docs/spec/aseba-protocol.md section 3)."""
+"""Replies of the HTTP interface as values, in the forms of the reference (docs/spec/aseba-protocol.md section 3)."""
 
 from __future__ import annotations
 
