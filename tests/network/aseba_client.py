@@ -8,7 +8,7 @@ import time
 
 from aseba_vm.protocol import FrameReader, Message, decode, encode
 
-DEADLINE_S = 20.0
+DEADLINE_S = 60.0
 """Time-out of any answer, generous for loaded computers."""
 
 

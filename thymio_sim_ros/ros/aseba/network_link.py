@@ -78,6 +78,10 @@ class NetworkLink:
                 self.thread.call(self.thread.hub.add, network)
                 robot.on_program = partial(self.thread.call, network.set_program)
 
+    def drain(self) -> None:
+        """Handle what clients sent before the node had an executor, which nothing else would wake."""
+        self._mailbox.drain()
+
     def close(self) -> None:
         """Stop the servers; a second call has no effect."""
         self._mailbox.close()

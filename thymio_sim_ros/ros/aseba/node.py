@@ -168,6 +168,8 @@ class AsebaRuntime:
         node.create_timer(DIAGNOSTICS_S, lambda: self._diagnostics.publish_all(self.robots), clock=wall)
         node.create_timer(DIAGNOSTICS_S, self._follower.check_publisher, clock=wall)
         node.create_timer(SUBSCRIBERS_S, self.robots.poll_subscribers, clock=wall)
+        if self.network is not None:
+            node.create_timer(SUBSCRIBERS_S, self.network.drain, clock=wall)
 
     def _is_set_again(self, parameter: str) -> bool:
         """Whether a parameter acts even if its value is the same: the file may differ, or a tool's program runs."""
