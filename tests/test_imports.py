@@ -69,7 +69,9 @@ RULES = {
     ),
     f"{OURS}.network.http.server": Rule(_names("aseba_vm", "bridge", "network", "web"), frozenset({"aiohttp"})),
     f"{OURS}.network.tdm.protocol": Rule(_names("network.tdm.protocol"), frozenset({"flatbuffers"}), NO_WALL_CLOCK),
-    f"{OURS}.network.tdm": Rule(_names("aseba_vm", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK),
+    f"{OURS}.network.tdm": Rule(
+        _names("aseba_vm", "device.programs", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK
+    ),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.tf": Rule(

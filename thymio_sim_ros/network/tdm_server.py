@@ -17,7 +17,7 @@ from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from http import HTTPStatus
-from socket import SO_SNDBUF, SOL_SOCKET, gethostname, socket
+from socket import SO_SNDBUF, SOL_SOCKET, socket
 from uuid import uuid4
 
 from websockets.asyncio.server import Server, ServerConnection, serve
@@ -26,7 +26,6 @@ from websockets.http11 import Request, Response
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.origin_policy import is_allowed
 from thymio_sim_ros.bridge.server_thread import listen
-from thymio_sim_ros.network.announcement import DEVICE_MANAGER, Announcement
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.conversation.clients import Closing
@@ -71,18 +70,23 @@ class TdmServer:
         hub: Hub,
         settings: NetworkSettings,
         report: Report,
-        announce: Callable[[Sequence[Announcement]], None] = lambda announcements: None,
+        opened: Callable[[TdmServer], None] = lambda server: None,
         *,
         password: str = "",
         max_clients: int = MAX_CLIENTS,
         max_unsent: int = MAX_UNSENT,
     ) -> None:
-        """Serve nothing until `start`. `password`: what clients on other computers must give; empty: nothing."""
-        self._announce = announce
+        """Serve nothing until `start`.
+
+        `opened` is called when the ports are open. `password`: what clients on other computers must give; empty:
+        nothing.
+        """
+        self._opened = opened
         self._hub, self._settings, self._report = hub, settings, report
         self._password, self._max_clients, self._max_unsent = password, max_clients, max_unsent
         self._clock_ns = time.time_ns() - time.monotonic_ns()
-        self._id = uuid4()
+        self.uuid = uuid4()
+        """Its id."""
         self._manager: DeviceManager
         self.port, self.ws_port = OFF, OFF
         """The open ports."""
@@ -114,14 +118,12 @@ class TdmServer:
         for listener in (*tcp, *websocket):  # clients inherit it; otherwise the kernel keeps megabytes of old values
             listener.setsockopt(SOL_SOCKET, SO_SNDBUF, _KERNEL_BUFFER)
         self.port, self.ws_port = tcp[0].getsockname()[1], websocket[0].getsockname()[1]
-        manager = ManagerSettings(self._id, self.ws_port, self._password)
+        manager = ManagerSettings(self.uuid, self.ws_port, self._password)
         self._manager = DeviceManager(manager, self._now_ns())
         self._hub.follow(self)
         self._run(self._open(tcp, websocket))
         self._run(self._advance())
-        properties = ("uuid", str(self._id)), ("ws-port", str(self.ws_port))
-        name = f"Thymio Device Manager on {gethostname()}"
-        self._announce([Announcement(DEVICE_MANAGER, name, self.port, properties)])
+        self._opened(self)
 
     async def close(self) -> None:
         """Close ports and connections."""
@@ -268,6 +270,9 @@ class TdmServer:
             return
         self._is_delivering = True
         try:
+            for network, program in self._manager.pop_programs():
+                if network in self._links:
+                    self._links[network].remember(program)
             while messages := self._manager.pop_messages():
                 for network, message in messages:
                     if network in self._links:

@@ -9,14 +9,16 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from functools import partial
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from thymio_sim_ros.bridge.access import Tokens
-from thymio_sim_ros.network.announcement import ASEBA, Announcement, Announcer, aseba_properties
+from thymio_sim_ros.network.announcement import ASEBA, DEVICE_MANAGER, Announcement, Announcer, aseba_properties
 from thymio_sim_ros.network.aseba_server import AsebaServer
 from thymio_sim_ros.network.hub import Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.network.tdm_server import TdmServer
 
 __all__ = ["NetworkThread", "Server"]
 
@@ -59,6 +61,7 @@ class NetworkThread:
         self._thread = threading.Thread(target=self._run, name="network-servers", daemon=True)
         self._is_closed = False
         self._ports: dict[str, int] = {}
+        self._tdm_ports = (OFF, OFF)
         self._announcers: dict[str, Announcer] = {}
         """By address."""
         self._thread.start()
@@ -67,6 +70,11 @@ class NetworkThread:
     def ports(self) -> dict[str, int]:
         """Aseba port of each robot by name; from any thread."""
         return dict(self._ports)
+
+    @property
+    def tdm_ports(self) -> tuple[int, int]:
+        """TCP and WebSocket port of the Thymio Device Manager, `OFF` if it does not run; from any thread."""
+        return self._tdm_ports
 
     def call(self, function: Callable[..., object], *arguments: Any) -> None:
         """Call a function in the thread; from any thread. Does nothing once the thread has ended."""
@@ -132,8 +140,7 @@ class NetworkThread:
         if settings.tdm_port != OFF:
             from thymio_sim_ros.network.tdm_server import TdmServer
 
-            announce = partial(self.announce, "tdm", settings.address)
-            servers.append(TdmServer(self.hub, settings, self.report, announce, password=self._tokens.full))
+            servers.append(TdmServer(self.hub, settings, self.report, self._opened, password=self._tokens.full))
         if settings.http_port != OFF:
             from thymio_sim_ros.network.http.server import HttpServer
 
@@ -143,6 +150,12 @@ class NetworkThread:
     def _set_ports(self, server: AsebaServer) -> None:
         self._ports = {network.name: port for port, networks in server.ports.items() for network in networks}
         self.announce("aseba", self._settings.aseba_address, [_aseba(*item) for item in server.ports.items()])
+
+    def _opened(self, server: TdmServer) -> None:
+        self._tdm_ports = server.port, server.ws_port
+        name = f"Thymio Device Manager on {socket.gethostname()}"
+        properties = ("uuid", str(server.uuid)), ("ws-port", str(server.ws_port))
+        self.announce("tdm", self._settings.address, [Announcement(DEVICE_MANAGER, name, server.port, properties)])
 
 
 def _aseba(port: int, networks: Sequence[Network]) -> Announcement:

@@ -61,7 +61,10 @@ def test_a_websocket_client_speaks_the_same_without_lengths(one: Served) -> None
         assert isinstance(hello, m.ConnectionHandshake)
         assert nodes.nodes[0].name == "thymio_0"
         client.send(encode(m.LockNode(5, nodes.nodes[0].node_id)))
-        assert decode(client.recv(5)) == m.RequestCompleted(5)
+        while isinstance(found := decode(client.recv(5)), m.NodesChanged):
+            nodes = found
+        assert found == m.RequestCompleted(5)
+        assert nodes.nodes[0].status == Status.READY
 
 
 @pytest.mark.parametrize("origin", ["https://example.org", "null", "http://192.168.1.7"])

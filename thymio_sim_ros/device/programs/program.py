@@ -121,7 +121,7 @@ def load_file(
 
 
 def of_node(
-    program: Program, node: aesl.Node, network: aesl.Network, *, name: str, text: str, layout: str = THYMIO
+    program: Program, node: aesl.Node, network: aesl.Network, name: str, text: str, layout: str = THYMIO
 ) -> ThymioProgram:
     """Return the compiled program of a node of a file with this name and text."""
     lines, shown = tuple(row + 1 for row in node.rows_in_file()), replace(node, plugins=())
@@ -179,4 +179,4 @@ def _compile(
             raise ProgramError(name, None, None, message) from error
         row, col = node.place(error.pos.offset)
         raise ProgramError(name, row + 1, col + 1, message) from error
-    return of_node(program, node, network, name=name, text=text, layout=layout)
+    return of_node(program, node, network, name, text, layout)

@@ -68,7 +68,7 @@ def _compile(text: str, network: aesl.Network, wanted: NodeToLoad) -> ThymioProg
             raise RequestError(400, str(error)) from error
         row, col = node.place(error.pos.offset)
         raise RequestError(400, f"line {row + 1}, column {col + 1}: {error}") from error
-    return of_node(program, node, network, name=NAME, text=text)
+    return of_node(program, node, network, NAME, text)
 
 
 def _node_for(network: aesl.Network, wanted: NodeToLoad) -> aesl.Node:

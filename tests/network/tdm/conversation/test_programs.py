@@ -6,11 +6,12 @@ from uuid import UUID
 
 import pytest
 
-from aseba_vm import aesl, targets
+from aseba_vm import aesl, compile, targets
 from tests.network.tdm.machine_node import MachineNode
 from tests.network.tdm.talk import Talk, values
 from thymio_sim_ros.network.tdm.protocol import messages as m
 from thymio_sim_ros.network.tdm.protocol.constants import Command, ErrorCode, VMError, VMState, Watch
+from thymio_sim_ros.network.tdm.protocol.values import encode_value
 
 GROUP, NODE = UUID(int=1), UUID(int=2)
 
@@ -268,3 +269,18 @@ def test_a_wrong_file_is_an_error_with_its_place(talk: Talk, text: str, place: t
     assert isinstance(answer, m.CompilationResultFailure)
     row = next((row for row, line in enumerate(text.split("\n")) if "b = 1" in line), 0)
     assert (answer.line, answer.column) == (place or (row, 0))
+
+
+def test_the_text_of_a_program_precedes_its_bytecode_and_compiles_to_it(talk: Talk) -> None:
+    talk.ask(1, m.RegisterEvents, NODE, (m.EventDescription("go", 1),))
+    talk.ask(1, m.SetVariables, GROUP, (m.NamedValue("SPEED", encode_value((50,))),))
+    talk.programs.clear()
+    source = "onevent go\nmotor.left.target = SPEED\n"
+    talk.load(1, NODE, source)
+    ((network, known),) = talk.programs
+    assert network == 0
+    file = aesl.loads(known.text, strict=True)
+    words = compile(file.nodes[0].code, targets.THYMIO_II, file.events, file.constants).words
+    assert talk.networks[0][0].vm.bytecode[: len(words)] == words == known.program.words
+    assert file.nodes[0].code == known.source == source
+    assert [known.text.split("\n")[line - 1].strip() for line in known.lines[:2]][1:] == ["motor.left.target = SPEED"]

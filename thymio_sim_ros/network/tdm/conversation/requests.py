@@ -73,8 +73,8 @@ def _lock(directory: Directory, client: Client, message: m.LockNode) -> None:
         error = ErrorCode.UNKNOWN_NODE if node is None else ErrorCode.NODE_BUSY
         directory.clients.fail(client.number, message.request_id, error)
         return
+    directory.lock(node, client)  # first, so that the client knows the new status when its request is done
     directory.clients.complete(client.number, message.request_id)
-    directory.lock(node, client)
 
 
 def _unlock(directory: Directory, client: Client, message: m.UnlockNode) -> None:
@@ -82,8 +82,8 @@ def _unlock(directory: Directory, client: Client, message: m.UnlockNode) -> None
     if node is None:
         directory.clients.fail(client.number, message.request_id, ErrorCode.UNKNOWN_NODE)
         return
-    directory.clients.complete(client.number, message.request_id)
     release(directory, node)
+    directory.clients.complete(client.number, message.request_id)
 
 
 def release(directory: Directory, node: ManagedNode) -> None:
@@ -100,8 +100,8 @@ def _rename(directory: Directory, client: Client, message: m.RenameNode) -> None
         return
     node.name = message.new_name
     node.link.send(SetDeviceInfo(node.link.source, node.number, _DEVICE_NAME, name))
-    directory.clients.complete(client.number, message.request_id)
     directory.announce(node)
+    directory.clients.complete(client.number, message.request_id)
 
 
 def _watch(directory: Directory, client: Client, message: m.WatchNode) -> None:
