@@ -172,8 +172,8 @@ def _decoded(frames: list[bytes]) -> list[Message]:
 def _reason(error: Exception, timeout: str) -> str:
     if isinstance(error, TimeoutError) and not error.args:
         return timeout
-    if isinstance(error, OSError) and error.strerror:
-        return error.strerror.lower()
+    if isinstance(error, OSError) and error.errno is not None and error.errno > 0:
+        return os.strerror(error.errno).lower()  # the text of asyncio is about a call
     return str(error)
 
 

@@ -33,8 +33,11 @@ _SPECIAL: Mapping[str, tuple[Target, ...]] = {
     "port": ((PAGE, "port"),),
     "foxglove_port": ((BRIDGE, "port"), (PAGE, "foxglove_port")),
     "robot_names": ((SIMULATOR, "robot_names"),),
+    "robot": (),
 }
-"""Parameters whose names have different meanings in different nodes. The runtime gets the robots from the simulator."""
+"""Parameters whose names have different meanings in different nodes. The runtime gets the robots from the simulator.
+Whether there is a simulator is decided by the option `--robot`, before there are nodes.
+"""
 
 _ROS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "use_sim_time": (RUNTIME, BRIDGE, PAGE),

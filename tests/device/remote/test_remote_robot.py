@@ -458,6 +458,21 @@ def test_odometry_follows_the_speeds_of_the_wheels(pair: Pair) -> None:
     assert found["pose"].odometry.yaw_rad == pytest.approx(2 * 0.083 / 0.094 * 0.975, abs=0.01)
 
 
+def test_odometry_goes_on_where_it_was_when_the_robot_returns(pair: Pair) -> None:
+    pair.device.feed("motor", (250, 250, 0, 0))
+    for _ in range(20):
+        pair.tick()
+        found = readings(pair)
+    before = found["pose"].odometry.x_m
+    assert before > 0.05
+    pair.pull()
+    pair.tick(20)
+    pair.plug_in()
+    pair.device.feed("motor", (0, 0, 0, 0))
+    pair.tick(2)
+    assert readings(pair)["pose"].odometry.x_m == pytest.approx(before)
+
+
 def test_there_are_no_readings_without_values_of_the_robot() -> None:
     pair = Pair()
     assert readings(pair) == {}

@@ -139,7 +139,9 @@ class RemoteRobot:
             self.device.notices.add(f"node {number} is not used: the robot is node {session.node.number}")
             return
         session.node = session.client.nodes[number]
-        self.device.layout = described(session.node.description)
-        self.sensing = RemoteSensing(session.node.description)
+        layout = described(session.node.description)
+        if layout != self.device.layout:
+            self.device.layout, self.sensing = layout, RemoteSensing(session.node.description)
+        self.sensing.reconnect()
         self._commands.forget()
         self.connections += 1

@@ -23,8 +23,8 @@ __all__ = ["POSE", "RemoteSensing"]
 
 POSE, MOTOR = "pose", "motor"
 """Odometry is integrated from the speeds of the wheels."""
-LONGEST_STEP_S = 0.5
-"""Longest time between two polls over which speeds are integrated; the robot was not connected in a longer one."""
+LONGEST_STEP_S = 3.0
+"""Longest time between two readings over which speeds are integrated: a robot that is silent for longer is gone."""
 
 Value = Callable[[str], tuple[int, ...] | None]
 """Returns the words of a variable by name, None if unknown."""
@@ -132,6 +132,10 @@ class RemoteSensing:
         """Angles of the wheels, not wrapped."""
         left, right = self._odometry.angles_rad
         return left, right
+
+    def reconnect(self) -> None:
+        """Continue odometry from its pose: what the robot did while it was not connected is not known."""
+        self._odometry.at_ns = None
 
     def reset_odometry(self) -> None:
         """Set the odometry to zero; the angles of the wheels stay."""

@@ -6,12 +6,15 @@ robot can serve, by the same tables; the others do not exist, which is logged on
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
+from std_msgs.msg import String
 
 from aseba_vm.protocol import encode
 from thymio_sim_ros.device.remote.commands import LED_NATIVES, MOTORS
@@ -20,7 +23,7 @@ from thymio_sim_ros.device.remote.ros_handlers import served_natives
 from thymio_sim_ros.device.remote.sensing import POSE
 from thymio_sim_ros.network.robot_link import LinkEvent, LinkLost, LinkOpened, LinkReceived, RobotLink
 from thymio_sim_ros.network.robot_target import Target
-from thymio_sim_ros.ros.interface import sensor_topics
+from thymio_sim_ros.ros.interface import qos, sensor_topics
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.command_topics import led_topic
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
@@ -30,6 +33,7 @@ from thymio_sim_ros.ros.interface.robot_inputs import InputContext, robot_inputs
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
 from thymio_sim_ros.ros.simulator.robot_endpoints import EndpointOptions, RobotEndpoints
+from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
 from thymio_sim_ros.ros.simulator.visualization.transforms import Transforms
 from thymio_sim_ros.sim.commands import Command, MotorTargets
 from thymio_sim_ros.sim.sensors import all_sensors
@@ -37,11 +41,11 @@ from thymio_sim_ros.sim.sensors import all_sensors
 __all__ = ["RealRobot", "left_out"]
 
 POLL_S = 0.05
-"""Period of polls of the variables: that of odometry in the simulation. A poll waits for the answer to the last one."""
-SUBSCRIBERS_S = 0.25
-"""Period of polling for subscribers."""
+"""Period of polls of the variables, and for subscribers: that of odometry in the simulation."""
 SHUTDOWN = "shutdown"
 """The input that run control subscribes to, for simulated robots too."""
+SENSORS = "simulator/_sensors"
+"""Where viewers expect the list of sensors."""
 CAPACITY = 4096
 """Messages of the robot that wait; while there are more, the link does not read."""
 
@@ -89,6 +93,7 @@ class RealRobot:
         self._endpoints: RobotEndpoints | None = None
         self._demand = SubscriberDemand({sensor.name: sensor.period_ns for sensor in all_sensors()})
         self._transforms = Transforms(node, self._demand)
+        self._sensors = node.create_publisher(String, SENSORS, qos.TRANSIENT_LOCAL)
         self._connections = 0
         self._problem = self.robot.problem
         self._mailbox: Mailbox[LinkEvent] = Mailbox(
@@ -96,10 +101,7 @@ class RealRobot:
         )
         self._link = RobotLink(target, self._mailbox.post, self._mailbox.is_full)
         wall = Clock(clock_type=ClockType.STEADY_TIME)
-        self._timers = [
-            node.create_timer(POLL_S, self._on_poll, clock=wall),
-            node.create_timer(SUBSCRIBERS_S, self._poll_subscribers, clock=wall),
-        ]
+        self._timer = node.create_timer(POLL_S, self._on_poll, clock=wall)
 
     def input_context(self) -> InputContext:
         """Return time and time-out for a message that has arrived."""
@@ -131,11 +133,11 @@ class RealRobot:
             self.robot.execute(MotorTargets(0, 0), time.monotonic_ns())
         self._mailbox.close()
         self._link.close(b"".join(map(encode, self.robot.pop_messages())))
-        for timer in self._timers:
-            self._node.destroy_timer(timer)
+        self._node.destroy_timer(self._timer)
         if self._endpoints is not None:
             self._endpoints.close()
             self._endpoints = None
+        self._node.destroy_publisher(self._sensors)
 
     def _on_event(self, event: LinkEvent) -> None:
         match event:
@@ -150,6 +152,9 @@ class RealRobot:
 
     def _on_poll(self) -> None:
         self._mailbox.drain()
+        if self._endpoints is not None:
+            self._endpoints.poll()
+            self._transforms.poll()
         self.robot.poll(time.monotonic_ns())
         self._process()
 
@@ -176,11 +181,16 @@ class RealRobot:
             self._endpoints.close()
         options = EndpointOptions(left_out=absent)
         self._endpoints = RobotEndpoints(self._node, self._names, self, options=options, demand=self._demand)
+        self._sensors.publish(String(data=json.dumps(self._displayed())))
         self._transforms.set_robots([self._names] if POSE in self.robot.sensing.sensors else [])
         self._node.get_logger().info(
             f"robot {self._target}: without ground truth, clock and playground, and without these topics of simulated "
             f"robots: {_listed(absent - {SHUTDOWN})}"
         )
+
+    def _displayed(self) -> list[dict[str, Any]]:
+        """The sensors that viewers show by their declarations."""
+        return [sensor for sensor in displayed_sensors() if sensor["name"] in self.robot.sensing.sensors]
 
     def _report_problem(self) -> None:
         """Log why the robot is not connected, once for each reason in a row."""
@@ -198,11 +208,6 @@ class RealRobot:
             if sensor == POSE:
                 self._transforms.add_reading(self._names, reading, self.robot.sensing.angles_rad)
         self._transforms.flush()
-
-    def _poll_subscribers(self) -> None:
-        if self._endpoints is not None:
-            self._endpoints.poll()
-            self._transforms.poll()
 
 
 def _listed(topics: frozenset[str]) -> str:

@@ -208,8 +208,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
         try:
             share = script_parameters.shares(self._values.by_name, self.members, self._values.params.layout)[name]
         except PROGRAM_ERRORS as error:
-            self._node.get_logger().error(f"{name or 'robot'}: not loaded: {error}")
-            share = Assignment(None, (str(error),))
+            share = Assignment(None, (f"not loaded: {error}",))
         self._start_program(endpoints, share)
 
     def _assign_programs(self, new: Sequence[str]) -> None:
