@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import importlib.util
 import socket
 import threading
 import time
@@ -138,13 +139,19 @@ class NetworkThread:
             aseba.ports_changed = lambda: self._set_ports(aseba)
             servers.append(aseba)
         if settings.tdm_port != OFF:
-            from thymio_sim_ros.network.tdm_server import TdmServer
+            if importlib.util.find_spec("flatbuffers") is None:
+                self.report("tdm", "Thymio Device Manager: off, as the package flatbuffers is not installed")
+            else:
+                from thymio_sim_ros.network.tdm_server import TdmServer
 
-            servers.append(TdmServer(self.hub, settings, self.report, self._opened, password=self._tokens.full))
+                servers.append(TdmServer(self.hub, settings, self.report, self._opened, password=self._tokens.full))
         if settings.http_port != OFF:
-            from thymio_sim_ros.network.http.server import HttpServer
+            if importlib.util.find_spec("aiohttp") is None:
+                self.report("http", "HTTP interface: off, as the package aiohttp is not installed")
+            else:
+                from thymio_sim_ros.network.http.server import HttpServer
 
-            servers.append(HttpServer(self.hub, settings, self.report, tokens=self._tokens))
+                servers.append(HttpServer(self.hub, settings, self.report, tokens=self._tokens))
         return servers
 
     def _set_ports(self, server: AsebaServer) -> None:
