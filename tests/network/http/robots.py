@@ -106,9 +106,10 @@ class ServerThread:
 
         return asyncio.run_coroutine_threadsafe(called(), self._loop).result(20)
 
-    def close(self) -> None:
-        """End server and thread."""
-        self._loop.call_soon_threadsafe(self._stop.set)
-        self._thread.join(20)
-        assert not self._thread.is_alive()
-        self._loop.close()
+    def end(self) -> None:
+        """End server and thread; a second call has no effect."""
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._stop.set)
+            self._thread.join(20)
+            assert not self._thread.is_alive()
+            self._loop.close()

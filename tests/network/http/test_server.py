@@ -36,7 +36,7 @@ def serve():
 
         def start(*names, **settings):
             server = ServerThread(names or ("",), **settings)
-            stack.callback(server.close)
+            stack.callback(server.end)
             until(lambda: len(json.loads(ask(server, "GET", "/nodes").body)) == len(server.names), settings)
             return server
 
@@ -164,6 +164,18 @@ def test_streams_end_with_their_clients(server):
     until(lambda: server.call(lambda: server.server._gateway.stream_count) == 0)
 
 
+def test_a_server_that_ends_closes_its_streams(serve):
+    server = serve()
+    sources = [EventSource(server, "/events") for _ in range(3)]
+    until(lambda: server.call(lambda: server.server._gateway.stream_count) == 3)
+    server.end()
+    for source in sources:
+        with contextlib.suppress(http.client.IncompleteRead, ConnectionError):
+            assert source.next() is None
+        source.close()
+    assert server.problems == []
+
+
 def test_a_client_that_does_not_read_its_stream_is_closed_and_others_get_theirs(server, monkeypatch):
     monkeypatch.setattr(limits, "MAX_QUEUED_EVENTS", 50)
     ask(server, "PUT", N, b"<network><event name='big' size='256'/><node name='thymio-II'></node></network>")
@@ -242,7 +254,7 @@ def test_a_port_that_is_taken_is_reported():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         number = taken.getsockname()[1]
         server = ServerThread(address="127.0.0.1", port=number)
-        server.close()
+        server.end()
     assert server.port == OFF
     assert server.problems == [
         ("http", f"HTTP interface: [Errno 98] cannot listen on 127.0.0.1:{number}: address already in use")

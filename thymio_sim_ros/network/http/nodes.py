@@ -82,9 +82,9 @@ class Directory:
 
     def apply_program(self, key: Key) -> None:
         """Give a node the names of the program of its robot, if that is known."""
-        network, remote = self._networks[key[0]], self.remote(key)
-        if network.program is not None and remote is not None:
-            remote.set_program(network.program)
+        network = self._networks[key[0]]
+        if network.program is not None:
+            network.client.note_program(key[1], network.program)
             self.define(key, network.program_definitions)
 
     def views(self) -> dict[Key, NodeView]:
