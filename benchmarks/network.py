@@ -8,10 +8,12 @@ ROS.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import random
 import statistics
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 from aseba_vm.protocol import GetVariables, ListNodes, NodePresent, UserMessage, Variables
@@ -85,31 +87,38 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=20.0, help="duration of the polls")
 
 
-def measure(options: argparse.Namespace) -> Report:
-    """Start a suite and measure both."""
-    waits = []
+@contextlib.contextmanager
+def served(robots: int) -> Iterator[list[AsebaClient]]:
+    """A suite with so many robots, and a client of each."""
     with tempfile.TemporaryDirectory() as folder:
         world, program = Path(folder) / "grid.json", Path(folder) / "program.aesl"
-        world.write_text(grid(options.robots, GAP_M), encoding="utf-8")
+        world.write_text(grid(robots, GAP_M), encoding="utf-8")
         program.write_text(PROGRAM, encoding="utf-8")
         port = free_port()
         files = ("--playground", str(world), "--program", str(program))
         process = Process(Path(folder), SUITE, "--headless", "--no-announcement", "--aseba-port", str(port), *files)
         clients = []
         try:
-            for number in range(options.robots):
+            for number in range(robots):
                 wait_for_port(port + number)
                 clients.append(AsebaClient(port + number))
                 clients[-1].ask(ListNodes(0, 5), NodePresent)
-            waits = sorted(latency(clients[0], options.events))
-            polls, late, factor = poll(clients, options.seconds)
+            yield clients
         finally:
             for client in clients:
                 client.close()
             process.end()
+
+
+def measure(options: argparse.Namespace) -> Report:
+    """Measure a suite with one robot, then one with all."""
+    with served(1) as clients:
+        waits = sorted(latency(clients[0], options.events))
+    with served(options.robots) as clients:
+        polls, late, factor = poll(clients, options.seconds)
     polls.sort()
     rows = [
-        ["an event and its answer", *_quantiles(waits)],
+        ["an event and its answer, one robot", *_quantiles(waits)],
         [f"{options.robots} robots, 512 words each, 10 Hz", *_quantiles(polls)],
     ]
     p99 = waits[int(0.99 * len(waits))]

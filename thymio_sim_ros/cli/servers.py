@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import ipaddress
 import re
 from dataclasses import dataclass
@@ -11,7 +12,15 @@ from thymio_sim_ros.addresses import describe_urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.bridge.server_thread import check_free
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.network.settings import ASEBA_PORT, HTTP_PORT, OFF, TDM_PORT, TDM_WS_PORT, NetworkSettings
+from thymio_sim_ros.network.settings import (
+    ASEBA_PORT,
+    HTTP_PORT,
+    LAST_PORT,
+    OFF,
+    TDM_PORT,
+    TDM_WS_PORT,
+    NetworkSettings,
+)
 from thymio_sim_ros.suite_config import ADDRESS
 
 __all__ = ["Servers", "add_server_options", "address_argument", "port_argument", "select_servers"]
@@ -107,17 +116,20 @@ def _aseba(options: argparse.Namespace, robots: int) -> tuple[int, str]:
         return OFF, ""
     first = options.aseba_port or ASEBA_PORT
     count = 1 if options.aseba_shared else max(robots, 1)
+    port = last = first + count - 1
     try:
-        for port in range(first, first + count):
+        if last > LAST_PORT:
+            raise OSError(errno.EINVAL, f"expected at most {LAST_PORT}, for robot {count}")
+        for port in range(first, last + 1):
             check_free(options.aseba_address, port)
-    except (OSError, OverflowError) as error:
-        reason = error.strerror if isinstance(error, OSError) else f"found port {port}, expected at most 65535"
+    except OSError as error:
+        reason = error.strerror
         if options.aseba_port is not None:
             raise UsageError(f"Aseba port {port}: {reason}; choose another with --aseba-port") from error
         return OFF, (
             f"Aseba     none: {reason}; Thymio Suite or Aseba Playground may be running; another port: --aseba-port"
         )
-    places = f"{first}" if count == 1 else f"{first} to {first + count - 1}"
+    places = f"{first}" if count == 1 else f"{first} to {last}"
     host = "localhost" if is_loopback(options.aseba_address) else options.aseba_address
     everyone = "" if is_loopback(options.aseba_address) else ", open to everyone in your network"
     return first, f"Aseba     {host} port {places} (Studio: tcp:host={host};port={first}){everyone}"

@@ -94,7 +94,7 @@ class BehaviorHost:
 
         It is one of the last programs that were loaded with their text if it has the same words.
         """
-        found = (known for known in reversed(self._loaded) if known.program.words == tuple(words))
+        found = (known for known in (self.program, *reversed(self._loaded)) if known.program.words == tuple(words))
         names = self._loaded[-1].events if self._loaded else ()
         program = next(found, None) or foreign_program(words, self.device.layout, names)
         self._set_user_program(program)

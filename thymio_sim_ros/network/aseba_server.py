@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import socket
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -15,7 +16,7 @@ from functools import partial
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode, encode
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.network.hub import Connection, Hub, Network
-from thymio_sim_ros.network.settings import OFF, NetworkSettings
+from thymio_sim_ros.network.settings import LAST_PORT, OFF, NetworkSettings
 
 __all__ = ["MAX_CLIENTS", "MAX_UNSENT", "AsebaServer"]
 
@@ -70,8 +71,6 @@ class AsebaServer:
                 port.open(self._settings.aseba_address, first + place if first else 0)
             except OSError as error:
                 self._report(f"aseba {place}", f"Aseba port of {network.name or 'the robot'}: {error.strerror}")
-            except OverflowError as error:  # beyond 65535
-                self._report(f"aseba {place}", f"Aseba port of {network.name or 'the robot'}: {error}")
         self._ports[place].add(network)
         self.ports_changed()
 
@@ -98,6 +97,8 @@ class _Port:
 
     def open(self, address: str, number: int) -> None:
         """Listen. Raises OSError if the port cannot be used."""
+        if number > LAST_PORT:
+            raise OSError(errno.EINVAL, f"found {number}, expected at most {LAST_PORT}")
         listeners = listen(address, number)
         self.number = int(listeners[0].getsockname()[1])
         loop = asyncio.get_running_loop()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ASEBA_PORT", "HTTP_PORT", "OFF", "TDM_PORT", "TDM_WS_PORT", "NetworkSettings"]
+__all__ = ["ASEBA_PORT", "HTTP_PORT", "LAST_PORT", "OFF", "TDM_PORT", "TDM_WS_PORT", "NetworkSettings"]
 
 ASEBA_PORT = 33333
 """The port of the first robot, as in all Aseba tools."""
@@ -14,6 +14,8 @@ TDM_PORT, TDM_WS_PORT = 8596, 8597
 
 HTTP_PORT = 3000
 """The port of asebahttp."""
+
+LAST_PORT = 65535
 
 OFF = -1
 """Instead of a port: the server does not run."""

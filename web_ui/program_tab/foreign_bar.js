@@ -15,7 +15,7 @@ export function instructionsOf(program) {
   return program?.foreign === true ? program.source : null;
 }
 
-/** @param {import("../i18n/index.js").Translate} t  texts of the programs */
+/** @param {import("../i18n/index.js").Translate} t  texts of the editor */
 export function foreignBar(t) {
   const code = h("pre", { class: "program-listing", tabindex: "0" });
   const element = h(

@@ -97,7 +97,7 @@ export class ProgramTab {
     this.file = fileMenu({ t, session, commands, redraw });
     this.badge = programBadge(context.text("program"));
     this.draft = draftBar({ t, draftLabel, workspace: session.workspace, redraw });
-    this.foreign = foreignBar(context.text("program"));
+    this.foreign = foreignBar(t);
     this.languageBar = languageBar({
       t,
       choice,
@@ -217,7 +217,7 @@ export class ProgramTab {
     const { status, target } = this.selection;
     if (status === null || status.name === NO_PROGRAM) return "";
     const isForeign = instructionsOf(target?.program) !== null;
-    return isForeign ? this.context.text("program")("foreign.name") : exampleTitle(status.name, this.exampleText);
+    return isForeign ? this.t("foreign.name") : exampleTitle(status.name, this.exampleText);
   }
 
   #placeFileMenu() {

@@ -26,6 +26,8 @@ __all__ = ["NetworkLink"]
 
 CONNECT, DISCONNECT = "connect", "disconnect"
 
+GROUP = 16
+"""Messages that are executed without a break; after it other clients and the node's own work have their turn."""
 CAPACITY = 256
 """Messages of one client that may wait before it is asked to pause."""
 
@@ -116,8 +118,8 @@ class _Robot:
         self._mailbox.post(_Post(self._robot, client, event=DISCONNECT))
 
     def send(self, client: int, messages: Sequence[Message]) -> None:
-        if messages:
-            self._mailbox.post(_Post(self._robot, client, messages))
+        for start in range(0, len(messages), GROUP):
+            self._mailbox.post(_Post(self._robot, client, messages[start : start + GROUP]))
 
     def remember(self, client: int, program: ThymioProgram) -> None:
         self._mailbox.post(_Post(self._robot, client, program=program))
