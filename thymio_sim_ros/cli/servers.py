@@ -147,11 +147,8 @@ def _tdm(options: argparse.Namespace, tokens: Tokens) -> tuple[int, int, str]:
         except OSError as error:
             if given is not None:
                 raise UsageError(f"Thymio Device Manager: {error.strerror}; choose another with {option}") from error
-            return (
-                OFF,
-                TDM_WS_PORT,
-                f"TDM       none: {error.strerror}; Thymio Suite may be running; other port: {option}",
-            )
+            reason = f"{error.strerror}; Thymio Suite may be running; another port: {option}"
+            return OFF, TDM_WS_PORT, f"TDM       none: {reason}"
     host = "localhost" if is_loopback(options.address) else options.address
     password = "" if is_loopback(options.address) or not tokens.full else f", password {tokens.full}"
     return *ports, f"TDM       {host} port {ports[0]}, WebSocket {ports[1]} (tdmclient, Scratch, VPL 3){password}"

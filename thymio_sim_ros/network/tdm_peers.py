@@ -4,18 +4,28 @@ from __future__ import annotations
 
 import asyncio
 import ipaddress
-from collections.abc import AsyncIterator
+import logging
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from http import HTTPStatus
+from socket import socket
 from typing import Protocol
 
-from websockets.asyncio.server import ServerConnection, broadcast
+from websockets.asyncio.server import Server, ServerConnection, broadcast, serve
 from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
 
-from thymio_sim_ros.network.tdm.protocol.codec import StreamReader, framed
+from thymio_sim_ros.bridge.origin_policy import is_allowed
+from thymio_sim_ros.network.tdm.protocol.codec import MAX_MESSAGE_BYTES, StreamReader, framed
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
 
-__all__ = ["Peer", "TcpPeer", "WebSocketPeer", "is_this_computer"]
+__all__ = ["Peer", "Report", "TcpPeer", "WebSocketPeer", "is_this_computer", "serve_websocket"]
+
+Report = Callable[[str, str], None]
+"""Takes a warning: what it is about, so that repetitions can be limited, and the text."""
 
 _READ_BYTES = 1 << 16
+_CLOSE_S = 0.3
+"""Time that clients have to answer the closing handshake."""
 
 
 class Peer(Protocol):
@@ -121,3 +131,33 @@ def is_this_computer(address: str) -> bool:
         return False
     mapped = getattr(number, "ipv4_mapped", None)
     return (mapped or number).is_loopback
+
+
+async def serve_websocket(
+    listener: socket, handle: Callable[[Peer], Awaitable[None]], allowed_origins: Sequence[str], report: Report
+) -> Server:
+    """Serve clients on a bound socket, except foreign web pages (`bridge.origin_policy`)."""
+
+    async def handle_connection(connection: ServerConnection) -> None:
+        await handle(WebSocketPeer(connection))
+
+    def check_origin(connection: ServerConnection, request: Request) -> Response | None:
+        origins, hosts = request.headers.get_all("Origin"), request.headers.get_all("Host")
+        origin = origins[-1] if origins else None
+        if is_allowed(origin, hosts[-1] if hosts else None, allowed_origins):
+            return None
+        report("tdm origin", f"web page from {origin:.100} rejected: add it to allowed_origins if it is yours")
+        return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
+
+    log = logging.getLogger(f"{__name__}.websockets")
+    log.setLevel(logging.CRITICAL)  # it logs each rejected handshake with a traceback
+    return await serve(
+        handle_connection,
+        sock=listener,
+        process_request=check_origin,
+        compression=None,
+        server_header=None,
+        max_size=MAX_MESSAGE_BYTES,
+        close_timeout=_CLOSE_S,
+        logger=log,
+    )

@@ -11,30 +11,27 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
-import logging
 import time
+import traceback
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from http import HTTPStatus
 from socket import SO_SNDBUF, SOL_SOCKET, socket
 from uuid import uuid4
 
-from websockets.asyncio.server import Server, ServerConnection, serve
-from websockets.http11 import Request, Response
+from websockets.asyncio.server import Server
 
 from aseba_vm.protocol.messages import Message as AsebaMessage
-from thymio_sim_ros.bridge.origin_policy import is_allowed
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.conversation.clients import Closing
 from thymio_sim_ros.network.tdm.conversation.device_manager import DeviceManager
 from thymio_sim_ros.network.tdm.conversation.handshake import ManagerSettings
-from thymio_sim_ros.network.tdm.protocol.codec import MAX_MESSAGE_BYTES, decode, encode
+from thymio_sim_ros.network.tdm.protocol.codec import decode, encode
 from thymio_sim_ros.network.tdm.protocol.constants import NodeType
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
-from thymio_sim_ros.network.tdm_peers import Peer, TcpPeer, WebSocketPeer, is_this_computer
+from thymio_sim_ros.network.tdm_peers import Peer, Report, TcpPeer, is_this_computer, serve_websocket
 
 __all__ = ["MAX_CLIENTS", "MAX_UNSENT", "TdmServer"]
 
@@ -53,13 +50,8 @@ _CONGESTED, _DRAINED = 1 << 18, 1 << 15
 """Bytes that wait for a client, from which and below which it counts as slow and as fast again."""
 _KERNEL_BUFFER = 1 << 16
 """Bytes for a client in the kernel; those beyond are counted here."""
-_CLOSE_S = 0.3
-"""Time that clients have to answer the closing handshake."""
 _FULL_PAUSE_S = 0.005
 """Time after which a client that had to pause, because messages wait for the robots, is read again."""
-
-Report = Callable[[str, str], None]
-"""Takes a warning: what it is about, so that repetitions can be limited, and the text."""
 
 
 class TdmServer:
@@ -183,26 +175,18 @@ class TdmServer:
         """Accept connections."""
         for listener in tcp:
             self._servers.append(await asyncio.start_server(self._accept_tcp, sock=listener))
-        log = logging.getLogger(f"{__name__}.websockets")
-        log.setLevel(logging.CRITICAL)  # it logs each rejected handshake with a traceback
+        origins = self._settings.allowed_origins
         for listener in websocket:
-            server = await serve(
-                self._serve_websocket,
-                sock=listener,
-                process_request=self._check_origin,
-                compression=None,
-                server_header=None,
-                max_size=MAX_MESSAGE_BYTES,
-                close_timeout=_CLOSE_S,
-                logger=log,
-            )
-            self._servers.append(server)
+            self._servers.append(await serve_websocket(listener, self._serve, origins, self._report))
 
     async def _advance(self) -> None:
         while True:
-            self._manager.advance(self._now_ns())
-            self._deliver()
-            self._check_backlogs()
+            try:
+                self._manager.advance(self._now_ns())
+                self._deliver()
+                self._check_backlogs()
+            except Exception:
+                self._report_bug()
             await asyncio.sleep(_PERIOD_S if self._peers else _IDLE_PERIOD_S)
 
     def _accept_tcp(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -215,9 +199,6 @@ class TdmServer:
             writer.transport.abort()
             with contextlib.suppress(OSError):
                 await writer.wait_closed()  # otherwise asyncio logs the error of a lost connection
-
-    async def _serve_websocket(self, connection: ServerConnection) -> None:
-        await self._serve(WebSocketPeer(connection))
 
     async def _serve(self, peer: Peer) -> None:
         """Process messages of a client until it disconnects."""
@@ -233,6 +214,9 @@ class TdmServer:
         except TdmFrameError as error:
             self._report("tdm frame", f"client {peer.address} of the device manager is disconnected: {error}")
             peer.abort()
+        except Exception:
+            self._report_bug()
+            peer.abort()
         finally:
             self._peers.pop(client, None)
             self._congested.discard(client)
@@ -246,13 +230,13 @@ class TdmServer:
                 return
             began_s = time.thread_time()
             compilation = self._manager.receive(client, decode(buffer))
-            self._deliver()
+            asked = self._deliver()
             spent_s += time.thread_time() - began_s
             if compilation is not None:
                 result = await asyncio.get_running_loop().run_in_executor(self._compiler, compilation.run)
                 self._manager.finish_compilation(compilation, result)
-                self._deliver()
-            while any(link.is_full for link in self._links.values()):
+                asked |= self._deliver()
+            while any(self._links[network].is_full for network in asked if network in self._links):
                 await asyncio.sleep(_FULL_PAUSE_S)
             if spent_s >= _SLICE_S:
                 if spent_s > _SMALL_SHARE * (time.monotonic() - since_s):
@@ -264,10 +248,11 @@ class TdmServer:
         async with self._throttle_lock:
             await asyncio.sleep(spent_s)
 
-    def _deliver(self) -> None:
-        """Send what the manager has for networks and clients; what a network answers meanwhile too."""
-        if self._is_delivering:
-            return
+    def _deliver(self) -> set[int]:
+        """Send what the manager has for networks and clients; return the networks that have got something."""
+        asked: set[int] = set()
+        if self._is_delivering:  # a network answers at once; the call that is active sends the rest
+            return asked
         self._is_delivering = True
         try:
             for network, program in self._manager.pop_programs():
@@ -276,6 +261,7 @@ class TdmServer:
             while messages := self._manager.pop_messages():
                 for network, message in messages:
                     if network in self._links:
+                        asked.add(network)
                         self._links[network].send(message)
             for delivery in self._manager.pop_deliveries():
                 if isinstance(delivery, Closing):
@@ -287,6 +273,12 @@ class TdmServer:
                         self._peers[client].send(buffer)
         finally:
             self._is_delivering = False
+        return asked
+
+    def _report_bug(self) -> None:
+        """Report the exception that is handled."""
+        text = traceback.format_exc()
+        self._report("tdm bug", f"Thymio Device Manager: internal error (please report):\n{text}")
 
     def _check_backlogs(self) -> None:
         """Slow clients are sent less, and disconnected if even that is not read."""
@@ -308,12 +300,3 @@ class TdmServer:
         if peer is not None:
             self._report("tdm closing", f"client {peer.address} of the device manager is disconnected: {reason}")
             peer.abort()
-
-    def _check_origin(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Return the response that rejects a foreign web page."""
-        origins, hosts = request.headers.get_all("Origin"), request.headers.get_all("Host")
-        origin = origins[-1] if origins else None
-        if is_allowed(origin, hosts[-1] if hosts else None, self._settings.allowed_origins):
-            return None
-        self._report("tdm origin", f"web page from {origin:.100} rejected: add it to allowed_origins if it is yours")
-        return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")

@@ -71,6 +71,8 @@ class MachineNode:
                 vm.clear_breakpoints()
             case p.SetDeviceInfo(kind=2, data=data):
                 self.name = data.decode()
+            case p.GetDeviceInfo(kind=2):
+                yield p.DeviceInfo(number, 2, b"a real one")
             case p.UserMessage(number=event, words=words, source=source):
                 vm.receive(event, source, words)
 

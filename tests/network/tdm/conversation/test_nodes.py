@@ -216,3 +216,11 @@ def test_messages_that_only_servers_send_are_ignored() -> None:
     talk.send(1, m.NodesChanged())
     talk.send(1, m.Ping())
     assert talk.received[1] == before
+
+
+def test_a_real_robot_is_shown_as_one_with_its_own_name() -> None:
+    talk = Talk()
+    talk.add_network([MachineNode()], NodeType.THYMIO)
+    talk.join(1)
+    (node,) = talk.take(1, m.NodesChanged)[0].nodes
+    assert (node.type, node.name) == (NodeType.THYMIO, "a real one")

@@ -244,3 +244,13 @@ def test_a_node_that_does_not_answer_completes_the_watch_with_what_is_known(talk
     talk.advance(4000)
     answers = [message for message in talk.received[2] if getattr(message, "request_id", None) == 9]
     assert len(answers) == 1
+
+
+def test_many_requests_for_all_variables_are_answered_by_one_dump(talk: Talk) -> None:
+    talk.is_silent = True
+    for number in range(1, 201):
+        talk.send(2, m.WatchNode(number, NODE, Watch.VARIABLES))
+    talk.is_silent = False
+    talk.advance(4000)
+    assert len(talk.take(2, m.RequestCompleted)) == 200
+    assert len(talk.take(2, m.VariablesChanged)) <= 2  # what was known, and what arrived later

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from uuid import UUID
 
@@ -73,8 +73,13 @@ class Clients:
 
     def send(self, client: int, message: Message) -> None:
         """Send a message to one client, unless it has left."""
-        if client in self._clients:
-            self._outbox.append(Delivery(message, (client,)))
+        self.send_to((client,), message)
+
+    def send_to(self, clients: Iterable[int], message: Message) -> None:
+        """Send a message to those of some clients that have not left."""
+        present = tuple(client for client in clients if client in self._clients)
+        if present:
+            self._outbox.append(Delivery(message, present))
 
     def complete(self, client: int, request_id: int) -> None:
         """Say that a request is done."""

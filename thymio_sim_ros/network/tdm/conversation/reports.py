@@ -60,10 +60,12 @@ def publish_values(directory: Directory, node: ManagedNode) -> None:
         return
     waiting, node.waiting_for_values = node.waiting_for_values, []
     changes = node.pop_changes(directory.time_ms)
+    receivers = dict.fromkeys(client for client, _ in waiting)
     if changes is not None:
-        clients.notify(node.id, Watch.VARIABLES, changes, skip={client for client, _ in waiting})
+        clients.notify(node.id, Watch.VARIABLES, changes, skip=receivers)
+    if receivers:  # once for each client, however often it has asked
+        clients.send_to(receivers, node.all_variables(directory.time_ms))
     for client, request_id in waiting:
-        clients.send(client, node.all_variables(directory.time_ms))
         clients.complete(client, request_id)
 
 
