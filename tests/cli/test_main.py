@@ -443,6 +443,12 @@ def test_a_real_robot_takes_no_options_of_the_simulator(capsys, arguments, found
     assert found in refused(capsys, *arguments)
 
 
+def test_the_suite_does_not_serve_the_port_of_its_own_robot(capsys):
+    port = free_port()
+    line = refused(capsys, "--robot", f"tcp:localhost:{port}", "--headless", "--aseba-port", str(port))
+    assert line.endswith(f"Aseba port {port}: this is the port of the robot; choose another with --aseba-port")
+
+
 def test_a_program_for_a_real_robot_is_compiled_before_anything_starts(capsys, tmp_path):
     program = tmp_path / "broken.aesl"
     program.write_text("motor.left.targt = 1\n")

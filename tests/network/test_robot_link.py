@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pty
 import queue
@@ -9,10 +10,12 @@ import socket
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from random import Random
 
 import pytest
 
 from aseba_vm.protocol import ListNodes, NodePresent, Run, UserMessage, encode
+from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
 from thymio_sim_ros.network import robot_link
 from thymio_sim_ros.network.robot_link import LinkEvent, LinkLost, LinkOpened, LinkReceived, RobotLink
 from thymio_sim_ros.network.robot_target import SerialTarget, Target, TcpTarget
@@ -162,6 +165,34 @@ def test_nothing_is_read_while_the_receiver_is_full(listener: socket.socket) -> 
             assert events.queue.empty()
             events.is_full = False
             assert isinstance(events.next(), LinkReceived)
+
+
+def test_damaged_streams_do_no_harm(listener: socket.socket, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robot_link, "FIRST_PAUSE_S", 0.0)
+    random = Random(24)
+    good = b"".join(map(encode, (NodePresent(1, 5), UserMessage(1, 2, (3,) * 40), ListNodes(1, 9))))
+    robot = RemoteRobot()
+    with linked(port_of(listener)) as (_, events):
+        for _ in range(300):
+            connection, _ = listener.accept()
+            with connection, contextlib.suppress(OSError):
+                data = bytearray(good * 20)
+                for _ in range(random.randrange(40)):
+                    data[random.randrange(len(data))] = random.randrange(256)
+                connection.sendall(data[: random.randrange(len(data))])
+            assert events.next() == LinkOpened()
+            robot.start(0)
+            while isinstance(event := events.next(), LinkReceived):
+                for message in event.messages:
+                    robot.receive(message)
+                robot.pop_messages()
+            assert isinstance(event, LinkLost)
+            robot.end(event.reason)
+        connection, _ = listener.accept()
+        with connection:
+            assert events.next() == LinkOpened()
+            connection.sendall(encode(NodePresent(1, 5)))
+            assert events.next() == LinkReceived((NodePresent(1, 5),))
 
 
 def test_the_last_message_arrives_when_the_link_is_closed(listener: socket.socket) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import thymio_sim_ros
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.bridge.server_thread import check_free
 from thymio_sim_ros.cli.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.cli.errors import UsageError
@@ -25,8 +25,10 @@ from thymio_sim_ros.cli.options import (
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
-from thymio_sim_ros.cli.servers import add_server_options, address_argument, port_argument, select_servers
+from thymio_sim_ros.cli.servers import Servers, add_server_options, address_argument, port_argument, select_servers
 from thymio_sim_ros.loading import NO_PROGRAM
+from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
 __all__ = ["run"]
@@ -52,7 +54,8 @@ def run(argv: Sequence[str]) -> int:
         _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
-    servers = select_servers(options, len(robots), suite.tokens or Tokens())
+    chosen = select_servers(options, len(robots), suite.tokens or Tokens())
+    servers = _without_port_of_robot(chosen, options, suite.robot)
     suite = replace(suite, network=servers.settings)
     check_ros()
     if (notice := startup_notice(len(robots))) is not None:
@@ -77,6 +80,19 @@ def _check_robots(suite: SuiteConfig) -> list[str]:
         return ["thymio"]
     playground, _ = check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
     return [robot.name for robot in playground.robots]
+
+
+def _without_port_of_robot(servers: Servers, options: argparse.Namespace, robot: str) -> Servers:
+    """Keep the suite from serving the port of its own robot, to which it would connect. Raises UsageError."""
+    target = parse_target(robot) if robot else None
+    settings = servers.settings
+    if not (isinstance(target, TcpTarget) and is_loopback(target.host) and target.port == settings.aseba_port):
+        return servers
+    if options.aseba_port is not None:
+        raise UsageError(f"Aseba port {target.port}: this is the port of the robot; choose another with --aseba-port")
+    line = f"Aseba     none: {target.port} is the port of the robot; another port: --aseba-port"
+    others = tuple(text for text in servers.lines if not text.startswith("Aseba "))
+    return Servers(replace(settings, aseba_port=OFF), (line, *others))
 
 
 def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import pytest
@@ -21,11 +22,23 @@ from sensor_msgs.msg import BatteryState, Imu, JointState, Range
 from std_msgs.msg import Bool, ColorRGBA, Empty, Float32MultiArray, Int16MultiArray, String
 from std_srvs.srv import Trigger
 
+from aseba_vm.protocol import (
+    GetNodeDescription,
+    ListNodes,
+    NamedVariable,
+    NodePresent,
+    Run,
+    SetBytecode,
+    UserMessage,
+)
+from tests.network.aseba_client import AsebaClient
 from tests.network.served_robot import ServedRobot
 from tests.processes import free_port
 from tests.ros.aseba.conftest import wait_until_it_runs
 from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
+from thymio_sim_ros.device.programs.foreign import FOREIGN
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
+from thymio_sim_ros.ros.aseba.parameters import NetworkParams
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.sim.commands import PlayTone, SetLeds, StopSound
 
@@ -311,3 +324,23 @@ def test_a_simulated_robot_behind_a_network_moves_as_one_in_the_process(ros, tmp
         finally:
             far.terminate()
             assert far.wait(START_S) == 0
+
+
+def test_a_real_robot_is_a_node_for_other_programs_too(ros, remote_runtime):
+    node = remote_runtime(TALK, network=NetworkParams(aseba_port=0, announce=False))
+    ros.until(lambda: node.network.thread.ports, what="the port is open")
+    pongs = ros.collect(Int16MultiArray, "/aseba/events/pong")
+    with ThreadPoolExecutor(1) as pool, contextlib.closing(AsebaClient(node.network.thread.ports[""])) as client:
+
+        def work(function, *arguments):
+            future = pool.submit(function, *arguments)
+            ros.until(future.done, what="the client has its answer")
+            return future.result()
+
+        assert work(client.ask, ListNodes(0, 5), NodePresent) == NodePresent(1, 5)
+        assert work(client.ask, GetNodeDescription(0, 1, 5), NamedVariable).name == "_id"
+        assert work(client.ask, UserMessage(0, 1, (5,)), UserMessage) == UserMessage(1, 0, (15, 7))
+        ros.until(lambda: pongs and list(pongs[0].data) == [15, 7])
+        client.send(SetBytecode(0, 1, 0, (3, 0xFFFF, 3, 0)), Run(0, 1))
+        status = Status(ros)
+        ros.until(lambda: status["program"] == FOREIGN)

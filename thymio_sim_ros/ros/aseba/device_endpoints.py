@@ -104,6 +104,8 @@ class DeviceEndpoints:
         """
         self.names = names
         self.number = number
+        self.is_simulated = remote is None
+        """Whether the robot's machine is in this process."""
         self.share: Assignment | None = None
         self._host: RobotHost
         self.network_node: RobotNode

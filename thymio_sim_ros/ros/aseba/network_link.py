@@ -72,8 +72,13 @@ class NetworkLink:
         for robot in self._robots:
             if robot not in self._networks:
                 nodes = _Robot(robot, self._mailbox)
-                place, ids = robot.number - self._first_id, (robot.number,)
-                network = Network(robot.names.name, nodes, place=place, node_ids=ids)
+                network = Network(
+                    robot.names.name,
+                    nodes,
+                    place=robot.number - self._first_id,
+                    node_ids=(robot.number,) if robot.is_simulated else (),
+                    is_simulated=robot.is_simulated,
+                )
                 network.remember = nodes.remember
                 self._networks[robot] = network
                 self.thread.call(network.set_program, robot.program)
