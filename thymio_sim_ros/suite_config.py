@@ -27,6 +27,7 @@ class SuiteConfig:
         playground: shipped name, path or JSON text.
         program: name of a behavior, or path.
         behaviour: built-in behavior after switching on, from whose menu the program can be started; empty for none.
+        robot: address of a real robot, in place of the simulator; empty for none.
         address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
         log: file of a run log, empty for none.
         cmd_vel_timeout_s: time after which a velocity ends; short, because teleoperation in the browser sends nothing
@@ -41,6 +42,7 @@ class SuiteConfig:
     device: DeviceOptions = DEFAULTS
     motor_model: str = MOTOR_MODELS[0]
     proximity_model: str = PROXIMITY_MODELS[0]
+    robot: str = ""
     address: str = ADDRESS
     port: int = HTTP_PORT
     foxglove_port: int = FOXGLOVE_PORT

@@ -10,6 +10,7 @@ from thymio_sim_ros.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
 from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.network.robot_target import parse_target
 from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["banner", "qr_code", "startup_notice"]
@@ -35,6 +36,8 @@ def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = (
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
         lines.append(f"Access    {describe_access(suite.address, tokens)}")
     lines += servers
+    if suite.robot:
+        lines.insert(0, f"Robot     {parse_target(suite.robot)} (real robot: no simulation, no ground truth)")
     return "\n".join([*lines, f"Domain    {describe_domain(os.environ)}", "Stop      Ctrl-C"])
 
 

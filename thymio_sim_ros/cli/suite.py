@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import thymio_sim_ros
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.bridge.server_thread import check_free
 from thymio_sim_ros.cli.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.cli.errors import UsageError
@@ -18,18 +18,28 @@ from thymio_sim_ros.cli.options import (
     EXAMPLE,
     add_world_options,
     check_files,
+    check_robot_program,
     check_ros,
     device_options,
     number_argument,
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
-from thymio_sim_ros.cli.servers import add_server_options, address_argument, port_argument, select_servers
+from thymio_sim_ros.cli.servers import Servers, add_server_options, address_argument, port_argument, select_servers
+from thymio_sim_ros.loading import NO_PROGRAM
+from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
 __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
+
+_SIMULATOR_ONLY = (
+    *("playground", "behaviour", "seed", "log", "card", "settings", "layout", "events", "motors", "proximity"),
+    "real_time_factor",
+)
+"""Options that a real robot does not have."""
 
 
 def run(argv: Sequence[str]) -> int:
@@ -39,13 +49,13 @@ def run(argv: Sequence[str]) -> int:
     suite = _suite_config(options)
     if options.log is not None and (os.path.isdir(options.log) or not os.path.isdir(options.log.parent)):
         raise UsageError(f"{options.log}: expected a file in a folder that exists")
-    playground, _ = check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
-    robots = [robot.name for robot in playground.robots]
+    robots = _check_robots(suite)
     if suite.web:
         _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
-    servers = select_servers(options, len(robots), suite.tokens or Tokens())
+    chosen = select_servers(options, len(robots), suite.tokens or Tokens())
+    servers = _without_port_of_robot(chosen, options, suite.robot)
     suite = replace(suite, network=servers.settings)
     check_ros()
     if (notice := startup_notice(len(robots))) is not None:
@@ -63,6 +73,28 @@ def run(argv: Sequence[str]) -> int:
         shm_cleanup.remove_new(before)
 
 
+def _check_robots(suite: SuiteConfig) -> list[str]:
+    """Check the files of the suite and return the names of its robots. Raises UsageError."""
+    if suite.robot:
+        check_robot_program(suite.robot, suite.program)
+        return ["thymio"]
+    playground, _ = check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
+    return [robot.name for robot in playground.robots]
+
+
+def _without_port_of_robot(servers: Servers, options: argparse.Namespace, robot: str) -> Servers:
+    """Keep the suite from serving the port of its own robot, to which it would connect. Raises UsageError."""
+    target = parse_target(robot) if robot else None
+    settings = servers.settings
+    if not (isinstance(target, TcpTarget) and is_loopback(target.host) and target.port == settings.aseba_port):
+        return servers
+    if options.aseba_port is not None:
+        raise UsageError(f"Aseba port {target.port}: this is the port of the robot; choose another with --aseba-port")
+    line = f"Aseba     none: {target.port} is the port of the robot; another port: --aseba-port"
+    others = tuple(text for text in servers.lines if not text.startswith("Aseba "))
+    return Servers(replace(settings, aseba_port=OFF), (line, *others))
+
+
 def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
     """Split the arguments into those of this command and those of ROS, from `--ros-args` on."""
     words = list(argv)
@@ -71,13 +103,21 @@ def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def _suite_config(options: argparse.Namespace) -> SuiteConfig:
+    """Return the configuration. Raises UsageError for options that exclude each other."""
+    if options.robot:
+        defaults = _parser().parse_args([])
+        of_simulator = [name for name in _SIMULATOR_ONLY if getattr(options, name) != getattr(defaults, name)]
+        if of_simulator:
+            found = ", ".join(f"--{name.replace('_', '-')}" for name in of_simulator)
+            raise UsageError(f"--robot: found {found}; a real robot has no simulator, expected none of its options")
     return SuiteConfig(
         playground=options.playground,
-        program=program_option(options),
+        program=NO_PROGRAM if options.robot and options.program is None else program_option(options),
         behaviour=options.behaviour,
         device=device_options(options),
         motor_model=options.motors,
         proximity_model=options.proximity,
+        robot=options.robot,
         address=options.address,
         port=options.port,
         foxglove_port=options.foxglove_port,
@@ -107,6 +147,13 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     add_world_options(parser)
+    parser.add_argument(
+        "--robot",
+        default=SuiteConfig.robot,
+        metavar="ADDRESS",
+        help="a real robot in place of the simulator: tcp:host:port, or ser:device, where ser is the first Thymio that "
+        "is plugged in (default program: none)",
+    )
     _add_network_options(parser)
     parser.add_argument(
         "--real-time-factor",

@@ -102,7 +102,7 @@ class BehaviorHost:
         self.device.adopt(program)
 
     def remember(self, program: ThymioProgram | None) -> None:
-        """Note a program with its text, for `adopt`."""
+        """Remember the text of a program, so that `adopt` recognizes its bytecode."""
         if program is not None and not program.is_foreign:
             self._loaded = [*(known for known in self._loaded if known != program), program][-MAX_REMEMBERED:]
 

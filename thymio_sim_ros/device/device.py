@@ -117,6 +117,11 @@ class AsebaDevice:
         return self.services.node_id
 
     @property
+    def radio(self) -> tuple[int, int]:
+        """Channel and network of the radio: robots receive events of their own network only."""
+        return self.services.network
+
+    @property
     def status(self) -> DeviceStatus:
         """State of the machine."""
         return self.run_control.status
@@ -215,7 +220,7 @@ class AsebaDevice:
 
     def receives_from(self, sender: AsebaDevice) -> bool:
         """Whether the radios of both devices are set to the same network."""
-        return self.services.network == sender.services.network
+        return self.radio == sender.radio
 
     def declares(self, event: str) -> bool:
         """Whether the program declares a global event of this name."""

@@ -260,9 +260,9 @@ class TdmServer:
             return asked
         self._is_delivering = True
         try:
-            for network, text in self._manager.pop_texts():
+            for network, program in self._manager.pop_programs():
                 if network in self._links:
-                    self._links[network].remember(text)
+                    self._links[network].remember(program)
             while messages := self._manager.pop_messages():
                 for network, message in messages:
                     if network in self._links:

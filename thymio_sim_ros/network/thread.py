@@ -145,6 +145,13 @@ class NetworkThread:
                 from thymio_sim_ros.network.tdm_server import TdmServer
 
                 servers.append(TdmServer(self.hub, settings, self.report, self._opened, password=self._tokens.full))
+        if settings.http_port != OFF:
+            if importlib.util.find_spec("aiohttp") is None:
+                self.report("http", "HTTP interface: off, as the package aiohttp is not installed")
+            else:
+                from thymio_sim_ros.network.http.server import HttpServer
+
+                servers.append(HttpServer(self.hub, settings, self.report, tokens=self._tokens))
         return servers
 
     def _set_ports(self, server: AsebaServer) -> None:

@@ -33,8 +33,11 @@ _SPECIAL: Mapping[str, tuple[Target, ...]] = {
     "port": ((PAGE, "port"),),
     "foxglove_port": ((BRIDGE, "port"), (PAGE, "foxglove_port")),
     "robot_names": ((SIMULATOR, "robot_names"),),
+    "robot": (),
 }
-"""Parameters whose names have different meanings in different nodes. The runtime gets the robots from the simulator."""
+"""Parameters whose names have different meanings in different nodes. The runtime gets the robots from the simulator.
+Whether there is a simulator is decided by the option `--robot`, before there are nodes.
+"""
 
 _ROS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "use_sim_time": (RUNTIME, BRIDGE, PAGE),
@@ -63,6 +66,8 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
         RUNTIME: RuntimeParams(
             path=suite.program,
             behaviour=suite.behaviour,
+            robot=suite.robot,
+            cmd_vel_timeout=suite.cmd_vel_timeout_s,
             layout=device.layout,
             events=device.events,
             card=str(device.card or ""),

@@ -9,6 +9,7 @@ from uuid import UUID
 
 from aseba_vm import protocol as p
 from tests.network.tdm.machine_node import MachineNode
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.network.tdm.conversation.clients import Closing, Delivery
 from thymio_sim_ros.network.tdm.conversation.device_manager import DeviceManager
 from thymio_sim_ros.network.tdm.conversation.handshake import ManagerSettings
@@ -34,7 +35,7 @@ class Talk:
         self.networks: dict[int, list[MachineNode]] = {}
         self.received: dict[int, list[m.Message]] = defaultdict(list)
         self.closed: dict[int, str] = {}
-        self.texts: list[tuple[int, str]] = []
+        self.programs: list[tuple[int, ThymioProgram]] = []
         """Texts of programs, with their networks."""
         self.is_silent = False
         """Whether nodes do not answer."""
@@ -80,7 +81,7 @@ class Talk:
 
     def exchange(self) -> None:
         """Deliver messages until nobody sends any."""
-        self.texts += self.manager.pop_texts()
+        self.programs += self.manager.pop_programs()
         while messages := self.manager.pop_messages():
             for number, message in messages:
                 for node in () if self.is_silent else self.networks[number]:

@@ -6,7 +6,6 @@ from topics of the ROS driver; commands are published on the topics that every r
 
 from __future__ import annotations
 
-import contextlib
 import time
 import uuid
 from collections.abc import Callable, Sequence
@@ -24,10 +23,11 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.network_node import QUESTIONS, NetworkNode
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
-from thymio_sim_ros.device.programs.foreign import FOREIGN
-from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.device.programs.status import OFF, RUNNING
+from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
+from thymio_sim_ros.device.robot_device import RobotDevice, RobotHost, RobotNode
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.event_endpoints import EventEndpoints
 from thymio_sim_ros.ros.aseba.output_endpoints import OutputEndpoints
@@ -91,21 +91,36 @@ class DeviceEndpoints:
         bus: RobotBus,
         diagnostics: RuntimeDiagnostics,
         options: DeviceOptions = DEFAULTS,
+        remote: RemoteRobot | None = None,
         debug_options: DebugOptions | None = None,
         has_driver: bool = False,
         is_fed: bool = False,
         link: SimulatorLink | None = None,
     ) -> None:
-        """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property."""
+        """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property.
+
+        `remote`: the robot behind a network, with sensors and actuators of its own; None: a device with these
+        `options`.
+        """
         self.names = names
         self.number = number
-        self.device = AsebaDevice(node_id=number, options=options)
+        self.is_simulated = remote is None
+        """Whether the robot's machine is in this process."""
         self.share: Assignment | None = None
-        self._host = BehaviorHost(self.device)
-        self.network_node = NetworkNode(self._host, name=names.name, uuid=uuid.uuid4().bytes)
+        self._host: RobotHost
+        self.network_node: RobotNode
         """The robot as a node of an Aseba network."""
+        if remote is None:
+            host = BehaviorHost(AsebaDevice(node_id=number, options=options))
+            self._host, self.network_node = host, NetworkNode(host, name=names.name, uuid=uuid.uuid4().bytes)
+        else:
+            self._host, self.network_node = remote.host, remote.gateway
+        self.device: RobotDevice = self._host.device
+        """The robot's machine."""
         self.send_to_network: Callable[[Sequence[Message]], None] | None = None
         """Takes the messages of the node for all clients, while there are clients."""
+        self.on_program: Callable[[ThymioProgram], None] = lambda program: None
+        """Called with each program that the robot begins to run."""
         self._node = node
         self._bus, self._diagnostics = bus, diagnostics
         self._debug_options = debug_options or DebugOptions()
@@ -114,7 +129,8 @@ class DeviceEndpoints:
         self._last_slice_s = 0.0
         self._replaced = 0
         self._overload = ""
-        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None)
+        rows = None if remote is None else ()
+        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None, rows=rows)
         self.warn = ThrottledLog(node)
         self._status = StatusEndpoints(node, names, number=number)
         self._events = EventEndpoints(node, names, lambda event, args: bus.emit(self, event, args), self.warn)
@@ -202,11 +218,6 @@ class DeviceEndpoints:
         self.device.receive_event(event, args, source=source)
         return True
 
-    def remember(self, text: str) -> None:
-        """Note the text of the bytecode that a client is about to write. One that does not compile is ignored."""
-        with contextlib.suppress(ProgramError):
-            self._host.remember(load_program(text, FOREIGN, self.device.layout))
-
     def handle_messages(
         self, client: int, messages: Sequence[Message], send: Callable[[Sequence[Message], int | None], None]
     ) -> None:
@@ -223,6 +234,10 @@ class DeviceEndpoints:
         node.install_bytecode()
         if not all(isinstance(message, QUESTIONS) for message in messages):
             self.run()
+
+    def remember(self, program: ThymioProgram) -> None:
+        """Remember the text of a program whose bytecode may come from the network."""
+        self._host.remember(replace(program, layout=self.device.layout))
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store a reading; the caller then calls `run` or `is_due`. An invalid reading is logged."""
@@ -316,6 +331,7 @@ class DeviceEndpoints:
             self.device.local_events.watch(local_events)
             self._events.open(program, sorted(local_events))
         self._program = program
+        self.on_program(program)
         self._variables.language = debug_options.language
         self._variables.set_program(debug_options.watch)
         points = self.device.run_control.set_breakpoints(debug_options.breakpoints if is_own else ())
@@ -339,9 +355,8 @@ class DeviceEndpoints:
             self._bus.run_until_idle()
             status = self.device.status
             response.success = status.state != OFF
-            response.message = (
-                describe_position(status) if response.success else f"{word}: the robot is off; aseba/run switches it on"
-            )
+            off = status.fault or "the robot is off; aseba/run switches it on"
+            response.message = describe_position(status) if response.success else f"{word}: {off}"
             return response
 
         return callback

@@ -14,6 +14,7 @@ from rclpy.node import Node
 
 from aseba_vm.protocol import Message
 from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.network.hub import Network
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.network.thread import NetworkThread
@@ -33,13 +34,13 @@ CAPACITY = 256
 
 @dataclass(frozen=True, slots=True)
 class _Post:
-    """Something from a client of one robot: messages, a text for the next bytecode, or that it has come or gone."""
+    """Something from a client of one robot: messages, that it has come or gone, or the text of a program."""
 
     robot: DeviceEndpoints
     client: int
     messages: Sequence[Message] = ()
     event: str = ""
-    text: str = ""
+    program: ThymioProgram | None = None
 
 
 class NetworkLink:
@@ -66,7 +67,7 @@ class NetworkLink:
     def update(self) -> None:
         """Add networks of new robots, and remove those of robots that are gone."""
         for robot in [robot for robot in self._networks if robot not in list(self._robots)]:
-            robot.send_to_network = None
+            robot.send_to_network, robot.on_program = None, lambda program: None
             self.thread.call(self.thread.hub.remove, self._networks.pop(robot))
         for robot in self._robots:
             if robot not in self._networks:
@@ -75,11 +76,14 @@ class NetworkLink:
                     robot.names.name,
                     nodes,
                     place=robot.number - self._first_id,
-                    node_ids=(robot.number,),
+                    node_ids=(robot.number,) if robot.is_simulated else (),
+                    is_simulated=robot.is_simulated,
                 )
                 network.remember = nodes.remember
                 self._networks[robot] = network
+                self.thread.call(network.set_program, robot.program)
                 self.thread.call(self.thread.hub.add, network)
+                robot.on_program = partial(self.thread.call, network.set_program)
 
     def drain(self) -> None:
         """Handle what clients sent before the node had an executor, which nothing else would wake."""
@@ -100,8 +104,8 @@ class NetworkLink:
             robot.send_to_network = lambda messages: self.thread.call(network.deliver, messages)
         elif post.event == DISCONNECT:
             robot.network_node.disconnect(post.client)
-        elif post.text:
-            robot.remember(post.text)
+        elif post.program is not None:
+            robot.remember(post.program)
         else:
             robot.handle_messages(post.client, post.messages, partial(self.thread.call, network.deliver))
 
@@ -122,9 +126,8 @@ class _Robot:
         for start in range(0, len(messages), GROUP):
             self._mailbox.post(_Post(self._robot, client, messages[start : start + GROUP]))
 
-    def remember(self, client: int, text: str) -> None:
-        """Note the text of the bytecode that follows."""
-        self._mailbox.post(_Post(self._robot, client, text=text))
+    def remember(self, client: int, program: ThymioProgram) -> None:
+        self._mailbox.post(_Post(self._robot, client, program=program))
 
     def is_full(self, client: int) -> bool:
         return self._mailbox.is_full(client)

@@ -147,7 +147,7 @@ class AsebaRuntime:
         self.robots = RobotSet(node, self.values, self._diagnostics, link)
         self.robots.bus.reaches_all = params.emit_reaches == "network"
         self._publish_behaviours()
-        self._check = CheckService(node, layout=params.layout, robots=lambda: self.robots.names)
+        self._check = CheckService(node, layout=lambda: self.values.params.layout, robots=lambda: self.robots.names)
         self._follower = SimulatorFollower(node, params, self.robots, link)
         self.robots.set_names(params.robots)
         self.network: NetworkLink | None = None

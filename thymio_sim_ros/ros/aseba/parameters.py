@@ -17,7 +17,7 @@ from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.network.settings import OFF, TDM_WS_PORT, NetworkSettings
+from thymio_sim_ros.network.settings import HTTP_PORT, OFF, TDM_WS_PORT, NetworkSettings
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 
@@ -81,6 +81,9 @@ class NetworkParams:
         high=65535,
         fixed=True,
     )
+    http_port: int = param(
+        OFF, f"Port of the HTTP interface; that of asebahttp is {HTTP_PORT}", low=OFF, high=65535, fixed=True
+    )
     allowed_origins: tuple[str, ...] = param(
         ("",), "Origins of additional web pages that may connect, as https://host:port; * allows all", fixed=True
     )
@@ -96,6 +99,7 @@ class NetworkParams:
             address=settings.address,
             tdm_port=settings.tdm_port,
             tdm_ws_port=settings.tdm_ws_port,
+            http_port=settings.http_port,
             allowed_origins=settings.allowed_origins or ("",),
             announce=settings.is_announced,
         )
@@ -110,6 +114,7 @@ class NetworkParams:
             address=self.address,
             tdm_port=self.tdm_port,
             tdm_ws_port=self.tdm_ws_port,
+            http_port=self.http_port,
             allowed_origins=tuple(filter(None, self.allowed_origins)),
             is_announced=self.announce,
         )
@@ -152,6 +157,14 @@ class RuntimeParams:
         "Source of readings: raw (_raw/... of the simulator) or driver (topics of the ROS driver)",
         fixed=True,
         choices=("raw", "driver"),
+    )
+    robot: str = param(
+        "",
+        "Address of a real robot, in place of a simulator: tcp:host:port, or ser:device (ser is the first Thymio)",
+        fixed=True,
+    )
+    cmd_vel_timeout: float = param(
+        1.0, "Time after which a velocity for a real robot ends, s; 0 is never", low=0.0, high=3600.0, fixed=True
     )
     layout: str = param(
         "thymio", "Variables and native functions: thymio (firmware 14) or playground (Aseba Playground)", fixed=True

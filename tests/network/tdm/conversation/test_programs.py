@@ -274,12 +274,13 @@ def test_a_wrong_file_is_an_error_with_its_place(talk: Talk, text: str, place: t
 def test_the_text_of_a_program_precedes_its_bytecode_and_compiles_to_it(talk: Talk) -> None:
     talk.ask(1, m.RegisterEvents, NODE, (m.EventDescription("go", 1),))
     talk.ask(1, m.SetVariables, GROUP, (m.NamedValue("SPEED", encode_value((50,))),))
-    talk.texts.clear()
+    talk.programs.clear()
     source = "onevent go\nmotor.left.target = SPEED\n"
     talk.load(1, NODE, source)
-    ((network, text),) = talk.texts
+    ((network, known),) = talk.programs
     assert network == 0
-    file = aesl.loads(text, strict=True)
+    file = aesl.loads(known.text, strict=True)
     words = compile(file.nodes[0].code, targets.THYMIO_II, file.events, file.constants).words
-    assert talk.networks[0][0].vm.bytecode[: len(words)] == words
-    assert file.nodes[0].code == source
+    assert talk.networks[0][0].vm.bytecode[: len(words)] == words == known.program.words
+    assert file.nodes[0].code == known.source == source
+    assert [known.text.split("\n")[line - 1].strip() for line in known.lines[:2]][1:] == ["motor.left.target = SPEED"]

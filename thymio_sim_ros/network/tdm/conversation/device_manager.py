@@ -17,6 +17,7 @@ from aseba_vm.protocol.messages import GetDeviceInfo, GetExecutionState
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from aseba_vm.protocol.node_client import NodeClient
 from aseba_vm.protocol.reports import EventReceived, NodeConnected, NodeDisconnected, Report
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.network.tdm.conversation import reports, requests
 from thymio_sim_ros.network.tdm.conversation.breakpoints import answer_breakpoints
 from thymio_sim_ros.network.tdm.conversation.clients import Client, Closing, Delivery
@@ -153,10 +154,10 @@ class DeviceManager:
         """Return and clear what is to be done for clients, in order."""
         return self._directory.clients.pop()
 
-    def pop_texts(self) -> list[tuple[int, str]]:
-        """Return and clear the texts of the programs that `pop_messages` loads, each with the network's number."""
-        texts, self._directory.texts = self._directory.texts, []
-        return texts
+    def pop_programs(self) -> list[tuple[int, ThymioProgram]]:
+        """Return and clear the programs that `pop_messages` loads, each with the network's number."""
+        programs, self._directory.programs = self._directory.programs, []
+        return programs
 
     def pop_messages(self) -> list[tuple[int, AsebaMessage]]:
         """Return and clear the messages for networks, each with the network's number, in order."""

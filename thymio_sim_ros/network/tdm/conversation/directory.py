@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from uuid import UUID
 
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.network.tdm.conversation.clients import Client, Clients
 from thymio_sim_ros.network.tdm.conversation.group import Group
 from thymio_sim_ros.network.tdm.conversation.managed_node import ManagedNode
@@ -22,8 +23,8 @@ class Directory:
         self.clients = Clients()
         self.nodes: dict[UUID, ManagedNode] = {}
         self.now_ns = 0
-        self.texts: list[tuple[int, str]] = []
-        """Texts of programs that are about to be loaded, each with the number of its network."""
+        self.programs: list[tuple[int, ThymioProgram]] = []
+        """Programs that are about to be loaded, each with the number of its network."""
 
     @property
     def time_ms(self) -> int:

@@ -102,7 +102,7 @@ def _share_definitions(directory: Directory, node: ManagedNode, result: Compiled
 
 def _load(directory: Directory, node: ManagedNode, program: LoadableProgram) -> None:
     clear_breakpoints(directory, node)
-    directory.texts.append((node.network, program.file))
+    directory.programs.append((node.network, program.known))
     node.load(program)
     gone = node.pop_changes(directory.time_ms)
     if gone is not None:

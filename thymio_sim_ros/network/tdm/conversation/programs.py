@@ -12,6 +12,8 @@ from uuid import UUID
 
 from aseba_vm import AeslError, CompileError, Program, TargetDescription, aesl, compile
 from aseba_vm.aesl.network import with_vpl_events
+from thymio_sim_ros.device.programs.foreign import FOREIGN
+from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
 from thymio_sim_ros.network.tdm.protocol.constants import Language
 from thymio_sim_ros.network.tdm.protocol.messages import CompilationResultFailure
 
@@ -26,12 +28,12 @@ MOTORS = ("motor.left.target", "motor.right.target")
 class LoadableProgram:
     """A compiled program; `lines[row]` is the line, from 1, of the text that the client sent.
 
-    `file` is a text, bare or that of an .aesl file, which compiles to the same program without anything else.
+    `known` is the same program with its text, by which a simulated robot shows it.
     """
 
     program: Program
     lines: tuple[int, ...]
-    file: str
+    known: ThymioProgram
 
     def line_of(self, pc: int) -> int:
         """Line of an address of the bytecode; 0 if no line belongs to it."""
@@ -80,18 +82,19 @@ class Compilation:
                 found = self._compiled(self.text, target, self.events, self.constants)
                 if isinstance(found, CompilationResultFailure):
                     return found
-                rows = self.text.count("\n") + 1
-                programs.append(
-                    (key, LoadableProgram(found, tuple(range(1, rows + 1)), self._file(target.name, number)))
-                )
+                programs.append((key, self._loadable(found, target.name, number)))
             return Compiled(tuple(programs))
         return self._run_file()
 
-    def _file(self, name: str, number: int) -> str:
-        """The text with the events and constants that it needs."""
-        if not self.events and not self.constants:
-            return self.text
-        return aesl.dumps(aesl.Network(self.events, self.constants, nodes=(aesl.Node(name, number, self.text),)))
+    def _loadable(self, program: Program, name: str, number: int) -> LoadableProgram:
+        """The program of a node, with the events and constants that its text needs in a file."""
+        lines = tuple(range(1, self.text.count("\n") + 2))
+        node = aesl.Node(name, number, self.text)
+        network, text = aesl.Network(self.events, self.constants, nodes=(node,)), self.text
+        if self.events or self.constants:
+            text = aesl.dumps(network)
+            [node] = aesl.loads(text).nodes
+        return LoadableProgram(program, lines, of_node(program, node, network, FOREIGN, text))
 
     def _run_file(self) -> Compiled | CompilationResultFailure:
         try:
@@ -107,7 +110,8 @@ class Compilation:
             if isinstance(found, CompilationResultFailure):
                 row, column = node.place(found.character)
                 return CompilationResultFailure(self.request_id, found.message, found.character, row, column)
-            programs.append((key, LoadableProgram(found, tuple(row + 1 for row in node.rows_in_file()), self.text)))
+            lines = tuple(row + 1 for row in node.rows_in_file())
+            programs.append((key, LoadableProgram(found, lines, of_node(found, node, network, FOREIGN, self.text))))
         if not programs:
             names = ", ".join(sorted({node.name for node in network.nodes}))
             wanted = ", ".join(sorted({target.name for _, _, target in self.nodes}))
@@ -135,4 +139,6 @@ def motor_stop(target: TargetDescription) -> LoadableProgram:
     """The program that command "stop" leaves on a node: it stops the wheels, if there are any."""
     present = [name for name in MOTORS if name in target.addresses]
     text = "\n".join(f"{name} = 0" for name in present)
-    return LoadableProgram(compile(text, target), tuple(range(1, len(present) + 2)), text)
+    program, lines = compile(text, target), tuple(range(1, len(present) + 2))
+    node = aesl.Node(target.name, code=text)
+    return LoadableProgram(program, lines, of_node(program, node, aesl.Network(nodes=(node,)), FOREIGN, text))
