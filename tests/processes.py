@@ -22,7 +22,7 @@ _taken = itertools.count()
 
 
 SUITE = "thymio_sim_ros.cli.main"
-SERVERS = {"--aseba-port": "--no-aseba"}
+SERVERS = {"--aseba-port": "--no-aseba", "--tdm-port": "--no-tdm"}
 """Options that switch a server of the suite on, and those that switch it off: many tests run at the same time."""
 
 

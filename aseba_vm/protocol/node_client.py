@@ -146,6 +146,11 @@ class NodeClient:
         self._loads[node] = _Load(len(parts), 0, parts[-1], self._now_ns)
         self.send(*parts)
 
+    def note_program(self, node: int, program: Program) -> None:
+        """Use the names of a program that another client has loaded. Does nothing for a node that is not connected."""
+        if node in self._nodes:
+            self._nodes[node].set_program(program)
+
     def read(self, node: int, names: Iterable[str] | None = None) -> None:
         """Request variables by name, or all that are known; VariablesRead follow.
 

@@ -7,6 +7,7 @@ import socket
 
 import pytest
 
+from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.cli import servers
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.network.settings import OFF
@@ -15,9 +16,9 @@ from thymio_sim_ros.network.settings import OFF
 def selected(*words, robots=1, headless=False):
     parser = argparse.ArgumentParser()
     servers.add_server_options(parser)
-    options = parser.parse_args(words)
-    options.headless = headless
-    return servers.select_servers(options, robots)
+    options = parser.parse_args([*words, "--no-tdm"])
+    options.headless, options.address = headless, "localhost"
+    return servers.select_servers(options, robots, Tokens())
 
 
 @pytest.fixture

@@ -54,7 +54,8 @@ def run(argv: Sequence[str]) -> int:
         _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
-    servers = _without_port_of_robot(select_servers(options, len(robots)), options, suite.robot)
+    chosen = select_servers(options, len(robots), suite.tokens or Tokens())
+    servers = _without_port_of_robot(chosen, options, suite.robot)
     suite = replace(suite, network=servers.settings)
     check_ros()
     if (notice := startup_notice(len(robots))) is not None:

@@ -101,6 +101,11 @@ class BehaviorHost:
         self.program = program
         self.device.adopt(program)
 
+    def remember(self, program: ThymioProgram | None) -> None:
+        """Remember the text of a program, so that `adopt` recognizes its bytecode."""
+        if program is not None and not program.is_foreign:
+            self._loaded = [*(known for known in self._loaded if known != program), program][-MAX_REMEMBERED:]
+
     def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
         """Switch the robot on with a built-in program, such as the menu, from which `user_program` can be started.
 
@@ -108,7 +113,7 @@ class BehaviorHost:
         """
         program = built_in(name, self.device.layout)
         self._first, self._user_program = name, _unless_empty(user_program)
-        self._remember(user_program)
+        self.remember(user_program)
         self._entry = next((entry for entry, known in ENTRIES.items() if known == name), PROGRAM_ENTRY)
         self._run(program, warm=False, wait=POWER_ON_TICKS)
 
@@ -169,11 +174,7 @@ class BehaviorHost:
         self._first = program
         self._user_program = _unless_empty(program)
         self._entry = PROGRAM_ENTRY
-        self._remember(program)
-
-    def _remember(self, program: ThymioProgram | None) -> None:
-        if program is not None and not program.is_foreign:
-            self._loaded = [*(known for known in self._loaded if known != program), program][-MAX_REMEMBERED:]
+        self.remember(program)
 
     def _run(self, program: ThymioProgram, *, warm: bool, wait: int = 0) -> None:
         self.program = program

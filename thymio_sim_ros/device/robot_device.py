@@ -154,6 +154,9 @@ class RobotHost(Protocol):
     def load(self, program: ThymioProgram) -> None:
         """Load a user program and start it."""
 
+    def remember(self, program: ThymioProgram) -> None:
+        """Remember the text of a program whose bytecode may come from the network."""
+
     def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
         """Switch the robot on with a built-in program."""
 

@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
 from aseba_vm.protocol import PROTOCOL_VERSION
 
-__all__ = ["ASEBA", "Announcement", "Announcer", "aseba_properties"]
+__all__ = ["ASEBA", "DEVICE_MANAGER", "Announcement", "Announcer", "aseba_properties"]
 
-ASEBA = "_aseba._tcp"
+ASEBA, DEVICE_MANAGER = "_aseba._tcp", "_mobsya._tcp"
+"""Types of services."""
 
 PRODUCT_ID = 8
 """The number of a Thymio II among the products."""

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol
 
 from aseba_vm.protocol import Message
+from thymio_sim_ros.device.programs.program import ThymioProgram
 
 __all__ = ["Connection", "Hub", "HubListener", "Network", "Nodes", "Receive"]
 
@@ -60,6 +61,11 @@ class Connection:
         if self.client in self._network:
             self._network.nodes.send(self.client, messages)
 
+    def remember(self, program: ThymioProgram) -> None:
+        """Give the text of a program whose bytecode follows, so that a simulated robot shows it."""
+        if self.client in self._network:
+            self._network.remember(self.client, program)
+
     def close(self) -> None:
         """Leave the network; a second call has no effect."""
         self._network.remove(self.client)
@@ -80,6 +86,12 @@ class Network:
         self.place = place
         self.node_ids = tuple(node_ids)
         self.is_simulated = is_simulated
+        self.program: ThymioProgram | None = None
+        """The program of the robot, if it is known."""
+        self.followers: list[Callable[[Network], None]] = []
+        """Called when `program` has changed."""
+        self.remember: Callable[[int, ThymioProgram], None] = lambda client, program: None
+        """Takes the texts of programs from clients, by number."""
         self._receivers: dict[int, Receive] = {}
 
     def __contains__(self, client: int) -> bool:
@@ -96,6 +108,12 @@ class Network:
         """Remove a client, if it is there."""
         if self._receivers.pop(client, None) is not None:
             self.nodes.disconnect(client)
+
+    def set_program(self, program: ThymioProgram) -> None:
+        """Note which program the robot has."""
+        self.program = program
+        for follower in list(self.followers):
+            follower(self)
 
     def deliver(self, messages: Sequence[Message], client: int | None = None) -> None:
         """Pass messages of the nodes to a client that may have left already, or to all clients."""

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import importlib.util
 import socket
 import threading
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
-from thymio_sim_ros.network.announcement import ASEBA, Announcement, Announcer, aseba_properties
+from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.network.announcement import ASEBA, DEVICE_MANAGER, Announcement, Announcer, aseba_properties
 from thymio_sim_ros.network.aseba_server import AsebaServer
 from thymio_sim_ros.network.hub import Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.network.tdm_server import TdmServer
 
 __all__ = ["NetworkThread", "Server"]
 
@@ -36,16 +41,28 @@ class Server(Protocol):
 class NetworkThread:
     """Runs the servers of a hub. Invariant: hub and servers are used in this thread only."""
 
-    def __init__(self, settings: NetworkSettings, *, warn: Callable[[str], None], info: Callable[[str], None]) -> None:
-        """Start the thread. `warn` and `info` take lines for the log, in any thread."""
+    def __init__(
+        self,
+        settings: NetworkSettings,
+        *,
+        tokens: Tokens | None = None,
+        warn: Callable[[str], None],
+        info: Callable[[str], None],
+    ) -> None:
+        """Start the thread. `tokens`: those that clients on other computers need, where the protocol allows it.
+
+        `warn` and `info` take lines for the log, in any thread.
+        """
         self.hub = Hub()
         self._settings, self._warn, self._info = settings, warn, info
+        self._tokens = tokens or Tokens()
         self._reported_s: dict[str, float] = {}
         self._loop = asyncio.new_event_loop()
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="network-servers", daemon=True)
         self._is_closed = False
         self._ports: dict[str, int] = {}
+        self._tdm_ports = (OFF, OFF)
         self._announcers: dict[str, Announcer] = {}
         """By address."""
         self._thread.start()
@@ -54,6 +71,11 @@ class NetworkThread:
     def ports(self) -> dict[str, int]:
         """Aseba port of each robot by name; from any thread."""
         return dict(self._ports)
+
+    @property
+    def tdm_ports(self) -> tuple[int, int]:
+        """TCP and WebSocket port of the Thymio Device Manager, `OFF` if it does not run; from any thread."""
+        return self._tdm_ports
 
     def call(self, function: Callable[..., object], *arguments: Any) -> None:
         """Call a function in the thread; from any thread. Does nothing once the thread has ended."""
@@ -116,11 +138,31 @@ class NetworkThread:
             aseba = AsebaServer(self.hub, settings, self.report)
             aseba.ports_changed = lambda: self._set_ports(aseba)
             servers.append(aseba)
+        if settings.tdm_port != OFF:
+            if importlib.util.find_spec("flatbuffers") is None:
+                self.report("tdm", "Thymio Device Manager: off, as the package flatbuffers is not installed")
+            else:
+                from thymio_sim_ros.network.tdm_server import TdmServer
+
+                servers.append(TdmServer(self.hub, settings, self.report, self._opened, password=self._tokens.full))
+        if settings.http_port != OFF:
+            if importlib.util.find_spec("aiohttp") is None:
+                self.report("http", "HTTP interface: off, as the package aiohttp is not installed")
+            else:
+                from thymio_sim_ros.network.http.server import HttpServer
+
+                servers.append(HttpServer(self.hub, settings, self.report, tokens=self._tokens))
         return servers
 
     def _set_ports(self, server: AsebaServer) -> None:
         self._ports = {network.name: port for port, networks in server.ports.items() for network in networks}
         self.announce("aseba", self._settings.aseba_address, [_aseba(*item) for item in server.ports.items()])
+
+    def _opened(self, server: TdmServer) -> None:
+        self._tdm_ports = server.port, server.ws_port
+        name = f"Thymio Device Manager on {socket.gethostname()}"
+        properties = ("uuid", str(server.uuid)), ("ws-port", str(server.ws_port))
+        self.announce("tdm", self._settings.address, [Announcement(DEVICE_MANAGER, name, server.port, properties)])
 
 
 def _aseba(port: int, networks: Sequence[Network]) -> Announcement:

@@ -62,6 +62,7 @@ def suite_nodes(
     match each other. Raises StartError if a node cannot start.
     """
     given = defaults(suite)
+    foxglove_port, tokens = suite.foxglove_port, suite.tokens
     is_simulated = not suite.robot
     if is_simulated:
         simulator = Simulator(context, given[SIMULATOR])
@@ -69,12 +70,12 @@ def suite_nodes(
         robots = [names.name for names in simulator.endpoints.robots.names.values()]
         yield simulator
         link = None if peers is None else peers.link(simulator)
-        yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True, link=link)
+        params = replace(given[RUNTIME], robots=robots)
+        yield AsebaRuntime(context, params, use_sim_time=True, link=link, tokens=tokens)
     else:
-        runtime = AsebaRuntime(context, given[RUNTIME], use_sim_time=False)
+        runtime = AsebaRuntime(context, given[RUNTIME], use_sim_time=False, tokens=tokens)
         _log(runtime.node, warnings)
         yield runtime
-    foxglove_port, tokens = suite.foxglove_port, suite.tokens
     if suite.foxglove:
         from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 

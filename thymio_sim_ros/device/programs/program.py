@@ -21,6 +21,7 @@ __all__ = [
     "load_file",
     "load_program",
     "memory_use",
+    "of_node",
     "other_device_note",
     "parse",
     "select",
@@ -119,6 +120,14 @@ def load_file(
     return ThymioFile(tuple(programs), others, tuple(notes))
 
 
+def of_node(
+    program: Program, node: aesl.Node, network: aesl.Network, name: str, text: str, layout: str = THYMIO
+) -> ThymioProgram:
+    """Return the compiled program of a node of a file with this name and text."""
+    lines, shown = tuple(row + 1 for row in node.rows_in_file()), replace(node, plugins=())
+    return ThymioProgram(name, node.code, program, network.events, network.constants, lines, layout, shown, text)
+
+
 def parse(text: str, constants: Mapping[str, int] = NO_CONSTANTS) -> aesl.Network:
     """Parse an .aesl file, or bare text as a node without a name; add the events of VPL. Raises AeslError."""
     text = text.removeprefix("\ufeff").replace("\r\n", "\n")
@@ -170,9 +179,4 @@ def _compile(
             raise ProgramError(name, None, None, message) from error
         row, col = node.place(error.pos.offset)
         raise ProgramError(name, row + 1, col + 1, message) from error
-    lines, shown = _lines(node), replace(node, plugins=())
-    return ThymioProgram(name, node.code, program, network.events, network.constants, lines, layout, shown, text)
-
-
-def _lines(node: aesl.Node) -> tuple[int, ...]:
-    return tuple(row + 1 for row in node.rows_in_file())
+    return of_node(program, node, network, name, text, layout)

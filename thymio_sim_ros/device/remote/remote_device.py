@@ -148,6 +148,7 @@ class RemoteHost:
     def __init__(self, device: RemoteDevice) -> None:
         self.device = device
         self.program = load_program("", "none", device.layout)
+        self._remembered = self.program
 
     def load(self, program: ThymioProgram) -> None:
         """Load a user program and start it. Raises ValueError for a program of another layout."""
@@ -157,8 +158,14 @@ class RemoteHost:
     def adopt(self, words: Sequence[int]) -> None:
         """Make the bytecode that another client has loaded the program; it may be the one that is known."""
         if not self.device.has_bytecode(words):
-            self.program = foreign_program(words, self.device.layout, self.program.events)
+            is_known = self._remembered.program.words == tuple(words)
+            foreign = foreign_program(words, self.device.layout, self.program.events)
+            self.program = self._remembered if is_known else foreign
             self.device.adopt(self.program)
+
+    def remember(self, program: ThymioProgram) -> None:
+        """Remember the text of a program whose bytecode another client loads next."""
+        self._remembered = program
 
     def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
         """Start a built-in program, from which no other can be started.

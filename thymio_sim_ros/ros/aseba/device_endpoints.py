@@ -119,6 +119,8 @@ class DeviceEndpoints:
         """The robot's machine."""
         self.send_to_network: Callable[[Sequence[Message]], None] | None = None
         """Takes the messages of the node for all clients, while there are clients."""
+        self.on_program: Callable[[ThymioProgram], None] = lambda program: None
+        """Called with each program that the robot begins to run."""
         self._node = node
         self._bus, self._diagnostics = bus, diagnostics
         self._debug_options = debug_options or DebugOptions()
@@ -233,6 +235,10 @@ class DeviceEndpoints:
         if not all(isinstance(message, QUESTIONS) for message in messages):
             self.run()
 
+    def remember(self, program: ThymioProgram) -> None:
+        """Remember the text of a program whose bytecode may come from the network."""
+        self._host.remember(replace(program, layout=self.device.layout))
+
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store a reading; the caller then calls `run` or `is_due`. An invalid reading is logged."""
         try:
@@ -325,6 +331,7 @@ class DeviceEndpoints:
             self.device.local_events.watch(local_events)
             self._events.open(program, sorted(local_events))
         self._program = program
+        self.on_program(program)
         self._variables.language = debug_options.language
         self._variables.set_program(debug_options.watch)
         points = self.device.run_control.set_breakpoints(debug_options.breakpoints if is_own else ())

@@ -17,7 +17,7 @@ from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.network.settings import OFF, NetworkSettings
+from thymio_sim_ros.network.settings import HTTP_PORT, OFF, TDM_WS_PORT, NetworkSettings
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 
@@ -72,6 +72,21 @@ class NetworkParams:
         fixed=True,
     )
     aseba_shared: bool = param(False, "Whether all robots are on one Aseba port", fixed=True)
+    address: str = param("localhost", "Address of the servers whose clients need a token", fixed=True)
+    tdm_port: int = param(OFF, "TCP port of the Thymio Device Manager", low=OFF, high=65535, fixed=True)
+    tdm_ws_port: int = param(
+        TDM_WS_PORT,
+        "WebSocket port of the Thymio Device Manager, if its TCP port is open",
+        low=0,
+        high=65535,
+        fixed=True,
+    )
+    http_port: int = param(
+        OFF, f"Port of the HTTP interface; that of asebahttp is {HTTP_PORT}", low=OFF, high=65535, fixed=True
+    )
+    allowed_origins: tuple[str, ...] = param(
+        ("",), "Origins of additional web pages that may connect, as https://host:port; * allows all", fixed=True
+    )
     announce: bool = param(True, "Whether the servers are announced by mDNS", fixed=True)
 
     @classmethod
@@ -81,6 +96,11 @@ class NetworkParams:
             aseba_port=settings.aseba_port,
             aseba_address=settings.aseba_address,
             aseba_shared=settings.is_aseba_shared,
+            address=settings.address,
+            tdm_port=settings.tdm_port,
+            tdm_ws_port=settings.tdm_ws_port,
+            http_port=settings.http_port,
+            allowed_origins=settings.allowed_origins or ("",),
             announce=settings.is_announced,
         )
 
@@ -91,6 +111,11 @@ class NetworkParams:
             aseba_port=self.aseba_port,
             aseba_address=self.aseba_address,
             is_aseba_shared=self.aseba_shared,
+            address=self.address,
+            tdm_port=self.tdm_port,
+            tdm_ws_port=self.tdm_ws_port,
+            http_port=self.http_port,
+            allowed_origins=tuple(filter(None, self.allowed_origins)),
             is_announced=self.announce,
         )
 
