@@ -68,7 +68,7 @@ class NetworkParams:
     )
     aseba_address: str = param(
         "localhost",
-        "Address of the Aseba ports; whoever reaches it controls the robots, as the protocol has no token",
+        "Address of the Aseba ports; every program that reaches it controls the robots, without a token",
         fixed=True,
     )
     aseba_shared: bool = param(False, "Whether all robots are on one Aseba port", fixed=True)
