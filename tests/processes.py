@@ -21,10 +21,18 @@ _STRIDE = 1009
 _taken = itertools.count()
 
 
+SUITE = "thymio_sim_ros.cli.main"
+SERVERS = {"--aseba-port": "--no-aseba", "--tdm-port": "--no-tdm"}
+"""Options that switch a server of the suite on, and those that switch it off: many tests run at the same time."""
+
+
 class Process:
     """`main()` of a module in a process group of its own, with signals reset and its output kept."""
 
     def __init__(self, folder: Path, module: str, *arguments: str) -> None:
+        """Start it. A suite has the servers for other programs only if the arguments ask for them."""
+        if module == SUITE and (not arguments or arguments[0].startswith("--")):
+            arguments = (*(off for on, off in SERVERS.items() if on not in arguments), *arguments)
         self._log = folder / f"{module}.txt"
         command = [sys.executable, "-c", f"import sys; from {module} import main; sys.exit(main())", *arguments]
         with self._log.open("w") as output:

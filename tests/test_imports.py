@@ -56,6 +56,22 @@ RULES = {
     f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
     f"{OURS}.web": Rule(_names("web", "bridge", "playground_index", "resources", "sim"), frozenset({"aiohttp"})),
+    f"{OURS}.network": Rule(
+        _names("addresses", "aseba_vm", "bridge", "device.programs", "network"),
+        frozenset({"serial", "websockets", "zeroconf"}),
+    ),
+    f"{OURS}.network.http": Rule(
+        _names(
+            "aseba_vm", "bridge.access", "bridge.origin_policy", "bridge.protocol", "device.programs", "network.http"
+        )
+        | _names("web.hosts"),
+        never=NO_WALL_CLOCK,
+    ),
+    f"{OURS}.network.http.server": Rule(_names("aseba_vm", "bridge", "network", "web"), frozenset({"aiohttp"})),
+    f"{OURS}.network.tdm.protocol": Rule(_names("network.tdm.protocol"), frozenset({"flatbuffers"}), NO_WALL_CLOCK),
+    f"{OURS}.network.tdm": Rule(
+        _names("aseba_vm", "device.programs", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK
+    ),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.tf": Rule(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
+from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 
@@ -13,6 +14,9 @@ HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765
 ADDRESS = "localhost"
 """Loopback only, unless the network is requested."""
+
+
+NO_SERVERS = NetworkSettings()
 
 
 @dataclass(frozen=True)
@@ -23,11 +27,13 @@ class SuiteConfig:
         playground: shipped name, path or JSON text.
         program: name of a behavior, or path.
         behaviour: built-in behavior after switching on, from whose menu the program can be started; empty for none.
+        robot: address of a real robot, in place of the simulator; empty for none.
         address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
         log: file of a run log, empty for none.
         cmd_vel_timeout_s: time after which a velocity ends; short, because teleoperation in the browser sends nothing
             on release (docs/spec/ros-interface.md section 13).
         tokens: tokens that clients of page and bridge need; None lets the bridge choose.
+        network: servers by which other programs reach the robots; none by default.
     """
 
     playground: str = "desk"
@@ -36,6 +42,7 @@ class SuiteConfig:
     device: DeviceOptions = DEFAULTS
     motor_model: str = MOTOR_MODELS[0]
     proximity_model: str = PROXIMITY_MODELS[0]
+    robot: str = ""
     address: str = ADDRESS
     port: int = HTTP_PORT
     foxglove_port: int = FOXGLOVE_PORT
@@ -46,3 +53,4 @@ class SuiteConfig:
     real_time_factor: float = 1.0
     cmd_vel_timeout_s: float = 0.5
     tokens: Tokens | None = None
+    network: NetworkSettings = NO_SERVERS

@@ -424,3 +424,34 @@ def test_what_lies_on_this_computer_for_other_purposes_is_not_quoted(capsys, tmp
     (tmp_path / "hunter2_file").write_text(content)
     line = refused(capsys, option, str(tmp_path / "hunter2_file"))
     assert "hunter2" not in line.replace("hunter2_file", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "found"),
+    [
+        (("--robot", "usb0"), "robot 'usb0': expected tcp:host:port"),
+        (("--robot", "tcp:robot:0"), "found port '0', expected a number from 1 to 65535"),
+        (
+            ("--robot", "ser", "--playground", "line", "--real-time-factor", "2"),
+            "found --playground, --real-time-factor",
+        ),
+        (("--robot", "ser", "--behaviour", "menu"), "found --behaviour; a real robot has no simulator"),
+        (("--robot", "ser", "--program", "nowhere.aesl"), "nowhere.aesl"),
+    ],
+)
+def test_a_real_robot_takes_no_options_of_the_simulator(capsys, arguments, found):
+    assert found in refused(capsys, *arguments)
+
+
+def test_the_suite_does_not_serve_the_port_of_its_own_robot(capsys):
+    port = free_port()
+    line = refused(capsys, "--robot", f"tcp:localhost:{port}", "--headless", "--aseba-port", str(port))
+    assert line.endswith(f"Aseba port {port}: this is the port of the robot; choose another with --aseba-port")
+
+
+def test_a_program_for_a_real_robot_is_compiled_before_anything_starts(capsys, tmp_path):
+    program = tmp_path / "broken.aesl"
+    program.write_text("motor.left.targt = 1\n")
+    line = refused(capsys, "--robot", "ser", "--program", str(program))
+    assert "line 1, column 1" in line
+    assert "motor.left.target" in line

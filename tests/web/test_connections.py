@@ -32,7 +32,16 @@ def admitted(connections: Connections, address: str, ended: list[ConnectionSlot]
     return place
 
 
-@pytest.mark.parametrize("phase", Phase)
+def test_a_stream_has_no_time_limit_and_is_not_evicted(connections, clock):
+    streams = [admitted(connections, "a") for _ in range(4)]
+    for one in streams:
+        connections.set_phase(one, Phase.STREAMING)
+    clock.now_s = 1e6
+    assert connections.close_overdue() == 0
+    assert connections.eviction_candidate() is None
+
+
+@pytest.mark.parametrize("phase", TIME_LIMIT_S)
 def test_a_connection_is_closed_after_the_time_of_its_phase(connections, clock, phase):
     ended: list[ConnectionSlot] = []
     place = admitted(connections, "a", ended)

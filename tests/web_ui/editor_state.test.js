@@ -225,6 +225,19 @@ test("a new program and an opened file stay when a robot reports its program", (
   assert.equal(session.code, "b = 1");
 });
 
+test("a program of another program on the network leaves the text, which is not in the robot any more", () => {
+  const { session } = workspace();
+  session.edit("a = 1");
+  const { text } = session.current;
+  session.loaded(ALL, text);
+  assert.ok(session.isInRobot);
+  session.setRobotProgram(ALL, { ...program("    0  0003  code at 3"), foreign: true });
+  assert.equal(session.code, "a = 1");
+  assert.ok(!session.isInRobot);
+  session.setRobotProgram(ALL, program(text)); // the same bytecode again: the runtime recognizes it
+  assert.ok(session.isInRobot);
+});
+
 test("the robot's report after loading changes nothing", () => {
   const { session, shown } = workspace();
   session.edit("a = 1");

@@ -7,9 +7,17 @@ import { aboutOf, exampleTitle, inOrder, isExample, titleOf } from "../../web_ui
 import editorTexts from "../../web_ui/i18n/editor.texts.js";
 import exampleTexts from "../../web_ui/i18n/examples.texts.js";
 import { translator } from "../../web_ui/i18n/index.js";
+import { instructionsOf } from "../../web_ui/program_tab/foreign_bar.js";
 import { SKELETONS, skeletonText } from "../../web_ui/program_tab/skeletons.js";
 
 const en = translator("en", exampleTexts);
+
+test("instructions are shown of a program without a text of its own only", () => {
+  const program = { name: "from the network", node: "", first_line: 1, source: "0 0003", file: "0 0003", events: [], constants: [], variables: [] };
+  assert.equal(instructionsOf({ ...program, foreign: true }), "0 0003");
+  assert.equal(instructionsOf({ ...program, foreign: false }), null);
+  assert.equal(instructionsOf(null), null);
+});
 
 test("examples have names for pupils; others keep their own", () => {
   assert.equal(titleOf("thesis_basic", en), "Drive with the arrows");

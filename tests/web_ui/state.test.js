@@ -30,7 +30,8 @@ test("topics are split into robot and name", () => {
   assert.deepEqual(splitTopic("/_led/state"), { robot: "", name: "_led/state" });
   assert.deepEqual(splitTopic("/thymio_1/_led/state"), { robot: "thymio_1", name: "_led/state" });
   assert.deepEqual(splitTopic("/_markers"), { robot: null, name: "/_markers" });
-  assert.equal(splitTopic("/odom"), null);
+  assert.deepEqual(splitTopic("/odom"), { robot: "", name: "odom" });
+  assert.equal(splitTopic("/imu"), null);
   assert.equal(splitTopic("/a/b/_led/state"), null);
 });
 
@@ -40,6 +41,22 @@ test("robots are found by their ground truth topics", () => {
   ]);
   assert.deepEqual(Object.keys(state.robots), ["thymio_0", "thymio_1"]);
   assert.equal(state.selected, "thymio_0");
+});
+
+test("a real robot, which has no ground truth, is drawn where its odometry is", () => {
+  const { value } = captured("nav_msgs/msg/Odometry");
+  const topics = ["/odom", "/_aseba/status", "/a/odom", "/a/_aseba/status", "/a/_ground_truth/odom", "/other/odom"];
+  const state = after([
+    { type: "channels", topics },
+    message("/odom", value, 10),
+    message("/a/odom", value, 10),
+  ]);
+  assert.deepEqual(Object.keys(state.robots), ["", "a"]);
+  assert.equal(state.robots[""].latest?.arrivedMs, 10);
+  assert.equal(state.robots.a.latest, null);
+  assert.ok(isWatched(state, "/odom"));
+  assert.ok(!isWatched(state, "/a/odom"));
+  assert.notEqual(subscriptionKey(state), subscriptionKey(INITIAL));
 });
 
 test("a robot that stays keeps its state, and stays selected", () => {

@@ -12,7 +12,7 @@ import ipaddress
 from collections.abc import Collection
 from urllib.parse import SplitResult, urlsplit
 
-__all__ = ["is_allowed"]
+__all__ = ["is_allowed", "is_local", "is_numeric"]
 
 _FOXGLOVE_APPS = frozenset({"https://app.foxglove.dev", "https://studio.foxglove.dev", "file://"})
 """The hosted app, under both of its names, and desktop applications, whose pages are files."""
@@ -24,13 +24,18 @@ def is_allowed(origin: str | None, host: str | None, allowed: Collection[str] = 
     """Whether a page from `origin` may connect to a server addressed as `host` (header values, None: not sent)."""
     if origin is None or "*" in allowed or origin in allowed or origin in _FOXGLOVE_APPS:
         return True
+    return is_local(origin, host)
+
+
+def is_local(origin: str, host: str | None) -> bool:
+    """Whether a page is from this machine, or from the numeric address by which the server is addressed."""
     page = _split(origin)
     if page is None or page.scheme not in ("http", "https") or not page.hostname:
         return False
     if page.hostname in _THIS_MACHINE:
         return True
     server = _split(f"http://{host}")
-    return server is not None and page.hostname == server.hostname and _is_number(page.hostname)
+    return server is not None and page.hostname == server.hostname and is_numeric(page.hostname)
 
 
 def _split(url: str) -> SplitResult | None:
@@ -40,7 +45,8 @@ def _split(url: str) -> SplitResult | None:
         return None
 
 
-def _is_number(host: str) -> bool:
+def is_numeric(host: str) -> bool:
+    """Whether a host is a numeric address."""
     try:
         ipaddress.ip_address(host)
     except ValueError:

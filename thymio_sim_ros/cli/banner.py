@@ -10,6 +10,7 @@ from thymio_sim_ros.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
 from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.network.robot_target import parse_target
 from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["banner", "qr_code", "startup_notice"]
@@ -20,8 +21,11 @@ _ROBOT_S = 0.1
 _LONG_START_S = 5.0
 
 
-def banner(suite: SuiteConfig, robots: Sequence[str]) -> str:
-    """Lines for the user. They contain the tokens: print them on standard output, never in a log."""
+def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = ()) -> str:
+    """Lines for the user, with those of the `servers` for other programs.
+
+    They contain the tokens: print them on standard output, never in a log.
+    """
     tokens = suite.tokens or Tokens()
     page = describe_urls("http", suite.address, suite.port, "/", tokens.full) if suite.web else _NONE
     path = "/" if tokens.full else ""
@@ -31,6 +35,9 @@ def banner(suite: SuiteConfig, robots: Sequence[str]) -> str:
         lines += [f"Read only {url}" for url in _read_only_urls(suite, tokens)]
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
         lines.append(f"Access    {describe_access(suite.address, tokens)}")
+    lines += servers
+    if suite.robot:
+        lines.insert(0, f"Robot     {parse_target(suite.robot)} (real robot: no simulation, no ground truth)")
     return "\n".join([*lines, f"Domain    {describe_domain(os.environ)}", "Stop      Ctrl-C"])
 
 

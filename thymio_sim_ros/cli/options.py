@@ -6,16 +6,18 @@ import argparse
 import importlib.util
 from pathlib import Path
 
+from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros import resources
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.device.event_queue import FIRMWARE, POLICIES
 from thymio_sim_ros.device.firmware.sd_card import SdCard, SdCardError
 from thymio_sim_ros.device.firmware.settings import Settings, SettingsError
-from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
+from thymio_sim_ros.device.layout import LAYOUTS, THYMIO, described
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.device.programs.program_assignment import Assignment
-from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments
+from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments, read_program
+from thymio_sim_ros.network.robot_target import TargetError, parse_target
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
@@ -25,6 +27,7 @@ __all__ = [
     "EXAMPLE",
     "add_world_options",
     "check_files",
+    "check_robot_program",
     "check_ros",
     "device_options",
     "number_argument",
@@ -40,6 +43,7 @@ example:
   thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (repeats the run, bit for bit)
   thymio-sim convert maze.playground -o maze.json            (from Aseba and others; without ROS)
   thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
+  thymio-sim --robot ser:/dev/ttyACM0 --program my_robot.aesl  (a real robot, without simulator)
   thymio-sim --ros-args -r __ns:=/lab1                       (ROS arguments come last; here a namespace)
 """
 
@@ -137,6 +141,18 @@ def check_files(playground: str, program: str, behaviour: str, layout: str) -> t
         loaded = load_playground(playground)[1]
         return loaded, read_assignments(program, [robot.name for robot in loaded.robots], layout)
     except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
+        raise UsageError(str(error)) from error
+
+
+def check_robot_program(robot: str, program: str) -> None:
+    """Compile the program of a real robot for a Thymio II; the robot may lack something that it uses.
+
+    Raises UsageError for a wrong address or program.
+    """
+    try:
+        parse_target(robot)
+        read_program(program, described(THYMIO_II))
+    except (TargetError, ProgramError, resources.ResourceError, OSError) as error:
         raise UsageError(str(error)) from error
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import ipaddress
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 
 import thymio_sim_ros
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.bridge.server_thread import check_free
 from thymio_sim_ros.cli.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.cli.errors import UsageError
@@ -18,17 +18,28 @@ from thymio_sim_ros.cli.options import (
     EXAMPLE,
     add_world_options,
     check_files,
+    check_robot_program,
     check_ros,
     device_options,
     number_argument,
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.cli.servers import Servers, add_server_options, address_argument, port_argument, select_servers
+from thymio_sim_ros.loading import NO_PROGRAM
+from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
 __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
+
+_SIMULATOR_ONLY = (
+    *("playground", "behaviour", "seed", "log", "card", "settings", "layout", "events", "motors", "proximity"),
+    "real_time_factor",
+)
+"""Options that a real robot does not have."""
 
 
 def run(argv: Sequence[str]) -> int:
@@ -38,12 +49,14 @@ def run(argv: Sequence[str]) -> int:
     suite = _suite_config(options)
     if options.log is not None and (os.path.isdir(options.log) or not os.path.isdir(options.log.parent)):
         raise UsageError(f"{options.log}: expected a file in a folder that exists")
-    playground, _ = check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
-    robots = [robot.name for robot in playground.robots]
+    robots = _check_robots(suite)
     if suite.web:
         _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
+    chosen = select_servers(options, len(robots), suite.tokens or Tokens())
+    servers = _without_port_of_robot(chosen, options, suite.robot)
+    suite = replace(suite, network=servers.settings)
     check_ros()
     if (notice := startup_notice(len(robots))) is not None:
         print_text(notice)
@@ -55,9 +68,31 @@ def run(argv: Sequence[str]) -> int:
     from thymio_sim_ros.ros import combined
 
     try:
-        return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots))
+        return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots, servers.lines))
     finally:
         shm_cleanup.remove_new(before)
+
+
+def _check_robots(suite: SuiteConfig) -> list[str]:
+    """Check the files of the suite and return the names of its robots. Raises UsageError."""
+    if suite.robot:
+        check_robot_program(suite.robot, suite.program)
+        return ["thymio"]
+    playground, _ = check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
+    return [robot.name for robot in playground.robots]
+
+
+def _without_port_of_robot(servers: Servers, options: argparse.Namespace, robot: str) -> Servers:
+    """Keep the suite from serving the port of its own robot, to which it would connect. Raises UsageError."""
+    target = parse_target(robot) if robot else None
+    settings = servers.settings
+    if not (isinstance(target, TcpTarget) and is_loopback(target.host) and target.port == settings.aseba_port):
+        return servers
+    if options.aseba_port is not None:
+        raise UsageError(f"Aseba port {target.port}: this is the port of the robot; choose another with --aseba-port")
+    line = f"Aseba     none: {target.port} is the port of the robot; another port: --aseba-port"
+    others = tuple(text for text in servers.lines if not text.startswith("Aseba "))
+    return Servers(replace(settings, aseba_port=OFF), (line, *others))
 
 
 def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -68,13 +103,21 @@ def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def _suite_config(options: argparse.Namespace) -> SuiteConfig:
+    """Return the configuration. Raises UsageError for options that exclude each other."""
+    if options.robot:
+        defaults = _parser().parse_args([])
+        of_simulator = [name for name in _SIMULATOR_ONLY if getattr(options, name) != getattr(defaults, name)]
+        if of_simulator:
+            found = ", ".join(f"--{name.replace('_', '-')}" for name in of_simulator)
+            raise UsageError(f"--robot: found {found}; a real robot has no simulator, expected none of its options")
     return SuiteConfig(
         playground=options.playground,
-        program=program_option(options),
+        program=NO_PROGRAM if options.robot and options.program is None else program_option(options),
         behaviour=options.behaviour,
         device=device_options(options),
         motor_model=options.motors,
         proximity_model=options.proximity,
+        robot=options.robot,
         address=options.address,
         port=options.port,
         foxglove_port=options.foxglove_port,
@@ -87,8 +130,8 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
     )
 
 
-def _print_banner(suite: SuiteConfig, robots: Sequence[str]) -> None:
-    print_text(banner(suite, robots))
+def _print_banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str]) -> None:
+    print_text(banner(suite, robots, servers))
     if sys.stdout is not None and sys.stdout.isatty():
         with contextlib.suppress(UnicodeEncodeError):  # a terminal without these characters
             if drawn := qr_code(suite):
@@ -104,6 +147,13 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     add_world_options(parser)
+    parser.add_argument(
+        "--robot",
+        default=SuiteConfig.robot,
+        metavar="ADDRESS",
+        help="a real robot in place of the simulator: tcp:host:port, or ser:device, where ser is the first Thymio that "
+        "is plugged in (default program: none)",
+    )
     _add_network_options(parser)
     parser.add_argument(
         "--real-time-factor",
@@ -119,7 +169,7 @@ def _parser() -> argparse.ArgumentParser:
 def _add_network_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--address",
-        type=_address_argument,
+        type=address_argument,
         default=SuiteConfig.address,
         metavar="IPV4",
         help="address on which page and bridge listen; 0.0.0.0 is the whole network, where clients need the token in "
@@ -142,31 +192,17 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
         "--no-token", action="store_true", help="give full access without a token to all clients that reach the address"
     )
     parser.add_argument(
-        "--port", type=_port_argument, default=SuiteConfig.port, help="port of the page (default: %(default)s)"
+        "--port", type=port_argument, default=SuiteConfig.port, help="port of the page (default: %(default)s)"
     )
     parser.add_argument(
         "--foxglove-port",
-        type=_port_argument,
+        type=port_argument,
         default=SuiteConfig.foxglove_port,
         help="port of the bridge (default: %(default)s)",
     )
+    add_server_options(parser)
     parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
     parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
-
-
-def _address_argument(text: str) -> str:
-    try:
-        return text if text == ADDRESS else str(ipaddress.IPv4Address(text))
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(
-            f"'{text}' found, expected {ADDRESS}, 0.0.0.0 for the whole network, or an IPv4 address of this computer"
-        ) from error
-
-
-def _port_argument(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 65535:
-        raise argparse.ArgumentTypeError(f"'{text}' found, expected a port from 1 to 65535")
-    return int(text)
 
 
 def _factor_argument(text: str) -> float:

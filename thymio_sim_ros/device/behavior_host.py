@@ -12,6 +12,7 @@ program, and the number of ticks of 20 ms during which the center button is igno
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from thymio_sim_ros import registry
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.network_events import EmittedEvent
+from thymio_sim_ros.device.programs.foreign import foreign_program
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import OFF
 
@@ -41,6 +43,9 @@ ENTRIES = {
     11: "thesis_track_follower",
 }
 """Built-in program of each entry: the numbers of the firmware up to 8, then programs that the menu does not show."""
+
+MAX_REMEMBERED = 4
+"""Programs whose bytecode is recognized when a tool loads it again."""
 
 POWER_ON_TICKS = 100
 """Ticks of 20 ms after switching on in which the center button is ignored."""
@@ -76,13 +81,30 @@ class BehaviorHost:
         self._first: ThymioProgram | str = self.program
         self._entry = PROGRAM_ENTRY
         self._notices: list[str] = []
+        self._loaded: list[ThymioProgram] = []
+        """The programs that were loaded with their text, the last one at the end."""
 
     def load(self, program: ThymioProgram) -> None:
         """Load a user program: stop the current one and the wheels, and start it."""
-        self._first = program
-        self._user_program = _unless_empty(program)
-        self._entry = PROGRAM_ENTRY
+        self._set_user_program(program)
         self._run(program, warm=False)
+
+    def adopt(self, words: Sequence[int]) -> None:
+        """Make the program whose bytecode a tool has written to the device the user program.
+
+        It is one of the last programs that were loaded with their text if it has the same words.
+        """
+        found = (known for known in (self.program, *reversed(self._loaded)) if known.program.words == tuple(words))
+        names = self._loaded[-1].events if self._loaded else ()
+        program = next(found, None) or foreign_program(words, self.device.layout, names)
+        self._set_user_program(program)
+        self.program = program
+        self.device.adopt(program)
+
+    def remember(self, program: ThymioProgram | None) -> None:
+        """Remember the text of a program, so that `adopt` recognizes its bytecode."""
+        if program is not None and not program.is_foreign:
+            self._loaded = [*(known for known in self._loaded if known != program), program][-MAX_REMEMBERED:]
 
     def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
         """Switch the robot on with a built-in program, such as the menu, from which `user_program` can be started.
@@ -91,6 +113,7 @@ class BehaviorHost:
         """
         program = built_in(name, self.device.layout)
         self._first, self._user_program = name, _unless_empty(user_program)
+        self.remember(user_program)
         self._entry = next((entry for entry, known in ENTRIES.items() if known == name), PROGRAM_ENTRY)
         self._run(program, warm=False, wait=POWER_ON_TICKS)
 
@@ -146,6 +169,12 @@ class BehaviorHost:
             self.start(self._first, self._user_program)
         else:
             self.load(self._first)
+
+    def _set_user_program(self, program: ThymioProgram) -> None:
+        self._first = program
+        self._user_program = _unless_empty(program)
+        self._entry = PROGRAM_ENTRY
+        self.remember(program)
 
     def _run(self, program: ThymioProgram, *, warm: bool, wait: int = 0) -> None:
         self.program = program

@@ -117,6 +117,11 @@ class AsebaDevice:
         return self.services.node_id
 
     @property
+    def radio(self) -> tuple[int, int]:
+        """Channel and network of the radio: robots receive events of their own network only."""
+        return self.services.network
+
+    @property
     def status(self) -> DeviceStatus:
         """State of the machine."""
         return self.run_control.status
@@ -145,16 +150,34 @@ class AsebaDevice:
         """
         if program.layout != self.layout:
             raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
-        for part in (self._network_events, self.local_events, self.variables, self.run_control):
-            part.set_program(program)
-        self._initial_event = None
+        self.adopt(program)
         if initial_event is not None and self.declares(initial_event.name):
             self._initial_event = self._network_events.encode(initial_event.name, initial_event.args, self.node_id)
+        self.run_control.clear_breakpoints()
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._vm.target.bytecode_size - len(words))))
         if warm:
             self._inputs.restore()
         self.run_control.start()
+
+    def adopt(self, program: ThymioProgram) -> None:
+        """Note that the bytecode in the memory is that of `program`: its names and lines apply from now on."""
+        for part in (self._network_events, self.local_events, self.variables, self.run_control):
+            part.set_program(program)
+        self._initial_event = None
+
+    def write_bytecode(self, words: Sequence[int], start: int) -> None:
+        """Write words of bytecode, which must fit, and reset the robot; nothing runs until it is resumed.
+
+        `adopt` follows with the program that the memory then contains.
+        """
+        self._initial_event = None
+        self.run_control.write_bytecode(words, start)
+
+    @property
+    def bytecode(self) -> tuple[int, ...]:
+        """The bytecode memory, unsigned words."""
+        return self._vm.bytecode
 
     def reinitialize(self) -> None:
         """Return to the state of a new robot, to be called before `load`: drop unsaved settings, radio and readings."""
@@ -197,7 +220,7 @@ class AsebaDevice:
 
     def receives_from(self, sender: AsebaDevice) -> bool:
         """Whether the radios of both devices are set to the same network."""
-        return self.services.network == sender.services.network
+        return self.radio == sender.radio
 
     def declares(self, event: str) -> bool:
         """Whether the program declares a global event of this name."""
@@ -208,10 +231,12 @@ class AsebaDevice:
 
         Raises KeyError if the program does not declare the event.
         """
-        event = self._network_events.encode(name, args, source)
-        if self.run_control.accepts_events and not self._queue.add_global(event):
-            self.load_meter.count_lost(name)
-            self.notices.add(f"more events arrive than the program can handle: {name} is lost")
+        self._queue_global(self._network_events.encode(name, args, source), name)
+
+    def receive_number(self, number: int, args: Sequence[int], *, source: int) -> None:
+        """Queue the global event with a number instead of a name, as `receive_event` does."""
+        event = GlobalEvent(number, source, tuple(args))
+        self._queue_global(event, self._network_events.name_of(event))
 
     def advance(self, now_ns: int) -> None:
         """Advance simulated time; the next `run` handles the timer events that are due."""
@@ -232,6 +257,7 @@ class AsebaDevice:
         Native calls and events count as several instructions (`costs`).
         """
         self._scheduler.run(budget, self.run_control.process_messages)
+        self.run_control.prepare_event()
 
     def pop_commands(self) -> list[Command]:
         """Return and clear the commands for the actuators.
@@ -265,6 +291,11 @@ class AsebaDevice:
     def pop_events(self) -> list[EmittedEvent]:
         """Return and clear the emitted events, in order."""
         return self._network_events.pop()
+
+    def _queue_global(self, event: GlobalEvent, name: str) -> None:
+        if self.run_control.accepts_events and not self._queue.add_global(event):
+            self.load_meter.count_lost(name)
+            self.notices.add(f"more events arrive than the program can handle: {name} is lost")
 
     def _plan_indicators(self, now_ns: int) -> None:
         """Update the indicators at the next multiple of their period."""

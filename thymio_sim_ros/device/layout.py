@@ -1,12 +1,14 @@
 """Targets of the compiler: the layout of the robot or of the reference playground, extended by plug-ins.
 
 A layout is the order of variables, events and native functions (docs/spec/thymio-robot.md sections 4 and 6.1). Programs
-refer to them by name, bytecode by position: it runs only on the layout for which it was compiled.
+refer to them by name, bytecode by position: it runs only on the layout for which it was compiled. A robot behind a
+network has the layout that it describes (`described`).
 """
 
 from __future__ import annotations
 
 import logging
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -18,7 +20,7 @@ from thymio_sim_ros.sim import actuators, sensors
 from thymio_sim_ros.sim.actuators import Actuator, all_actuators
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
-__all__ = ["LAYOUTS", "PLAYGROUND", "THYMIO", "Layout", "compatible_plugins", "extend", "target"]
+__all__ = ["LAYOUTS", "PLAYGROUND", "THYMIO", "Layout", "compatible_plugins", "described", "extend", "target"]
 
 THYMIO, PLAYGROUND = "thymio", "playground"
 
@@ -62,6 +64,10 @@ class Layout:
     initial_values: Mapping[str, tuple[int, ...]]
 
 
+_DESCRIBED: dict[str, TargetDescription] = {}
+"""Descriptions of robots behind a network by the name of their layout, which depends on nothing but the content."""
+
+
 LAYOUTS: Mapping[str, Layout] = {
     THYMIO: Layout(THYMIO_II, {"_productId": (PRODUCT_ID,), "_fwversion": (14, 1)}),
     PLAYGROUND: Layout(_playground(), {"_productId": (PRODUCT_ID,), "_fwversion": (11, 0), "temperature": (220,)}),
@@ -69,9 +75,21 @@ LAYOUTS: Mapping[str, Layout] = {
 """The robot with firmware 14, and the reference playground."""
 
 
+def described(description: TargetDescription) -> str:
+    """Return the layout of a robot that has described itself: the same name for the same description."""
+    name = f"{description.name}/{zlib.crc32(repr(description).encode()):08x}"
+    _DESCRIBED[name] = description
+    return name
+
+
 @cache
 def target(layout: str = THYMIO) -> TargetDescription:
-    """Return the target with this layout and all compatible plug-ins. Raises KeyError for an unknown layout."""
+    """Return the target with this layout and all compatible plug-ins, or exactly what a robot has described.
+
+    Raises KeyError for an unknown layout.
+    """
+    if layout in _DESCRIBED:
+        return _DESCRIBED[layout]
     return extend(LAYOUTS[layout].base, *compatible_plugins())
 
 

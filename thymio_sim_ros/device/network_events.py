@@ -50,8 +50,8 @@ class NetworkEvents:
         return GlobalEvent(self._names.index(name), source, tuple(args))
 
     def name_of(self, event: GlobalEvent) -> str:
-        """Name of an event of the current program."""
-        return self._names[event.number]
+        """Name of an event of the current program; a number beyond its list of events has a name made of it."""
+        return self._names[event.number] if event.number < len(self._names) else f"event_{event.number}"
 
     def add_emitted(self, message: Emitted) -> None:
         """Add an event that the program has emitted; one with an undeclared number has no name and is dropped."""

@@ -9,7 +9,16 @@ from collections.abc import Callable, Sequence
 
 from aseba_vm import VirtualMachine
 from aseba_vm.languages import LANGUAGES
-from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, Fault, NodeSpecific, OutOfBounds
+from aseba_vm.machine.machine_messages import (
+    BadCode,
+    DivisionByZero,
+    Emitted,
+    Fault,
+    Message,
+    NodeSpecific,
+    OutOfBounds,
+)
+from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros.device.event_queue import EventQueue
 from thymio_sim_ros.device.firmware.services import RESTART, FirmwareServices
 from thymio_sim_ros.device.handler_scheduler import HandlerScheduler
@@ -43,8 +52,17 @@ class RunControl:
         self._vm, self._queue, self._scheduler = vm, queue, scheduler
         self._network_events, self._variables = network_events, variables
         self._services, self._outputs = services, outputs
+        self.observe: Callable[[Message], None] | None = None
+        """Called with each message of the machine that is processed."""
+        self.stops_at_events = False
+        """Whether the next event is started as soon as it arrives while the machine is paused between events.
+
+        It then waits before its first instruction, as tools of a network expect it; until the machine runs again.
+        """
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
+        self._addresses: list[int] = []
+        """Breakpoints at addresses, in addition to those at lines."""
         self.set_program(program)
 
     @property
@@ -58,6 +76,11 @@ class RunControl:
         return DeviceStatus(self._state, self._scheduler.event, self._program.line_of(pc), pc=pc)
 
     @property
+    def machine_state(self) -> tuple[int, int]:
+        """Address and flags of the machine (docs/spec/aseba-protocol.md section 1.4)."""
+        return self._vm.pc, self._vm.flags
+
+    @property
     def is_off(self) -> bool:
         """Whether the robot is switched off."""
         return self._state == OFF
@@ -68,10 +91,10 @@ class RunControl:
         return not self._vm.is_step_by_step or (self._state == PAUSED and not self._vm.is_active)
 
     def set_program(self, program: ThymioProgram) -> None:
-        """Replace the program to which lines refer, and remove all breakpoints."""
+        """Replace the program to which lines refer, and remove all breakpoints at lines."""
         self._program = program
-        self._vm.clear_breakpoints()
         self._debugger = LineDebugger(self._vm, program)
+        self.set_breakpoints(())
 
     def resume(self) -> None:
         """Continue execution; switch the robot on if it is off."""
@@ -89,7 +112,7 @@ class RunControl:
     def start(self) -> None:
         """Execute from where the machine is, without the step that leaves a breakpoint."""
         self._vm.resume()
-        self._state, self._fault = RUNNING, None
+        self._state, self._fault, self.stops_at_events = RUNNING, None, False
         self._scheduler.invalidate_timer_periods()
 
     def pause(self) -> None:
@@ -112,9 +135,49 @@ class RunControl:
             if not self._scheduler.start_next_if_idle():
                 self._step(self._debugger.step_line)
 
+    def step_instruction(self) -> None:
+        """Execute one instruction, as the *step* message of a network does, and report the state.
+
+        Between events, stop before the first instruction of the next pending event.
+        """
+        if self._state == OFF:
+            return
+        if not self._vm.is_step_by_step:
+            self._vm.pause()
+        self._state, self._fault = PAUSED, None
+        was_active = self._vm.is_active
+        if was_active:
+            self._step(self._vm.step)
+        if self._state == PAUSED and not self._scheduler.start_next_if_idle() and not was_active:
+            self._vm.report_state()
+
+    def prepare_event(self) -> None:
+        """Start the next pending event if the machine waits for one (`stops_at_events`); it executes nothing."""
+        if self.stops_at_events and self._state == PAUSED and self._scheduler.start_next_if_idle():
+            self._variables.count_write()
+
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
-        """Replace all breakpoints: lines of the program's file, from 1. Returns the lines where they were set."""
-        return self._debugger.set_breakpoints(lines)
+        """Replace all breakpoints at lines of the program's file, from 1. Returns the lines where they were set."""
+        breakpoints = self._debugger.set_breakpoints(lines)
+        for pc in self._addresses:
+            self._vm.set_breakpoint(pc)
+        return breakpoints
+
+    def add_breakpoint(self, pc: int) -> bool:
+        """Add a breakpoint at an address; return False if there are 16 already, or no such address."""
+        if pc in self._addresses:
+            return True
+        if len(self._vm.breakpoints) >= MAX_BREAKPOINTS or not 0 <= pc < len(self._vm.code):
+            return False
+        self._addresses.append(pc)
+        self._vm.set_breakpoint(pc)
+        return True
+
+    def remove_breakpoint(self, pc: int) -> None:
+        """Remove the breakpoint that `add_breakpoint` has set at an address, if any."""
+        if pc in self._addresses:
+            self._addresses.remove(pc)
+            self._vm.clear_breakpoint(pc)
 
     def stop(self) -> None:
         """Abort the handler and stop the wheels."""
@@ -125,6 +188,16 @@ class RunControl:
     def reset(self) -> None:
         """Reset the robot: clear the variables, switch the lights off, and pause before the start of the program."""
         self._vm.reset()
+        self._state, self._fault = PAUSED, None
+
+    def clear_breakpoints(self) -> None:
+        """Remove all breakpoints, at lines and at addresses."""
+        self._addresses.clear()
+        self._vm.clear_breakpoints()
+
+    def write_bytecode(self, words: Sequence[int], start: int) -> None:
+        """Write words of bytecode, which must fit, and reset the robot as `reset` does."""
+        self._vm.set_bytecode(words, start)
         self._state, self._fault = PAUSED, None
 
     def switch_off(self) -> None:
@@ -140,6 +213,8 @@ class RunControl:
         # The natives that request a restart or power-off raise NativeFault only to end the handler at once.
         requested, self._services.requested = self._services.requested, ""
         for message in self._vm.pop_messages():
+            if self.observe is not None:
+                self.observe(message)
             if isinstance(message, Emitted):
                 self._network_events.add_emitted(message)
             elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode) and not requested:

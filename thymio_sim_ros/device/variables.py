@@ -84,10 +84,18 @@ class DeviceVariables:
         wrong = [word for word in words if word not in INT16]
         if wrong:
             raise ValueError(f"{name}: {wrong[0]} found, expected -32768 to 32767")
+        self._store(address, words)
+
+    def read(self, start: int, count: int) -> tuple[int, ...]:
+        """Words (int16) at these addresses, also of variables without a name, as far as the memory reaches."""
         self.refresh()
-        self._vm.write_variables(address, words)
-        self.sets += 1
-        self.count_write()
+        return tuple(self._vm.variables[start : start + count])
+
+    def write(self, start: int, words: Sequence[int]) -> None:
+        """Write words (int16) at these addresses, as far as the memory reaches."""
+        size = len(self._vm.variables)
+        if start < size:
+            self._store(start, words[: size - start])
 
     def clear(self, initial_values: Mapping[str, Sequence[int]]) -> None:
         """Set all words to 0, then these variables of the robot. Raises KeyError for an unknown name."""
@@ -102,6 +110,12 @@ class DeviceVariables:
         """Count a moment at which the program, or a step of it, may have written the memory."""
         self.writes += 1
         self._due.set_now()
+
+    def _store(self, address: int, words: Sequence[int]) -> None:
+        self.refresh()
+        self._vm.write_variables(address, words)
+        self.sets += 1
+        self.count_write()
 
     def _find_uses(self) -> None:
         # Code refers to a variable by its address: the lower 12 bits of an instruction, or a word of its own. Other

@@ -57,25 +57,32 @@ def suite_nodes(
 ) -> Iterator[AnnouncedNode]:
     """Create simulator, Aseba runtime and, depending on the suite, bridge and page, in this order.
 
-    `warnings` about the arguments are logged by the simulator. `peers` are needed if the endpoints of `context` do not
+    With a real robot there is no simulator, and no simulated time. `warnings` about the arguments are logged by the
+    first node. `peers` are needed if the endpoints of `context` do not
     match each other. Raises StartError if a node cannot start.
     """
     given = defaults(suite)
-    simulator = Simulator(context, given[SIMULATOR])
-    for warning in warnings:
-        simulator.node.get_logger().warning(warning)
-    robots = [names.name for names in simulator.endpoints.robots.names.values()]
-    yield simulator
-    link = None if peers is None else peers.link(simulator)
-    yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True, link=link)
     foxglove_port, tokens = suite.foxglove_port, suite.tokens
+    is_simulated = not suite.robot
+    if is_simulated:
+        simulator = Simulator(context, given[SIMULATOR])
+        _log(simulator.node, warnings)
+        robots = [names.name for names in simulator.endpoints.robots.names.values()]
+        yield simulator
+        link = None if peers is None else peers.link(simulator)
+        params = replace(given[RUNTIME], robots=robots)
+        yield AsebaRuntime(context, params, use_sim_time=True, link=link, tokens=tokens)
+    else:
+        runtime = AsebaRuntime(context, given[RUNTIME], use_sim_time=False, tokens=tokens)
+        _log(runtime.node, warnings)
+        yield runtime
     if suite.foxglove:
         from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 
         bridge = FoxgloveBridge(
             context=context,
             defaults=given[BRIDGE],
-            use_sim_time=True,
+            use_sim_time=is_simulated,
             tokens=tokens,
             peers=None if peers is None else peers.of_bridge(),
         )
@@ -85,6 +92,11 @@ def suite_nodes(
         from thymio_sim_ros.ros.web.node import WebPage
 
         yield WebPage(context, replace(given[PAGE], foxglove_port=foxglove_port), tokens)
+
+
+def _log(node: Node, warnings: Sequence[str]) -> None:
+    for warning in warnings:
+        node.get_logger().warning(warning)
 
 
 def run(suite: SuiteConfig, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:

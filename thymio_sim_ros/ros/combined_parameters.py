@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, is_free
+from thymio_sim_ros.ros.aseba.parameters import NetworkParams, RuntimeParams, is_free
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
@@ -33,8 +33,11 @@ _SPECIAL: Mapping[str, tuple[Target, ...]] = {
     "port": ((PAGE, "port"),),
     "foxglove_port": ((BRIDGE, "port"), (PAGE, "foxglove_port")),
     "robot_names": ((SIMULATOR, "robot_names"),),
+    "robot": (),
 }
-"""Parameters whose names have different meanings in different nodes. The runtime gets the robots from the simulator."""
+"""Parameters whose names have different meanings in different nodes. The runtime gets the robots from the simulator.
+Whether there is a simulator is decided by the option `--robot`, before there are nodes.
+"""
 
 _ROS_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "use_sim_time": (RUNTIME, BRIDGE, PAGE),
@@ -63,10 +66,13 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
         RUNTIME: RuntimeParams(
             path=suite.program,
             behaviour=suite.behaviour,
+            robot=suite.robot,
+            cmd_vel_timeout=suite.cmd_vel_timeout_s,
             layout=device.layout,
             events=device.events,
             card=str(device.card or ""),
             settings=str(device.settings or ""),
+            network=NetworkParams.of(suite.network),
         ),
     }
     if suite.foxglove:

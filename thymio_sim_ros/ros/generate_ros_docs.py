@@ -254,7 +254,7 @@ def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
         yield f"`{name}`", ", ".join(called), _value(parameters.by_name(values[node])[own_name])
     for node, own in values.items():
         for first, line_name in _grouped(own):
-            if first.name not in suite:
+            if first.name not in suite and combined_parameters.targets(first.name):
                 yield f"`{line_name}`", f"`{node}`", _value(first.default)
 
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.status import DeviceStatus
+from thymio_sim_ros.device.robot_device import RobotDevice
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.commands import (
@@ -38,7 +38,7 @@ class RobotMachine(Protocol):
     """A robot's Aseba machine and the program that it runs."""
 
     @property
-    def device(self) -> AsebaDevice:
+    def device(self) -> RobotDevice:
         """The machine."""
 
     @property
@@ -248,7 +248,7 @@ class Thymio:
             raise LookupError(f"no Aseba machine runs for {self.name}: start one with the fixture `runtime`")
         return machine
 
-    def _check_variable(self, device: AsebaDevice, variable: str) -> None:
+    def _check_variable(self, device: RobotDevice, variable: str) -> None:
         names = device.variables.addresses()
         if variable not in names:
             near = difflib.get_close_matches(variable, names, 3)

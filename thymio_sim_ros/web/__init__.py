@@ -2,7 +2,10 @@
 
 content       files, playgrounds and configuration as documents: bytes, type, entity tag
 connections   open connections and their limits
-server        HTTP itself, on aiohttp (imported only in the server's thread: that takes a third of a second)
+hosts         names by which a server may be addressed
+http_connections
+              connections with limits, on aiohttp (imported only in the server's thread: that takes a third of a second)
+server        the answers of the page
 thread        the thread of the event loop
 """
 

@@ -13,12 +13,13 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from math import inf
 
 __all__ = ["MIN_WAIT_S", "TIME_LIMIT_S", "ConnectionSlot", "Connections", "Phase"]
 
 
 class Phase(IntEnum):
-    """State of a connection, in the order in which connections are evicted; `ANSWERING` is never evicted."""
+    """State of a connection, in the order in which connections are evicted; the last two are never evicted."""
 
     SILENT = 0
     """Its client has sent nothing yet."""
@@ -30,6 +31,8 @@ class Phase(IntEnum):
     """Its client does not read the answer."""
     ANSWERING = 4
     """An answer is being created or sent."""
+    STREAMING = 5
+    """An answer without end is being sent."""
 
 
 TIME_LIMIT_S = {
@@ -39,7 +42,7 @@ TIME_LIMIT_S = {
     Phase.STALLED: 20.0,
     Phase.ANSWERING: 120.0,
 }
-"""Time limit of each phase."""
+"""Time limit of each phase that has one."""
 
 MIN_WAIT_S = {Phase.SILENT: 1.5, Phase.IDLE: 0.2, Phase.READING: 1.5, Phase.STALLED: 2.0}
 """Time after which a connection in this phase may be evicted."""
@@ -99,7 +102,7 @@ class Connections:
     def close_overdue(self) -> int:
         """Close connections over their time limit; return their number."""
         now_s = self._now_s()
-        overdue = [slot for slot in self._slots if now_s - slot.since_s > TIME_LIMIT_S[slot.phase]]
+        overdue = [slot for slot in self._slots if now_s - slot.since_s > TIME_LIMIT_S.get(slot.phase, inf)]
         for slot in overdue:
             self.remove(slot)
             slot.close()

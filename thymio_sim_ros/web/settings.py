@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import ipaddress
 from dataclasses import dataclass
+
+from thymio_sim_ros.web.hosts import is_loopback_name
 
 __all__ = ["Settings", "max_connections"]
 
@@ -37,13 +38,4 @@ class Settings:
 
     def is_allowed_host(self, name: str | None) -> bool:
         """Whether a request may address the server by this name; None: the name of the request is invalid."""
-        if not self.is_loopback:
-            return True
-        if name is None:
-            return False
-        if name == "localhost" or name.endswith(".localhost") or name in self.allowed_hosts:
-            return True
-        try:
-            return ipaddress.ip_address(name).is_loopback
-        except ValueError:
-            return False
+        return not self.is_loopback or is_loopback_name(name, self.allowed_hosts)

@@ -7,6 +7,7 @@
 /**
  * @typedef {object} ProgramInfo
  * @property {string} name
+ * @property {boolean} [foreign]  came as bytecode: source and file are its instructions
  * @property {string} node
  * @property {number} first_line
  * @property {string} source  code of the node

@@ -171,6 +171,12 @@ export class Workspace {
   setRobotProgram(tab, program) {
     if (!program?.file) return;
     const document = this.at(tab);
+    if (program.foreign === true) {
+      // It has no text that could be edited: what is shown stays, and is not in the robot any more.
+      if (document.loaded !== null) this.documents.set(tab, { ...document, loaded: null, source: null });
+      return;
+    }
+    if (document.loaded === null && program.file === document.text) return this.loaded(tab, document.text);
     const isWanted = this.following.has(tab);
     if (program.file === document.source && !isWanted) return;
     const untouched = isInRobot(document) || (!document.own && !isUnsaved(document));

@@ -14,6 +14,7 @@ import { h, setAttribute } from "../ui/dom.js";
 import { ProgramCommands } from "./commands.js";
 import { draftBar } from "./draft_bar.js";
 import { fileMenu } from "./file_menu.js";
+import { foreignBar, instructionsOf } from "./foreign_bar.js";
 import { languageBar } from "./language_bar.js";
 import { watchKeys } from "./keys.js";
 import { programBadge } from "./program_badge.js";
@@ -96,6 +97,7 @@ export class ProgramTab {
     this.file = fileMenu({ t, session, commands, redraw });
     this.badge = programBadge(context.text("program"));
     this.draft = draftBar({ t, draftLabel, workspace: session.workspace, redraw });
+    this.foreign = foreignBar(t);
     this.languageBar = languageBar({
       t,
       choice,
@@ -110,6 +112,7 @@ export class ProgramTab {
       { class: "program", "aria-label": t("editor") },
       this.head.element,
       this.draft.element,
+      this.foreign.element,
       this.place,
       this.start.element,
     );
@@ -209,6 +212,14 @@ export class ProgramTab {
     return !target.program?.source.trim() || isExample(target.program.name, WELCOME);
   }
 
+  /** The name of the program that the robot has; empty: none. */
+  get #title() {
+    const { status, target } = this.selection;
+    if (status === null || status.name === NO_PROGRAM) return "";
+    const isForeign = instructionsOf(target?.program) !== null;
+    return isForeign ? this.t("foreign.name") : exampleTitle(status.name, this.exampleText);
+  }
+
   #placeFileMenu() {
     const end = document.querySelector('[data-slot="tab-end"]');
     const isWide = this.element.clientWidth >= WIDE_PX && end?.checkVisibility() === true;
@@ -235,12 +246,13 @@ export class ProgramTab {
     this.file.render({ reason, isUnsaved: isUnsaved(current), hasMistake });
     this.badge.render({
       values: status?.values ?? {},
-      title: status === null || status.name === NO_PROGRAM ? "" : exampleTitle(status.name, this.exampleText),
+      title: this.#title,
       timePaused: state.simulator?.paused ?? false,
       isTextInRobot: isInRobot(current),
       wasInRobot: current.loaded !== null && current.own,
     });
     this.draft.render();
+    this.foreign.render(selection.target?.program);
     this.languageBar.render();
     if (this.#isStartShown) {
       this.start.render({ state, reason, recent: workspace.fileStore.recent(), canGoBack: !this.#isBeginning });

@@ -211,13 +211,22 @@ function withoutStaleReadings(state, robot) {
 
 /** @param {State} state @param {{ topics: string[] }} message @returns {State} */
 function withChannels(state, { topics }) {
-  const names = new Set();
-  for (const topic of topics) {
-    const part = splitTopic(topic);
-    if (part?.name === "_ground_truth/odom") names.add(part.robot);
-  }
-  const there = [...names].filter((name) => isKnownRobot(state, name)).sort(byName);
-  const robots = Object.fromEntries(there.map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
+  const robotsWith = (/** @type {string} */ wanted) =>
+    topics.flatMap((topic) => {
+      const part = splitTopic(topic);
+      return part?.name === wanted && part.robot !== null ? [part.robot] : [];
+    });
+  const simulated = robotsWith("_ground_truth/odom");
+  const programmed = robotsWith("_aseba/status");
+  const real = robotsWith("odom").filter((name) => programmed.includes(name) && !simulated.includes(name));
+  const there = [...simulated, ...real].filter((name) => isKnownRobot(state, name)).sort(byName);
+  const robots = Object.fromEntries(
+    there.map((name) => {
+      const known = state.robots[name] ?? NEW_ROBOT;
+      const isReal = real.includes(name);
+      return [name, known.isReal === isReal ? known : { ...known, isReal }];
+    }),
+  );
   const toAll = state.toAll && there.length > 1;
   return { ...state, topics, robots, toAll, selected: selection(state.selected, robots) };
 }

@@ -22,6 +22,7 @@ export const GLOBAL_TOPICS = [
 /** Topics of one robot, relative to its namespace. */
 export const ROBOT_TOPICS = [
   "_ground_truth/odom",
+  "odom",
   "joint_states",
   "_led/state",
   "_aseba/status",
@@ -49,7 +50,7 @@ const DRAWN = /^(?:_ground_truth|joint_states|_led|buttons|_pen|_sound|_aseba)\b
 /** Topics that the transforms replace while the simulation runs. */
 const POSE_TOPICS = /^(?:_ground_truth|joint_states)\b/;
 
-/** @typedef {{ isByTransforms: boolean }} Placed */
+/** @typedef {{ isByTransforms: boolean, isReal?: boolean }} Placed */
 /**
  * @typedef {object} SubscriptionState   the part of the state that determines the subscriptions
  * @property {Readonly<Record<string, Placed>>} robots
@@ -84,6 +85,7 @@ export function isWatched(state, topic) {
   const part = splitTopic(topic);
   if (part === null) return false;
   if (part.robot === null) return topic !== TRANSFORMS || hasManyRobots(state);
+  if (part.name === "odom") return state.robots[part.robot]?.isReal ?? false;
   const sensor = RAW_TOPIC.exec(topic)?.[3];
   if (sensor !== undefined && !isSensorShown(state, sensor)) return false;
   if (isSensed(state, part.robot)) return true;
@@ -104,7 +106,9 @@ function isSensorShown({ sensors, sensorsShown }, sensor) {
 
 /** A key that changes whenever `isWatched` may return another result for the same topics. @param {SubscriptionState} state */
 export function subscriptionKey(state) {
-  const shown = state.sensorsShown ? state.sensors.map(({ name }) => name).join() : "closed";
+  const sensors = state.sensorsShown ? state.sensors.map(({ name }) => name).join() : "closed";
+  const real = Object.entries(state.robots).flatMap(([name, { isReal }]) => (isReal ? [`/${name}`] : []));
+  const shown = [sensors, ...real].join(" ");
   if (!hasManyRobots(state)) return shown;
   const placed = Object.values(state.robots).filter(({ isByTransforms }) => isByTransforms).length;
   return `${shown} ${state.selected} ${placed} ${state.simulator?.paused}`;

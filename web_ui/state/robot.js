@@ -30,6 +30,7 @@ import { BUTTONS } from "./names.js";
  * @property {ArrayLike<number> | null} wave                     one period of its tones
  * @property {ArrayLike<number> | null} samples                  of its last sound other than a tone
  * @property {ReadonlyMap<string, Marker>} trail                 the line drawn by its pen
+ * @property {boolean} isReal                                    without ground truth: drawn where its odometry is
  * @property {boolean} isByTransforms                            whether its pose comes from the shared transforms
  */
 
@@ -48,6 +49,7 @@ export const NEW_ROBOT = {
   wave: null,
   samples: null,
   trail: new Map(),
+  isReal: false,
   isByTransforms: false,
 };
 
@@ -58,6 +60,8 @@ const READERS = /** @type {Record<string, (robot: Robot, value: any, leaf: strin
     previous: robot.latest,
     latest: poseSample(value, nowMs),
   }),
+  odom: (robot, value, _leaf, nowMs) =>
+    robot.isReal ? { ...robot, previous: robot.latest, latest: poseSample(value, nowMs) } : robot,
   joint_states: readJoints,
   "_led/state": (robot, value) => ({ ...robot, leds: splitGroups(value) }),
   proximity: (robot, value, leaf) => ({ ...robot, proximity: { ...robot.proximity, [leaf]: value.range } }),

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import pytest
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, ListParameters
 from std_msgs.msg import Int16MultiArray
 
+from tests.ros.aseba.conftest import BEHIND_A_NETWORK, HERE, PLACES
 from tests.ros.aseba_tools import get_variables, set_parameters, set_variables, words
 
 SOURCE = "var count = 3\nvar list[4] = [1, 2, 3, 4]\nonevent prox\ncount = count + 1"
+
+in_this_process = pytest.mark.parametrize("runtime", [HERE], indirect=True)
+
+
+@pytest.fixture(params=PLACES)
+def runtime(request, runtime):
+    """Make a runtime with a robot here or behind a network."""
+    return request.getfixturevalue("remote_runtime") if request.param == BEHIND_A_NETWORK else runtime
 
 
 def integer(value):
@@ -48,6 +58,7 @@ def test_variables_are_written_each_with_its_result(ros, runtime):
     assert get_variables(ros, "count", "list") == [[-5], [5, 60, 7, 8]]
 
 
+@in_this_process
 def test_a_written_target_moves_the_robot(ros, runtime):
     runtime(SOURCE)
     targets = ros.collect(Int16MultiArray, "/_motor/target")
@@ -82,6 +93,7 @@ def test_variables_are_described(ros, runtime):
     assert nothing.type == ParameterType.PARAMETER_NOT_SET
 
 
+@in_this_process
 def test_a_watched_variable_has_a_retained_topic(ros, runtime):
     runtime(SOURCE, watch=["list", "no.such"], watch_rate=100.0)
     counts_wanted = set_parameters(ros, {"watch": ["count", "prox.horizontal"]})
@@ -95,6 +107,7 @@ def test_a_watched_variable_has_a_retained_topic(ros, runtime):
     ros.until(lambda: ros.node.count_publishers("/aseba/variables/list") == 0)
 
 
+@in_this_process
 def test_a_robot_may_be_watched_alone(ros, runtime):
     runtime(SOURCE, robots=["anna", "bert"], follow_simulator=False, watch=["count"])
     assert set_parameters(ros, {"robots.bert.watch": ["list"]}).successful

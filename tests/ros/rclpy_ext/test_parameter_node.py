@@ -149,7 +149,7 @@ def test_a_fixed_parameter_accepts_only_its_current_value(ros):
 
 
 def test_only_what_differs_reaches_the_callbacks(ros):
-    node = ros.add(ParameterNode("few", context=ros.context, names_file=lambda name: name == "path"))
+    node = ros.add(ParameterNode("few", context=ros.context, is_set_again=lambda name: name == "path"))
     seen = []
     for name in ("one", "two", "path"):
         node.declare_parameter(name, name)

@@ -146,6 +146,7 @@ def describe_program(program: ThymioProgram, topics: Mapping[str, str]) -> dict[
     """A loaded program; `topics`: the words that its events have in topic names."""
     return {
         "name": program.name,
+        "foreign": program.is_foreign,
         "node": program.node.name,
         "first_line": program.lines[0],
         "source": program.source,

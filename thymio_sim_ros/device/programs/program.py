@@ -21,6 +21,7 @@ __all__ = [
     "load_file",
     "load_program",
     "memory_use",
+    "of_node",
     "other_device_note",
     "parse",
     "select",
@@ -47,6 +48,7 @@ class ThymioProgram:
 
     `source` is the text of the program, `text` the whole file, and `lines[row]` the line in the file, from 1, of a row
     of the source. `node` is the part of the file with the program; that of bare text has no name.
+    `is_foreign`: it came as bytecode, and its text is the disassembly (`foreign.py`).
     """
 
     name: str
@@ -58,6 +60,7 @@ class ThymioProgram:
     layout: str = THYMIO
     node: aesl.Node = field(default=aesl.Node(""), compare=False)
     text: str = field(default="", compare=False)
+    is_foreign: bool = False
 
     def line_of(self, pc: int) -> int | None:
         """Line in the file, from 1, of an address of the bytecode; None if no line belongs to it."""
@@ -117,6 +120,14 @@ def load_file(
     return ThymioFile(tuple(programs), others, tuple(notes))
 
 
+def of_node(
+    program: Program, node: aesl.Node, network: aesl.Network, name: str, text: str, layout: str = THYMIO
+) -> ThymioProgram:
+    """Return the compiled program of a node of a file with this name and text."""
+    lines, shown = tuple(row + 1 for row in node.rows_in_file()), replace(node, plugins=())
+    return ThymioProgram(name, node.code, program, network.events, network.constants, lines, layout, shown, text)
+
+
 def parse(text: str, constants: Mapping[str, int] = NO_CONSTANTS) -> aesl.Network:
     """Parse an .aesl file, or bare text as a node without a name; add the events of VPL. Raises AeslError."""
     text = text.removeprefix("\ufeff").replace("\r\n", "\n")
@@ -168,9 +179,4 @@ def _compile(
             raise ProgramError(name, None, None, message) from error
         row, col = node.place(error.pos.offset)
         raise ProgramError(name, row + 1, col + 1, message) from error
-    lines, shown = _lines(node), replace(node, plugins=())
-    return ThymioProgram(name, node.code, program, network.events, network.constants, lines, layout, shown, text)
-
-
-def _lines(node: aesl.Node) -> tuple[int, ...]:
-    return tuple(row + 1 for row in node.rows_in_file())
+    return of_node(program, node, network, name, text, layout)

@@ -86,14 +86,14 @@ class Bus:
         """Send an event to all other robots: directly in this runtime, by the network topic elsewhere."""
         source = sender.device.node_id
         for endpoints in self._robots:
-            if endpoints is not sender and endpoints.device.receives_from(sender.device):
+            if endpoints is not sender and endpoints.device.radio == sender.device.radio:
                 self._enqueue(endpoints, event, args, source)
-        self._network.send(NetworkEvent(event, source, sender.device.services.network, tuple(args)))
+        self._network.send(NetworkEvent(event, source, sender.device.radio, tuple(args)))
 
     def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
         """Send an event from ROS to all robots that declare it, or only to this one; too many values are rejected."""
         robots = (
-            [robot for robot in self._robots if robot.device.receives_from(endpoints.device)]
+            [robot for robot in self._robots if robot.device.radio == endpoints.device.radio]
             if self.reaches_all
             else [endpoints]
         )
@@ -113,12 +113,12 @@ class Bus:
             for robot in fits:
                 self.run_until_idle(robot)
             if self.reaches_all:
-                self._network.send(NetworkEvent(event, COMPUTER, endpoints.device.services.network, tuple(args)))
+                self._network.send(NetworkEvent(event, COMPUTER, endpoints.device.radio, tuple(args)))
 
     def _on_network_event(self, event_message: NetworkEvent) -> None:
         for endpoints in self._robots:
             size = _size(endpoints, event_message.event)
-            if size is None or endpoints.device.services.network != event_message.radio:
+            if size is None or endpoints.device.radio != event_message.radio:
                 continue
             args = event_message.args[:size] + (0,) * (size - len(event_message.args))
             self._enqueue(endpoints, event_message.event, args, event_message.source)

@@ -37,9 +37,12 @@ class _RequestError(ThymioSimError, ValueError):
 
 
 class CheckService:
-    """The service `~/check`; `robots` returns the names of robots that a node of a file can belong to."""
+    """The service `~/check`; `layout` returns the layout of the robots.
 
-    def __init__(self, node: Node, *, layout: str, robots: Callable[[], Iterable[str]]) -> None:
+    `robots` returns the names of robots that a node of a file can belong to.
+    """
+
+    def __init__(self, node: Node, *, layout: Callable[[], str], robots: Callable[[], Iterable[str]]) -> None:
         self._layout = layout
         self._robots = robots
         node.create_service(SetParametersAtomically, "~/check", self._on_check)
@@ -51,7 +54,7 @@ class CheckService:
             given = _values(request.parameters)
             question = Question(
                 source=given["source"],
-                layout=self._layout,
+                layout=self._layout(),
                 language=given.get("language", "en"),
                 events=_pairs("events", given.get("events", ())),
                 constants=_pairs("constants", given.get("constants", ())),
@@ -62,7 +65,7 @@ class CheckService:
             return response
         successful, answer = _answer(question)
         if given.get("target"):
-            answer = json.dumps(json.loads(answer) | {"target": describe_target(self._layout, question.language)})
+            answer = json.dumps(json.loads(answer) | {"target": describe_target(self._layout(), question.language)})
         response.result = SetParametersResult(successful=successful, reason=answer)
         return response
 

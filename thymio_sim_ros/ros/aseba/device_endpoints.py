@@ -7,6 +7,7 @@ from topics of the ROS driver; commands are published on the topics that every r
 from __future__ import annotations
 
 import time
+import uuid
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -16,13 +17,17 @@ from rclpy.node import Node
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
+from aseba_vm.protocol import Message
 from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.network_node import QUESTIONS, NetworkNode
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.device.programs.status import OFF, RUNNING
+from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
+from thymio_sim_ros.device.robot_device import RobotDevice, RobotHost, RobotNode
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.event_endpoints import EventEndpoints
 from thymio_sim_ros.ros.aseba.output_endpoints import OutputEndpoints
@@ -86,17 +91,36 @@ class DeviceEndpoints:
         bus: RobotBus,
         diagnostics: RuntimeDiagnostics,
         options: DeviceOptions = DEFAULTS,
+        remote: RemoteRobot | None = None,
         debug_options: DebugOptions | None = None,
         has_driver: bool = False,
         is_fed: bool = False,
         link: SimulatorLink | None = None,
     ) -> None:
-        """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property."""
+        """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property.
+
+        `remote`: the robot behind a network, with sensors and actuators of its own; None: a device with these
+        `options`.
+        """
         self.names = names
         self.number = number
-        self.device = AsebaDevice(node_id=number, options=options)
+        self.is_simulated = remote is None
+        """Whether the robot's machine is in this process."""
         self.share: Assignment | None = None
-        self._host = BehaviorHost(self.device)
+        self._host: RobotHost
+        self.network_node: RobotNode
+        """The robot as a node of an Aseba network."""
+        if remote is None:
+            host = BehaviorHost(AsebaDevice(node_id=number, options=options))
+            self._host, self.network_node = host, NetworkNode(host, name=names.name, uuid=uuid.uuid4().bytes)
+        else:
+            self._host, self.network_node = remote.host, remote.gateway
+        self.device: RobotDevice = self._host.device
+        """The robot's machine."""
+        self.send_to_network: Callable[[Sequence[Message]], None] | None = None
+        """Takes the messages of the node for all clients, while there are clients."""
+        self.on_program: Callable[[ThymioProgram], None] = lambda program: None
+        """Called with each program that the robot begins to run."""
         self._node = node
         self._bus, self._diagnostics = bus, diagnostics
         self._debug_options = debug_options or DebugOptions()
@@ -105,7 +129,8 @@ class DeviceEndpoints:
         self._last_slice_s = 0.0
         self._replaced = 0
         self._overload = ""
-        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None)
+        rows = None if remote is None else ()
+        self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None, rows=rows)
         self.warn = ThrottledLog(node)
         self._status = StatusEndpoints(node, names, number=number)
         self._events = EventEndpoints(node, names, lambda event, args: bus.emit(self, event, args), self.warn)
@@ -193,6 +218,27 @@ class DeviceEndpoints:
         self.device.receive_event(event, args, source=source)
         return True
 
+    def handle_messages(
+        self, client: int, messages: Sequence[Message], send: Callable[[Sequence[Message], int | None], None]
+    ) -> None:
+        """Execute messages of a client of the robot's network, then run, unless they were questions only.
+
+        `send` takes the resulting messages in order, each group with the client that it is for, or None for all.
+        """
+        node = self.network_node
+        for message in messages:
+            replies = node.handle(client, message)
+            for group, receiver in ((node.pop_messages(), None), (replies, client)):
+                if group:
+                    send(group, receiver)
+        node.install_bytecode()
+        if not all(isinstance(message, QUESTIONS) for message in messages):
+            self.run()
+
+    def remember(self, program: ThymioProgram) -> None:
+        """Remember the text of a program whose bytecode may come from the network."""
+        self._host.remember(replace(program, layout=self.device.layout))
+
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store a reading; the caller then calls `run` or `is_due`. An invalid reading is logged."""
         try:
@@ -228,6 +274,8 @@ class DeviceEndpoints:
             self._bus.forward(self, event.name, event.args)
         if self._host.program is not self._program:
             self._set_program()
+        if self.send_to_network is not None and (messages := self.network_node.pop_messages()):
+            self.send_to_network(messages)
         for notice in self._host.pop_notices():
             self._node.get_logger().warning(f"{self.names.name or 'robot'}: {notice}")
         self._publish_status()
@@ -283,6 +331,7 @@ class DeviceEndpoints:
             self.device.local_events.watch(local_events)
             self._events.open(program, sorted(local_events))
         self._program = program
+        self.on_program(program)
         self._variables.language = debug_options.language
         self._variables.set_program(debug_options.watch)
         points = self.device.run_control.set_breakpoints(debug_options.breakpoints if is_own else ())
@@ -306,9 +355,8 @@ class DeviceEndpoints:
             self._bus.run_until_idle()
             status = self.device.status
             response.success = status.state != OFF
-            response.message = (
-                describe_position(status) if response.success else f"{word}: the robot is off; aseba/run switches it on"
-            )
+            off = status.fault or "the robot is off; aseba/run switches it on"
+            response.message = describe_position(status) if response.success else f"{word}: {off}"
             return response
 
         return callback

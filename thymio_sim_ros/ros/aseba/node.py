@@ -20,14 +20,18 @@ from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import Executor
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import String
 
+from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.device.options import OptionError
 from thymio_sim_ros.loading import shipped_behaviours
+from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.ros.aseba.bus import SLICE_S
 from thymio_sim_ros.ros.aseba.check_service import CheckService
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
+from thymio_sim_ros.ros.aseba.network_link import NetworkLink
 from thymio_sim_ros.ros.aseba.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, WrongValueError
 from thymio_sim_ros.ros.aseba.robot_set import ROBOT_ERRORS, RobotSet
@@ -40,6 +44,7 @@ from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, deliver, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
+from thymio_sim_ros.ros.web.tokens import given_tokens
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
@@ -66,9 +71,11 @@ class AsebaRuntime:
         use_sim_time: bool | None = None,
         overrides: Mapping[str, Any] = NO_OVERRIDES,
         link: SimulatorLink | None = None,
+        tokens: Tokens | None = None,
     ) -> None:
         """`overrides`: parameter values by name, like those of a command line; `link`: to a simulator whose endpoints
-        do not match those of `context`.
+        do not match those of `context`; `tokens`: those that clients of the network servers need, None: those of the
+        environment or of parameters.
 
         Raises StartError for a parameter or a program that cannot be used.
         """
@@ -76,12 +83,12 @@ class AsebaRuntime:
         self.node = parameter_node(
             "aseba_runtime",
             context=context,
-            names_file=lambda name: name.endswith("script.path"),
+            is_set_again=self._is_set_again,
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
         )
         try:
-            self._start(defaults or RuntimeParams(), link)
+            self._start(defaults or RuntimeParams(), link, tokens)
         except (OptionError, WrongValueError, *ROBOT_ERRORS) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
@@ -120,16 +127,19 @@ class AsebaRuntime:
             executor.spin_once(timeout_sec=wait_s)
 
     def stop(self) -> None:
-        """Stop the wheels and programs of all robots."""
+        """Stop the network servers, then the wheels and programs of all robots."""
+        if self.network is not None:
+            self.network.close()
         self.robots.stop()
 
     def close(self) -> None:
         """Stop the wheels, then destroy the node."""
         self._jumps.unregister()
+        self.stop()
         self.robots.close()
         self.node.destroy_node()
 
-    def _start(self, defaults: RuntimeParams, link: SimulatorLink | None) -> None:
+    def _start(self, defaults: RuntimeParams, link: SimulatorLink | None, tokens: Tokens | None) -> None:
         node = self.node
         self.values = RuntimeValues(node, defaults)
         params = self.values.params
@@ -137,9 +147,14 @@ class AsebaRuntime:
         self.robots = RobotSet(node, self.values, self._diagnostics, link)
         self.robots.bus.reaches_all = params.emit_reaches == "network"
         self._publish_behaviours()
-        self._check = CheckService(node, layout=params.layout, robots=lambda: self.robots.names)
+        self._check = CheckService(node, layout=lambda: self.values.params.layout, robots=lambda: self.robots.names)
         self._follower = SimulatorFollower(node, params, self.robots, link)
         self.robots.set_names(params.robots)
+        self.network: NetworkLink | None = None
+        """The servers by which other programs reach the robots, if any is on."""
+        if not (settings := params.network.settings).is_off:
+            tokens = _tokens(node, settings) if tokens is None else tokens
+            self.network = NetworkLink(node, self.robots, settings, first_id=params.first_id, tokens=tokens)
         if link is not None:
             follow_clock(node, link.inputs)
         self._follower.start()
@@ -153,6 +168,13 @@ class AsebaRuntime:
         node.create_timer(DIAGNOSTICS_S, lambda: self._diagnostics.publish_all(self.robots), clock=wall)
         node.create_timer(DIAGNOSTICS_S, self._follower.check_publisher, clock=wall)
         node.create_timer(SUBSCRIBERS_S, self.robots.poll_subscribers, clock=wall)
+        if self.network is not None:
+            node.create_timer(SUBSCRIBERS_S, self.network.drain, clock=wall)
+
+    def _is_set_again(self, parameter: str) -> bool:
+        """Whether a parameter acts even if its value is the same: the file may differ, or a tool's program runs."""
+        is_replaced = any(endpoints.program.is_foreign for endpoints in getattr(self, "robots", ()))
+        return parameter.endswith("script.path") or (is_replaced and parameter.endswith("script.source"))
 
     def _publish_behaviours(self) -> None:
         """Publish the retained list of built-in behaviors."""
@@ -164,6 +186,16 @@ class AsebaRuntime:
         """Restart all robots when time jumps back, as at a reset of the simulator."""
         if jump.clock_change in (ClockChange.ROS_TIME_NO_CHANGE, ClockChange.SYSTEM_TIME_NO_CHANGE):
             self.robots.restart()
+
+
+def _tokens(node: Node, settings: NetworkSettings) -> Tokens:
+    """The tokens that the user gave the node. Raises StartError without one if the network reaches the servers."""
+    tokens = given_tokens(node)
+    if not tokens.is_required and not is_loopback(settings.address):
+        raise StartError(
+            f"network.address: found {settings.address} without a token; set {TOKEN_VARIABLE} or the parameter token"
+        )
+    return tokens
 
 
 def main(args: Sequence[str] | None = None) -> int:

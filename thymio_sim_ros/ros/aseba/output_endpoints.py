@@ -18,6 +18,7 @@ from rclpy.node import Node
 from thymio_sim_ros.ros.aseba import driver_input
 from thymio_sim_ros.ros.aseba.simulator_link import Post
 from thymio_sim_ros.ros.interface import command_topics, driver_topics, plugin_topics, qos
+from thymio_sim_ros.ros.interface.command_row import CommandRow
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.sim.commands import Command, SetLed, ShowOnLeds
@@ -67,16 +68,24 @@ class _SentCommand:
 class OutputEndpoints:
     """Publishers of the commands of one robot."""
 
-    def __init__(self, node: Node, names: RobotNames, *, has_driver: bool, post: Post | None = None) -> None:
+    def __init__(
+        self,
+        node: Node,
+        names: RobotNames,
+        *,
+        has_driver: bool,
+        post: Post | None = None,
+        rows: Sequence[CommandRow] | None = None,
+    ) -> None:
         """`has_driver`: drive the wheels by `cmd_vel`, as the ROS driver expects; `post`: to a simulator in the same
-        process whose endpoints do not match those of `node`.
+        process whose endpoints do not match those of `node`; `rows`: the commands, None for all.
         """
         self._node = node
         self._publishers: dict[str, _CommandPublisher] = {}
         self._sent: dict[tuple[str, Hashable], _SentCommand] = {}
         """By topic and part of the topic (such as one LED), in the order of sending."""
         self._fresh_until_s = 0.0
-        for row in (*command_topics.ROWS, *plugin_topics.rows()):
+        for row in (*command_topics.ROWS, *plugin_topics.rows()) if rows is None else rows:
             if row.encode is None:
                 continue
             if has_driver and row.topic == "_motor/target":

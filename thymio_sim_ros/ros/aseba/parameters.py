@@ -17,10 +17,12 @@ from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.network.settings import HTTP_PORT, OFF, TDM_WS_PORT, NetworkSettings
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
-from thymio_sim_ros.ros.rclpy_ext.parameters import param
+from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 
 __all__ = [
+    "NetworkParams",
     "RuntimeParams",
     "WrongValueError",
     "adopt_overrides",
@@ -55,6 +57,67 @@ _FREE = re.compile(
 
 class WrongValueError(ThymioSimError, ValueError):
     """An invalid value of a parameter; the message says why."""
+
+
+@dataclass(frozen=True)
+class NetworkParams:
+    """Parameters of the network servers; -1 is no server, 0 selects a free port."""
+
+    aseba_port: int = param(
+        OFF, "Aseba port of the first robot, further robots have the next ports", low=OFF, high=65535, fixed=True
+    )
+    aseba_address: str = param(
+        "localhost",
+        "Address of the Aseba ports; every program that reaches it controls the robots, without a token",
+        fixed=True,
+    )
+    aseba_shared: bool = param(False, "Whether all robots are on one Aseba port", fixed=True)
+    address: str = param("localhost", "Address of the servers whose clients need a token", fixed=True)
+    tdm_port: int = param(OFF, "TCP port of the Thymio Device Manager", low=OFF, high=65535, fixed=True)
+    tdm_ws_port: int = param(
+        TDM_WS_PORT,
+        "WebSocket port of the Thymio Device Manager, if its TCP port is open",
+        low=0,
+        high=65535,
+        fixed=True,
+    )
+    http_port: int = param(
+        OFF, f"Port of the HTTP interface; that of asebahttp is {HTTP_PORT}", low=OFF, high=65535, fixed=True
+    )
+    allowed_origins: tuple[str, ...] = param(
+        ("",), "Origins of additional web pages that may connect, as https://host:port; * allows all", fixed=True
+    )
+    announce: bool = param(True, "Whether the servers are announced by mDNS", fixed=True)
+
+    @classmethod
+    def of(cls, settings: NetworkSettings) -> NetworkParams:
+        """The parameters with these settings."""
+        return cls(
+            aseba_port=settings.aseba_port,
+            aseba_address=settings.aseba_address,
+            aseba_shared=settings.is_aseba_shared,
+            address=settings.address,
+            tdm_port=settings.tdm_port,
+            tdm_ws_port=settings.tdm_ws_port,
+            http_port=settings.http_port,
+            allowed_origins=settings.allowed_origins or ("",),
+            announce=settings.is_announced,
+        )
+
+    @property
+    def settings(self) -> NetworkSettings:
+        """The settings of the servers."""
+        return NetworkSettings(
+            aseba_port=self.aseba_port,
+            aseba_address=self.aseba_address,
+            is_aseba_shared=self.aseba_shared,
+            address=self.address,
+            tdm_port=self.tdm_port,
+            tdm_ws_port=self.tdm_ws_port,
+            http_port=self.http_port,
+            allowed_origins=tuple(filter(None, self.allowed_origins)),
+            is_announced=self.announce,
+        )
 
 
 @dataclass(frozen=True)
@@ -95,6 +158,14 @@ class RuntimeParams:
         fixed=True,
         choices=("raw", "driver"),
     )
+    robot: str = param(
+        "",
+        "Address of a real robot, in place of a simulator: tcp:host:port, or ser:device (ser is the first Thymio)",
+        fixed=True,
+    )
+    cmd_vel_timeout: float = param(
+        1.0, "Time after which a velocity for a real robot ends, s; 0 is never", low=0.0, high=3600.0, fixed=True
+    )
     layout: str = param(
         "thymio", "Variables and native functions: thymio (firmware 14) or playground (Aseba Playground)", fixed=True
     )
@@ -102,6 +173,7 @@ class RuntimeParams:
         "firmware", "Event policy: firmware (events wait) or playground (an event ends the running handler)", fixed=True
     )
     card: str = param("", "Folder used as memory card; '' is no card", fixed=True)
+    network: NetworkParams = group(NetworkParams(), "network")
     settings: str = param("", "Folder where the robot's settings are stored; '' does not store them", fixed=True)
 
     @property

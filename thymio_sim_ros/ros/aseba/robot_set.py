@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, overload
 
 from rclpy.node import Node
 
+from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.behavior_host import MENU
 from thymio_sim_ros.device.firmware.sd_card import SdCardError
 from thymio_sim_ros.device.firmware.settings import SettingsError
-from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.device.layout import THYMIO, described
 from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId
 from thymio_sim_ros.loading import check_behaviour
+from thymio_sim_ros.network.robot_target import Target, TargetError, parse_target
 from thymio_sim_ros.ros.aseba import script_parameters
 from thymio_sim_ros.ros.aseba.bus import Bus
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
+from thymio_sim_ros.ros.aseba.real_robot import RealRobot
 from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
 from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.interface.names import RobotNames
@@ -29,7 +32,7 @@ __all__ = ["PROGRAM_ERRORS", "ROBOT_ERRORS", "ParameterChange", "RobotSet"]
 PROGRAM_ERRORS = (ProgramError, resources.ResourceError, OSError)
 """Raised for a program that cannot be loaded."""
 
-ROBOT_ERRORS = (SdCardError, SettingsError, *PROGRAM_ERRORS)
+ROBOT_ERRORS = (SdCardError, SettingsError, TargetError, *PROGRAM_ERRORS)
 """Raised for a robot that cannot be created."""
 
 
@@ -48,7 +51,9 @@ class RobotSet(Sequence[DeviceEndpoints]):
     def __init__(
         self, node: Node, values: RuntimeValues, diagnostics: RuntimeDiagnostics, link: SimulatorLink | None = None
     ) -> None:
-        """Raises OptionError for unknown options, ResourceError for an unknown built-in behavior."""
+        """Raises OptionError for unknown options, ResourceError for an unknown built-in behavior, TargetError for a
+        wrong address of a real robot.
+        """
         self._node, self._values = node, values
         self._options = values.params.options
         self._behaviour = check_behaviour(values.params.behaviour, values.params.layout)
@@ -56,7 +61,16 @@ class RobotSet(Sequence[DeviceEndpoints]):
         self._diagnostics, self._link = diagnostics, link
         self._robots: list[DeviceEndpoints] = []
         self._is_fed = False
+        self._target = parse_target(values.params.robot) if values.params.robot else None
+        """The address of a real robot."""
+        self._real: RealRobot | None = None
+        if self._target is not None:
+            values.set_layout(described(THYMIO_II))
+            if len(values.params.robots) != 1:
+                raise TargetError(f"robot {self._target}: found {len(values.params.robots)} robot_names, expected 1")
         self.bus = Bus(node, self)
+        self.on_change: Callable[[], None] = lambda: None
+        """Called when robots have come or gone."""
 
     @overload
     def __getitem__(self, index: int) -> DeviceEndpoints: ...
@@ -105,6 +119,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
             self._robots.append(self._new_robot(name, self._free_number(names.index(name)), alone=len(names) == 1))
         self._robots.sort(key=lambda endpoints: names.index(endpoints.names.name))
         self._assign_programs(new)
+        self.on_change()
 
     def apply(self, old: Mapping[str, Any], change: ParameterChange) -> None:
         """Apply accepted parameters to all robots: debug options, programs, built-in behavior."""
@@ -135,11 +150,15 @@ class RobotSet(Sequence[DeviceEndpoints]):
         """Stop the wheels and programs of all robots."""
         for endpoints in self._robots:
             endpoints.stop()
+        if self._real is not None:
+            self._real.flush()
 
     def close(self) -> None:
         """Stop all robots and destroy their topics and services."""
         for endpoints in self._robots:
             endpoints.close()
+        if self._real is not None:
+            self._real.close()
 
     def _free_number(self, place: int) -> int:
         """Return the number by place in the order of robots, or the first one above all others if it is taken."""
@@ -150,6 +169,8 @@ class RobotSet(Sequence[DeviceEndpoints]):
     def _new_robot(self, name: str, number: int, *, alone: bool) -> DeviceEndpoints:
         if name:
             self._values.declare_robot(name)
+        if self._target is not None:
+            return self._new_real_robot(RobotNames(name), number, self._target)
         return DeviceEndpoints(
             self._node,
             RobotNames(name),
@@ -162,6 +183,33 @@ class RobotSet(Sequence[DeviceEndpoints]):
             is_fed=self._is_fed,
             link=self._link,
         )
+
+    def _new_real_robot(self, names: RobotNames, number: int, target: Target) -> DeviceEndpoints:
+        real = RealRobot(self._node, names, target, number=number, timeout_s=self._values.params.cmd_vel_timeout)
+        endpoints = DeviceEndpoints(
+            self._node,
+            names,
+            number=number,
+            bus=self.bus,
+            diagnostics=self._diagnostics,
+            remote=real.robot,
+            debug_options=self._values.debug_options(names.name),
+            is_fed=True,
+        )
+        real.on_change = endpoints.run
+        real.on_connected = lambda: self._load_real_robot(real, endpoints)
+        self._real = real
+        return endpoints
+
+    def _load_real_robot(self, real: RealRobot, endpoints: DeviceEndpoints) -> None:
+        """Load the program into a robot that has connected, for the layout that it describes."""
+        self._values.set_layout(real.robot.device.layout)
+        name = endpoints.names.name
+        try:
+            share = script_parameters.shares(self._values.by_name, self.members, self._values.params.layout)[name]
+        except PROGRAM_ERRORS as error:
+            share = Assignment(None, (f"not loaded: {error}",))
+        self._start_program(endpoints, share)
 
     def _assign_programs(self, new: Sequence[str]) -> None:
         """Start new robots, and those whose program changes because the file is assigned differently."""
@@ -177,7 +225,8 @@ class RobotSet(Sequence[DeviceEndpoints]):
         name = endpoints.names.name
         share = change.shares.get(name, endpoints.share)
         is_other = script_parameters.script_of(old, name) != script_parameters.script_of(change.values, name)
-        if is_other or _program(share) != _program(endpoints.share):
+        is_replaced = name in change.shares and endpoints.program.is_foreign  # a tool has loaded another program since
+        if is_other or is_replaced or _program(share) != _program(endpoints.share):
             if "behaviour" not in change.changes:
                 self._behaviour = ""
             self._start_program(endpoints, share or Assignment(None))

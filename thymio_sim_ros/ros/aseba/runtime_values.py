@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -30,6 +32,10 @@ class RuntimeValues:
             aseba_params.check_value(name, value)
         self.is_declaring = False
         """Whether parameters of a robot are being declared: parameter callbacks then have nothing to do."""
+
+    def set_layout(self, layout: str) -> None:
+        """Replace the layout by that of a real robot; the parameter keeps its value."""
+        self.params = replace(self.params, layout=layout)
 
     def declare_robot(self, robot: str) -> None:
         """Declare the parameters of a robot that are not declared yet."""

@@ -27,7 +27,10 @@ _SENSORS = frozenset(sensor_names())
 
 
 class SimulatorFollower:
-    """Subscribes to the simulator; without one, or with `follow_simulator` off, robots have their own subscriptions."""
+    """Subscribes to the simulator; without one, or with `follow_simulator` off, robots have their own subscriptions.
+
+    A real robot needs neither.
+    """
 
     def __init__(self, node: Node, params: RuntimeParams, robots: RobotSet, link: SimulatorLink | None) -> None:
         """Subscribe to the readings of all robots if a simulator publishes them already.
@@ -35,7 +38,8 @@ class SimulatorFollower:
         The first robots are then created without subscriptions of their own, which the state would replace.
         """
         self._node, self._robots, self._link = node, robots, link
-        self._is_on, self._has_driver = params.follow_simulator, params.robot_topics == "driver"
+        self._is_on = params.follow_simulator and not params.robot
+        self._has_driver = params.robot_topics == "driver"
         self._raw: Any = None
         """The subscription to the integer readings of all robots of the simulator."""
         self._decoder, self._warn = RawDecoder(), ThrottledLog(node)

@@ -22,8 +22,8 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.node import Node
 from std_msgs.msg import Int16MultiArray
 
-from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.editor.help import help_of
+from thymio_sim_ros.device.robot_device import RobotDevice
 from thymio_sim_ros.ros.aseba.event_endpoints import unique_topic_words
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
@@ -40,7 +40,7 @@ class VariableEndpoints:
     """Reads and writes the variables of a device; `changed` is called after a write."""
 
     def __init__(
-        self, node: Node, names: RobotNames, device: AsebaDevice, changed: Callable[[], None], *, language: str
+        self, node: Node, names: RobotNames, device: RobotDevice, changed: Callable[[], None], *, language: str
     ) -> None:
         self.language = language
         self._node = node

@@ -39,17 +39,17 @@ class ParameterNode(Node):
         name: str,
         *,
         context: Context,
-        names_file: Callable[[str], bool] = lambda _name: False,
+        is_set_again: Callable[[str], bool] = lambda _name: False,
         **options: Any,
     ) -> None:
-        """`names_file`: whether a parameter names a file; it is set even if unchanged, as the file may have changed."""
-        self._names_file = names_file
+        """`is_set_again`: whether a parameter is set even if unchanged, such as a file that may differ."""
+        self._is_set_again = is_set_again
         super().__init__(name, context=context, **options)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set the values that differ, all or none; called by rclpy's parameter services."""
         wanted = [self._as_declared(one) for one in parameter_list]
-        changed = [one for one in wanted if self._names_file(one.name) or not self._is_present(one)]
+        changed = [one for one in wanted if self._is_set_again(one.name) or not self._is_present(one)]
         if parameter_list and not changed:
             return SetParametersResult(successful=True)
         return super().set_parameters_atomically(changed)

@@ -53,7 +53,7 @@ class Simulator:
 
     def __init__(self, context: Context, defaults: SimulatorParams | None = None) -> None:
         """Raises StartError for a playground, a parameter or a log file that cannot be used."""
-        self.node = parameter_node("simulator", context=context, names_file=lambda name: name == "playground")
+        self.node = parameter_node("simulator", context=context, is_set_again=lambda name: name == "playground")
         try:
             reject_sim_time(self.node)
             self.params = CurrentParams(params.declare(self.node, defaults or SimulatorParams()))

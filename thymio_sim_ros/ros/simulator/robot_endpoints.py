@@ -152,7 +152,8 @@ class RobotEndpoints:
                 DESCRIPTION_TOPIC[0], names.topic(DESCRIPTION), qos.TRANSIENT_LOCAL
             )
             self._description.publish(String(data=urdf(names)))
-        inputs = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
+        known = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
+        inputs = [one for one in known if one.topic not in options.left_out]
         self._handlers = {one.topic: self._handler(one) for one in inputs}
         self._subscriptions = [
             node.create_subscription(one.type, names.topic(one.topic), self._handlers[one.topic], one.profile)

@@ -116,6 +116,11 @@ def volts_to_units(volts: float) -> int:
     return round(volts * 100.0 * 3978.0 / 1000.0 / 2.0)
 
 
+def units_to_volts(total: int) -> float:
+    """Return the voltage in V for the sum of both words of _vbat."""
+    return total * 1000.0 / 3978.0 / 100.0
+
+
 def saturate_led(word: int) -> int:
     """Return the brightness 0…32 of an Aseba word: its low byte, of which 32 or more is full (section 8.1)."""
     level = word & 0xFF

@@ -15,20 +15,23 @@ from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.stimuli.battery import BatteryState
 
-__all__ = ["SENSOR"]
+__all__ = ["SENSOR", "charge"]
 
 _EMPTY_V, _FULL_V = 3.4, 4.1
 _UNITS_PER_V = 198.9
 _FULL_SCALE_V = 4.2
 
 
+def charge(volts: float) -> float:
+    """Return the charge 0…1 at a voltage in V."""
+    return max(0.0, min(1.0, (volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
+
+
 def _measure(view: SensorView) -> BatteryReading:
     battery = view.state(BatteryState)
     word = units.volts_to_units(battery.volts)
-    charge = max(0.0, min(1.0, (battery.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
-    return BatteryReading(
-        view.now_ns, (word, word, int(battery.is_charging)), battery.volts, charge, battery.is_charging
-    )
+    words = (word, word, int(battery.is_charging))
+    return BatteryReading(view.now_ns, words, battery.volts, charge(battery.volts), battery.is_charging)
 
 
 SENSOR = Sensor(

@@ -1,0 +1,237 @@
+"""The device manager on sockets: both ports, limits, slow and malicious clients."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import random
+import socket
+import struct
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
+
+from tests.network.tdm.machine_node import MachineNode
+from tests.network.tdm.raw_client import RawClient
+from tests.network.tdm.served import Served, served
+from tests.network.tdm.talk import values
+from thymio_sim_ros.network.hub import Hub
+from thymio_sim_ros.network.settings import OFF, NetworkSettings
+from thymio_sim_ros.network.tdm.protocol import messages as m
+from thymio_sim_ros.network.tdm.protocol.codec import decode, encode, framed
+from thymio_sim_ros.network.tdm.protocol.constants import ErrorCode, Status, Watch
+from thymio_sim_ros.network.tdm_peers import is_this_computer
+from thymio_sim_ros.network.tdm_server import TdmServer
+
+CONNECTIONS = int(os.environ.get("THYMIO_SIM_FUZZ", "4000")) // 20
+"""Connections of the test with malicious clients."""
+
+
+@pytest.fixture
+def one() -> Iterator[Served]:
+    """A device manager with one node."""
+    with served(MachineNode()) as found:
+        yield found
+
+
+def _wait(condition: Callable[[], bool]) -> None:
+    end_s = time.monotonic() + 10
+    while not condition():
+        assert time.monotonic() < end_s
+        time.sleep(0.01)
+
+
+def test_a_tcp_client_is_greeted_and_pinged(one: Served) -> None:
+    with RawClient(one.tcp_port, greet=False) as client:
+        client.send(m.ConnectionHandshake())
+        hello = client.wait_for(m.ConnectionHandshake)
+        assert (hello.protocol_version, hello.max_message_size, hello.localhost_peer) == (1, 102400, True)
+        (node,) = client.wait_for(m.NodesChanged, lambda message: bool(message.nodes)).nodes
+        assert (node.name, node.status) == ("thymio_0", Status.AVAILABLE)
+        client.wait_for(m.Ping)
+
+
+def test_a_websocket_client_speaks_the_same_without_lengths(one: Served) -> None:
+    with connect(f"ws://127.0.0.1:{one.ws_port}", compression=None) as client:
+        client.send(encode(m.ConnectionHandshake()))
+        hello, nodes = decode(client.recv(5)), decode(client.recv(5))
+        assert isinstance(hello, m.ConnectionHandshake)
+        assert nodes.nodes[0].name == "thymio_0"
+        client.send(encode(m.LockNode(5, nodes.nodes[0].node_id)))
+        while isinstance(found := decode(client.recv(5)), m.NodesChanged):
+            nodes = found
+        assert found == m.RequestCompleted(5)
+        assert nodes.nodes[0].status == Status.READY
+
+
+@pytest.mark.parametrize("origin", ["https://example.org", "null", "http://192.168.1.7"])
+def test_foreign_web_pages_are_rejected(one: Served, origin: str) -> None:
+    with pytest.raises(InvalidStatus, match="403"):
+        connect(f"ws://127.0.0.1:{one.ws_port}", additional_headers={"Origin": origin})
+
+
+@pytest.mark.parametrize("origin", ["http://localhost:5000", "http://127.0.0.1:8000", "file://"])
+def test_pages_of_this_computer_may_connect(one: Served, origin: str) -> None:
+    with connect(f"ws://127.0.0.1:{one.ws_port}", additional_headers={"Origin": origin}) as client:
+        client.send(encode(m.ConnectionHandshake()))
+        assert isinstance(decode(client.recv(5)), m.ConnectionHandshake)
+
+
+def test_allowed_web_pages_may_connect() -> None:
+    with served(MachineNode(), allowed_origins=("https://example.org",)) as found:
+        headers = {"Origin": "https://example.org"}
+        with connect(f"ws://127.0.0.1:{found.ws_port}", additional_headers=headers) as client:
+            client.send(encode(m.ConnectionHandshake()))
+            assert isinstance(decode(client.recv(5)), m.ConnectionHandshake)
+
+
+def test_a_text_frame_ends_a_websocket_connection(one: Served) -> None:
+    with connect(f"ws://127.0.0.1:{one.ws_port}") as client:
+        client.send("hello")
+        with pytest.raises(ConnectionClosed):
+            client.recv(5)
+
+
+def test_requests_of_a_client_wait_for_its_compilations(one: Served) -> None:
+    with RawClient(one.tcp_port, greet=False) as client:
+        client.send(m.ConnectionHandshake())
+        key = client.wait_for(m.NodesChanged, lambda message: bool(message.nodes)).nodes[0].node_id
+        wrong = "\n".join(f"var v{number} = {number}" for number in range(60)) + "\nvv = 3"
+        client.send(m.LockNode(1, key))
+        client.send(m.CompileAndLoadCodeOnVM(2, key, 1, wrong, 2))
+        client.send(m.CompileAndLoadCodeOnVM(3, key, 1, "motor.left.target = 7", 2))
+        client.wait_for(m.RequestCompleted, lambda message: message.request_id == 1)
+        failure = client.wait_for(m.CompilationResultFailure)
+        assert (failure.request_id, failure.line) == (2, 60)
+        client.wait_for(m.CompilationResultSuccess, lambda message: message.request_id == 3)
+        client.send(m.SetVMExecutionState(4, key, 1))
+        client.wait_for(m.RequestCompleted, lambda message: message.request_id == 4)
+        client.send(m.WatchNode(5, key, Watch.VARIABLES))
+        dump = client.wait_for(m.VariablesChanged)
+        assert values(dump)["motor.left.target"] == (7,)
+
+
+def test_a_lost_connection_gives_its_node_back(one: Served) -> None:
+    with RawClient(one.tcp_port, greet=False) as watching:
+        watching.send(m.ConnectionHandshake())
+        key = watching.wait_for(m.NodesChanged, lambda message: bool(message.nodes)).nodes[0].node_id
+        with RawClient(one.tcp_port) as client:
+            client.send(m.LockNode(1, key))
+            client.wait_for(m.RequestCompleted)
+            client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # reset
+        watching.wait_for(m.NodesChanged, lambda message: message.nodes[0].status == Status.BUSY)
+        watching.wait_for(m.NodesChanged, lambda message: message.nodes[0].status == Status.AVAILABLE)
+
+
+def test_more_clients_than_the_limit_are_rejected() -> None:
+    with served(MachineNode(), max_clients=2) as found:
+        with RawClient(found.tcp_port), RawClient(found.tcp_port), RawClient(found.tcp_port, greet=False) as third:
+            third.wait_for_end()
+        _wait(lambda: found.server.client_count == 0)
+        RawClient(found.tcp_port).socket.close()
+
+
+def test_a_client_that_does_not_read_is_disconnected_and_others_are_served() -> None:
+    with served(MachineNode(), max_unsent=200_000) as found, RawClient(found.tcp_port) as other:
+        stalled = socket.socket()
+        stalled.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        stalled.connect(("127.0.0.1", found.tcp_port))
+        stalled.settimeout(0.2)
+        stalled.sendall(framed(encode(m.ConnectionHandshake())))
+        _wait(lambda: found.server.client_count == 2)
+        other.send(m.RequestListOfNodes())
+        key = other.wait_for(m.NodesChanged, lambda message: bool(message.nodes)).nodes[0].node_id
+        request = framed(encode(m.RequestNodeAsebaVMDescription(1, key))) * 20
+        end_s = time.monotonic() + 20
+        while found.server.client_count == 2 and time.monotonic() < end_s:
+            try:
+                stalled.sendall(request)
+            except OSError:
+                time.sleep(0.05)
+        _wait(lambda: found.server.client_count == 1)
+        stalled.close()
+        other.send(m.RequestListOfNodes())
+        other.wait_for(m.NodesChanged, lambda message: bool(message.nodes))
+
+
+def _attack(chance: random.Random, port: int, samples: list[bytes]) -> None:
+    """Open a connection, send something wrong, and leave in one of several ways."""
+    with socket.create_connection(("127.0.0.1", port), timeout=5) as client:
+        data = framed(encode(m.ConnectionHandshake())) if chance.random() < 0.7 else b""
+        for _ in range(chance.randint(1, 20)):
+            buffer = bytearray(chance.choice(samples))
+            for _ in range(chance.randint(0, 3)):
+                buffer[chance.randrange(len(buffer))] = chance.randrange(256)
+            data += framed(bytes(buffer))
+        if chance.random() < 0.5:
+            data = data[: chance.randrange(len(data))]
+        try:
+            client.sendall(data)
+        except OSError:
+            return
+        if chance.random() < 0.3:
+            client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+
+
+def test_malicious_clients_do_not_disturb_others(one: Served) -> None:
+    chance = random.Random(7)
+    with RawClient(one.tcp_port, greet=False) as client:
+        client.send(m.ConnectionHandshake())
+        node = client.wait_for(m.NodesChanged, lambda message: bool(message.nodes)).nodes[0]
+        client.send(m.LockNode(1, node.node_id))
+        client.wait_for(m.RequestCompleted)
+        named = (m.NamedValue("acc", b"\1\0\5\1\1\1"),)
+        samples = [encode(kind()) for kind in m.MESSAGES]
+        samples += [encode(m.SetVariables(1, node.node_id, named)), encode(m.WatchNode(2, node.node_id, 63))]
+        samples += [encode(m.CompileAndLoadCodeOnVM(3, node.node_id, 1, "var a", 2))]
+        for number in range(CONNECTIONS):
+            _attack(chance, one.tcp_port, samples)
+            if number % 20 == 0:
+                client.send(m.LockNode(10 + number, node.node_id))
+                answer = client.wait_for(m.Error, lambda message, want=10 + number: message.request_id == want)
+                assert answer.error == ErrorCode.NODE_BUSY
+        _wait(lambda: one.server.client_count == 1)
+
+
+@pytest.mark.parametrize(
+    ("address", "expected"),
+    [
+        ("127.0.0.1", True),
+        ("127.3.2.1", True),
+        ("::1", True),
+        ("::ffff:127.0.0.1", True),
+        ("192.168.1.7", False),
+        ("fe80::1%eth0", False),
+        ("::ffff:10.0.0.1", False),
+        ("", False),
+    ],
+)
+def test_clients_of_this_computer_have_loopback_addresses(address: str, expected: bool) -> None:
+    assert is_this_computer(address) is expected
+
+
+def test_a_taken_port_is_reported_and_nothing_is_served() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        reports: list[tuple[str, str]] = []
+        server = TdmServer(
+            Hub(), NetworkSettings(tdm_port=port, address="127.0.0.1"), lambda *report: reports.append(report)
+        )
+        server.start()
+        assert server.port == OFF
+        ((about, text),) = reports
+        assert about == "tdm"
+        assert text == f"Thymio Device Manager: cannot listen on 127.0.0.1:{port}: address already in use"
+        asyncio.run(server.close())
+
+
+def test_a_removed_robot_is_disconnected(one: Served) -> None:
+    with RawClient(one.tcp_port, greet=False) as client:
+        client.send(m.ConnectionHandshake())
+        client.wait_for(m.NodesChanged, lambda message: bool(message.nodes))
+        server, network = one.server, one.networks[0].network
+        one.loop.call_soon_threadsafe(lambda: server._hub.remove(network))
+        client.wait_for(m.NodesChanged, lambda message: message.nodes[0].status == Status.DISCONNECTED)

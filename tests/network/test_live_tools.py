@@ -1,0 +1,268 @@
+"""Debian's Aseba tools, thymiodirect and Studio against a running suite (docs/spec/aseba-protocol.md section 4).
+
+One suite with one robot serves all of them, in the order of the tests; each skips where its tool is absent.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from aseba_vm.protocol import (
+    ExecutionStateChanged,
+    GetExecutionState,
+    GetVariables,
+    ListNodes,
+    NodePresent,
+    UserMessage,
+    Variables,
+)
+from tests.network import virtual_display
+from tests.network.aseba_client import AsebaClient
+from tests.processes import free_port
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.testing.ros.domain import reserved
+
+DEADLINE_S = 120.0
+LOCALE = Path("/usr/lib/locale/C.utf8")
+PROGRAM = """<network><event size="1" name="hello"/><event size="1" name="answer"/>
+<node nodeId="1" name="thymio-II">var n = 0
+timer.period[0] = 100
+onevent timer0
+n += 1
+emit hello n
+onevent hello
+emit answer event.args[0] * 2
+</node></network>"""
+PROGRAM_VARIABLE = target().variables_end
+HELLO, ANSWER = 0, 1
+
+pytestmark = [pytest.mark.process, pytest.mark.slow]
+
+
+def needs(tool):
+    return pytest.mark.skipif(shutil.which(tool) is None, reason=f"{tool} (Debian's package aseba) is not installed")
+
+
+def wait_for(condition, what):
+    end_s = time.monotonic() + DEADLINE_S
+    while time.monotonic() < end_s:
+        if value := condition():
+            return value
+        time.sleep(0.05)
+    raise TimeoutError(f"not within {DEADLINE_S} s: {what}")
+
+
+@pytest.fixture(scope="module")
+def port(tmp_path_factory):
+    """The Aseba port of a suite with one robot that has no program."""
+    number, log = free_port(), tmp_path_factory.mktemp("suite") / "log"
+    command = [sys.executable, "-m", "thymio_sim_ros", "--headless", "--program", "none", "--aseba-port", str(number)]
+    with reserved(), log.open("w") as output:
+        suite = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT)
+        try:
+            wait_for(lambda: "Stop  " in log.read_text() or suite.poll() is not None, "the suite has started")
+            assert suite.poll() is None, log.read_text()
+            yield number
+        finally:
+            suite.send_signal(signal.SIGINT)
+            suite.wait(DEADLINE_S)
+    assert "internal error" not in log.read_text()
+
+
+@pytest.fixture
+def client(port):
+    made = AsebaClient(port)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Start a tool that runs until the end of the test; its output goes to a file, whose path is returned."""
+    running = []
+
+    def run(*command, **environment):
+        output = tmp_path / f"{command[0]}.log"
+        with output.open("w") as file:
+            running.append(
+                subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT, env=os.environ | environment)
+            )
+        return output
+
+    yield run
+    for process in running:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "prog.aesl"
+    path.write_text(PROGRAM)
+    return path
+
+
+@pytest.fixture
+def locales(tmp_path):
+    """A folder with the locale en_US.UTF-8, which the loader requires; C.UTF-8 has the same characters."""
+    if not LOCALE.is_dir():
+        pytest.skip("the loader needs a locale with UTF-8")
+    (tmp_path / "en_US.UTF-8").symlink_to(LOCALE)
+    return str(tmp_path)
+
+
+def get(url):
+    """The JSON of a REST interface; None while it does not answer."""
+    try:
+        with urllib.request.urlopen(url, timeout=5.0) as answer:
+            return json.loads(answer.read() or b"null")
+    except (OSError, urllib.error.URLError):
+        return None
+
+
+@needs("asebacmd")
+def test_asebacmd(port):
+    for words in (["listnodes"], ["getnodedescr", "1"], ["usermsg", "0", "1", "2"]):
+        done = subprocess.run(["asebacmd", "-t", f"tcp:127.0.0.1;{port}", *words], timeout=DEADLINE_S, check=False)
+        assert done.returncode == 0
+
+
+@needs("asebamassloader")
+def test_asebamassloader_and_asebadump(port, client, start, program, locales):
+    if shutil.which("stdbuf") is None:
+        pytest.skip("stdbuf is not installed")
+    dump = start("stdbuf", "-o0", "asebadump", f"tcp:127.0.0.1;{port}", LOCPATH=locales)
+    wait_for(lambda: "connection created" in dump.read_text(), "asebadump is connected")
+    command = ["asebamassloader", "--once", str(program), f"tcp:127.0.0.1;{port}"]
+    done = subprocess.run(command, env=os.environ | {"LOCPATH": locales}, timeout=DEADLINE_S, check=False)
+    assert done.returncode == 0
+    first, second = (client.wait_for(UserMessage) for _ in range(2))
+    assert (first.number, second.words[0]) == (HELLO, first.words[0] + 1)
+    client.send(UserMessage(0, HELLO, (21,)))
+    while (message := client.wait_for(UserMessage)).number != ANSWER:
+        pass
+    assert message.words == (42,)
+    wait_for(lambda: "user message of size 1 :   42" in dump.read_text(), "asebadump prints the answer")
+
+
+@needs("asebahttp")
+def test_asebahttp(port, start, program, locales):
+    http = free_port()
+    start(
+        "asebahttp", "-p", str(http), "-s", str(free_port()), "--aesl", str(program), f"tcp:127.0.0.1;{port}",
+        LOCPATH=locales,
+    )  # fmt: skip
+    nodes = wait_for(lambda: get(f"http://127.0.0.1:{http}/nodes"), "asebahttp lists the node")
+    assert [(node["node"], node["name"]) for node in nodes] == [(1, "thymio-II")]
+    wait_for(lambda: (get(f"http://127.0.0.1:{http}/nodes/thymio-II/n") or [0])[0] > 0, "the program runs")
+
+
+@needs("asebahttp2")
+def test_asebahttp2(port, start):
+    http = free_port()
+    start("asebahttp2", "-p", str(http), f"tcp:127.0.0.1;{port}")
+    nodes = wait_for(lambda: get(f"http://127.0.0.1:{http}/nodes"), "asebahttp2 lists the node")
+    assert [(node["node"], node["name"]) for node in nodes] == [(1, "thymio-II")]
+    assert len(get(f"http://127.0.0.1:{http}/nodes/1/prox.horizontal")) == 7
+
+
+@needs("asebaswitch")
+def test_asebaswitch(port, start):
+    number = free_port()
+    switch = start("asebaswitch", "-p", str(number), f"tcp:127.0.0.1;{port}")
+
+    def connect():
+        try:
+            return AsebaClient(number)
+        except OSError:
+            return None
+
+    clients = [wait_for(connect, f"the switch listens: {switch.read_text()}") for _ in range(2)]
+    for one in clients:
+        assert one.ask(ListNodes(0, 5), NodePresent) == NodePresent(1, 5)
+        one.close()
+
+
+@pytest.mark.skipif(find_spec("thymiodirect") is None, reason="thymiodirect is not installed")
+def test_thymiodirect(port):
+    program = f"""
+import time
+from thymiodirect import Thymio
+thymio = Thymio(use_tcp=True, host="127.0.0.1", tcp_port={port})
+thymio.connect()
+robot = thymio[thymio.first_node()]
+end = time.monotonic() + {DEADLINE_S}
+while robot["_fwversion"] != [14, 1] and time.monotonic() < end:
+    time.sleep(0.05)
+robot["motor.left.target"] = 120
+while robot["motor.left.speed"] < 100 and time.monotonic() < end:
+    time.sleep(0.05)
+robot["motor.left.target"] = 0
+print(robot["_fwversion"], flush=True)
+import os
+os._exit(0)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=90.0, check=False)
+    assert done.stdout == "[14, 1]\n", done.stderr
+
+
+LOAD, RUN, EDITOR = (74, 95), (206, 95), (550, 300)
+"""Places in the window of Studio 1.6 on a display of 1280 x 900: buttons Load and Run (which becomes Pause), text."""
+
+
+@needs("asebastudio")
+@pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed")
+@pytest.mark.skipif(not virtual_display.is_available(), reason="libX11 or libXtst is not installed")
+def test_aseba_studio(port, client, start, locales, tmp_path):
+    """Studio shows variables, loads a typed program, runs and pauses it."""
+    names, number = os.pipe()
+    with os.fdopen(names) as answer:
+        server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(number), "-screen", "0", "1280x900x24"],
+            pass_fds=[number],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(number)
+        name = f":{answer.readline().strip()}"
+    try:
+        home = str(tmp_path)
+        start("asebastudio", f"tcp:127.0.0.1;{port}", DISPLAY=name, LOCPATH=locales, HOME=home, XDG_RUNTIME_DIR=home)
+        display = virtual_display.VirtualDisplay(name)
+
+        def value():
+            return client.ask(GetVariables(0, 1, PROGRAM_VARIABLE, 1), Variables).values[0]
+
+        def is_loaded():
+            # Nothing outside shows that the window is ready: type, load and run until the program is there.
+            display.click(*EDITOR)
+            display.select_all()
+            display.type("var m = 77\n")
+            display.click(*LOAD)
+            end_s = time.monotonic() + 2.0
+            while value() != 77 and time.monotonic() < end_s:
+                display.click(*RUN)
+                time.sleep(0.2)
+            return value() == 77
+
+        wait_for(is_loaded, "Studio has loaded and started a program")
+        display.click(*RUN)  # Pause
+        wait_for(
+            lambda: client.ask(GetExecutionState(0, 1), ExecutionStateChanged).flags & 2, "Studio has paused the robot"
+        )
+        display.close()
+    finally:
+        server.terminate()
+        server.wait()

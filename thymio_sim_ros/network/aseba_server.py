@@ -1,0 +1,227 @@
+"""The Aseba protocol on TCP: one port for each network, or one port for all.
+
+Any number of tools, up to a limit, can be connected to one robot at a time. Each frame is written by one call with
+Nagle's algorithm off, as `thymiodirect` needs it (docs/spec/aseba-protocol.md section 1.1).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import socket
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode, encode
+from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.network.hub import Connection, Hub, Network
+from thymio_sim_ros.network.settings import LAST_PORT, OFF, NetworkSettings
+
+__all__ = ["MAX_CLIENTS", "MAX_UNSENT", "AsebaServer"]
+
+MAX_CLIENTS = 32
+"""Clients of one port."""
+MAX_PAYLOAD = 4096
+"""Longest accepted payload in bytes; tools send 516 at most. Other protocols are recognized by longer ones."""
+MAX_UNSENT = 1 << 20
+"""Bytes that wait for a client that does not read; it is disconnected beyond them."""
+_RETRY_S = 0.005
+"""Time after which a client that had to pause is read again."""
+
+Report = Callable[[str, str], None]
+"""Takes a warning: what it is about, so that repetitions can be limited, and the text."""
+
+
+class AsebaServer:
+    """Serves the networks of a hub. Only for the thread of the event loop."""
+
+    def __init__(self, hub: Hub, settings: NetworkSettings, report: Report) -> None:
+        """Serve nothing until `start`."""
+        self._hub, self._settings, self._report = hub, settings, report
+        self._ports: dict[int, _Port] = {}
+        """Ports by place; that of all networks is 0."""
+        self.ports_changed: Callable[[], None] = lambda: None
+        """Called when `ports` has changed."""
+
+    @property
+    def ports(self) -> dict[int, list[Network]]:
+        """The networks of each open port."""
+        return {port.number: list(port.networks) for port in self._ports.values() if port.number != OFF}
+
+    def start(self) -> None:
+        """Serve the networks that are there, and those that come."""
+        self._hub.follow(self)
+
+    async def close(self) -> None:
+        """Close all ports and connections."""
+        self._hub.unfollow(self)
+        for port in self._ports.values():
+            port.close()
+        self._ports.clear()
+
+    def network_added(self, network: Network) -> None:
+        """Open the port of a network, or add it to the port of all. A port that cannot be opened is reported."""
+        place = 0 if self._settings.is_aseba_shared else network.place
+        if place not in self._ports:
+            first = self._settings.aseba_port
+            port = _Port(self._report)
+            self._ports[place] = port
+            try:
+                port.open(self._settings.aseba_address, first + place if first else 0)
+            except OSError as error:
+                self._report(f"aseba {place}", f"Aseba port of {network.name or 'the robot'}: {error.strerror}")
+        self._ports[place].add(network)
+        self.ports_changed()
+
+    def network_removed(self, network: Network) -> None:
+        """Disconnect the clients of a network, and close its port unless others use it."""
+        for place, port in list(self._ports.items()):
+            if network in port.networks:
+                port.remove(network)
+                if not port.networks:
+                    port.close()
+                    del self._ports[place]
+        self.ports_changed()
+
+
+class _Port:
+    """One TCP port, the networks behind it and its clients."""
+
+    def __init__(self, report: Report) -> None:
+        self.report = report
+        self.number = OFF
+        self.networks: list[Network] = []
+        self.clients: set[_Client] = set()
+        self._tasks: list[asyncio.Task[None]] = []
+
+    def open(self, address: str, number: int) -> None:
+        """Listen. Raises OSError if the port cannot be used."""
+        if number > LAST_PORT:
+            raise OSError(errno.EINVAL, f"found {number}, expected at most {LAST_PORT}")
+        listeners = listen(address, number)
+        self.number = int(listeners[0].getsockname()[1])
+        loop = asyncio.get_running_loop()
+        self._tasks = [loop.create_task(self._accept(listener)) for listener in listeners]
+
+    def add(self, network: Network) -> None:
+        """Add a network; clients that are connected become its clients too."""
+        self.networks.append(network)
+        for client in self.clients:
+            client.join(network)
+
+    def remove(self, network: Network) -> None:
+        """Remove a network. Clients stay for the others, if there are any."""
+        self.networks.remove(network)
+        for client in list(self.clients):
+            client.leave(network)
+
+    def close(self) -> None:
+        """Stop listening and disconnect all clients."""
+        for task in self._tasks:
+            task.cancel()
+        for client in list(self.clients):
+            client.abort()
+
+    async def _accept(self, listener: socket.socket) -> None:
+        loop = asyncio.get_running_loop()
+        listener.setblocking(False)
+        with contextlib.closing(listener):
+            while True:
+                try:
+                    accepted, peer = await loop.sock_accept(listener)
+                except OSError as error:  # out of file descriptors, or the client has disconnected
+                    self.report("accept", f"Aseba port {self.number}: {error.strerror}")
+                    await asyncio.sleep(_RETRY_S)
+                    continue
+                if len(self.clients) >= MAX_CLIENTS:
+                    self.report("full", f"Aseba port {self.number}: found a client, expected at most {MAX_CLIENTS}")
+                    accepted.close()
+                    continue
+                try:
+                    accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                    await loop.connect_accepted_socket(partial(_Client, self, str(peer[0])), accepted)
+                except OSError:  # the client has disconnected
+                    accepted.close()
+
+
+class _Client(asyncio.Protocol):
+    """One connection."""
+
+    _transport: asyncio.Transport
+
+    def __init__(self, port: _Port, address: str) -> None:
+        self._port, self._address = port, address
+        self._reader = FrameReader(MAX_PAYLOAD)
+        self._connections: dict[Network, Connection] = {}
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._transport = transport
+        self._port.clients.add(self)
+        for network in self._port.networks:
+            self.join(network)
+
+    def connection_lost(self, _error: Exception | None) -> None:
+        self._port.clients.discard(self)
+        for connection in self._connections.values():
+            connection.close()
+        self._connections.clear()
+
+    def join(self, network: Network) -> None:
+        """Become a client of a network."""
+        self._connections[network] = network.connect(self._send)
+
+    def leave(self, network: Network) -> None:
+        """Leave a network, and disconnect with the last one."""
+        connection = self._connections.pop(network, None)
+        if connection is not None:
+            connection.close()
+        if not self._connections:
+            self._transport.close()
+
+    def abort(self) -> None:
+        """Disconnect at once."""
+        self._transport.abort()
+
+    def data_received(self, data: bytes) -> None:
+        messages = []
+        try:
+            for frame in self._reader.feed(data):
+                try:
+                    messages.append(decode(frame))
+                except ProtocolError as error:  # the frame is complete, so the next ones can be read
+                    self._warn(str(error))
+        except ProtocolError as error:
+            self._warn(f"{error}; disconnected, as this is no Aseba message")
+            self.abort()
+            return
+        for connection in list(self._connections.values()):
+            connection.send(*messages)
+        self._pause_if_full()
+
+    def _pause_if_full(self) -> None:
+        """Read on when the nodes have handled enough of this client's messages."""
+        if self._transport.is_closing():
+            return
+        if any(connection.is_full for connection in self._connections.values()):
+            self._transport.pause_reading()
+            asyncio.get_running_loop().call_later(_RETRY_S, self._pause_if_full)
+        else:
+            self._transport.resume_reading()
+
+    def _send(self, messages: Sequence[Message]) -> None:
+        for message in messages:
+            if self._transport.is_closing():
+                return
+            if self._transport.get_write_buffer_size() > MAX_UNSENT:
+                self._warn(f"does not read {MAX_UNSENT} bytes that it was sent; disconnected")
+                self.abort()
+                return
+            try:
+                self._transport.write(encode(message))
+            except ProtocolError as error:
+                self._warn(f"internal error (please report): {error}")
+
+    def _warn(self, text: str) -> None:
+        self._port.report(f"client {self._address}", f"Aseba port {self._port.number}, client {self._address}: {text}")

@@ -1,0 +1,78 @@
+"""From the text of a file to programs for nodes of a network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from aseba_vm import AeslError, CompileError, aesl, compile
+from aseba_vm.aesl.network import select, with_vpl_events
+from aseba_vm.aesl.text_decoding import decode
+from aseba_vm.errors import TextError
+from aseba_vm.target import TargetDescription
+from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
+from thymio_sim_ros.network.http.replies import Definitions
+from thymio_sim_ros.network.http.requests import RequestError
+
+__all__ = ["Compiled", "NodeToLoad", "compile_file"]
+
+NAME = "by HTTP"
+"""Name of a program without a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeToLoad:
+    """A node that gets a program: its place in the gateway, its description, and the name of its robot (or empty)."""
+
+    key: tuple[int, int]
+    number: int
+    target: TargetDescription
+    robot: str
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """A program for each node of a request; all share the events and constants of their file."""
+
+    programs: tuple[tuple[NodeToLoad, ThymioProgram], ...]
+    definitions: Definitions
+
+
+def compile_file(text: bytes, nodes: Sequence[NodeToLoad]) -> Compiled:
+    """Compile an .aesl file, or bare Aseba text, for each node. Raises RequestError with line and column.
+
+    A node gets the program of the file that is named after its robot, else that with its type and number, else the
+    first for its type, else the first that another kind of device does not claim.
+    """
+    try:
+        file = decode(text).text
+        network = _parse(file)
+        programs = tuple((node, _compile(file, network, node)) for node in nodes)
+    except (AeslError, TextError) as error:
+        raise RequestError(400, f"line {error.line}, column {error.column}: {error}") from error
+    return Compiled(programs, Definitions(network.events, network.constants))
+
+
+def _parse(text: str) -> aesl.Network:
+    if not text.strip():
+        raise RequestError(400, "the body is empty; expected an .aesl file or the text of a program")
+    return with_vpl_events(aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, ""))
+
+
+def _compile(text: str, network: aesl.Network, wanted: NodeToLoad) -> ThymioProgram:
+    node = _node_for(network, wanted)
+    try:
+        program = compile(node.code, wanted.target, events=network.events, constants=network.constants)
+    except CompileError as error:
+        if error.pos is None:
+            raise RequestError(400, str(error)) from error
+        row, col = node.place(error.pos.offset)
+        raise RequestError(400, f"line {row + 1}, column {col + 1}: {error}") from error
+    return of_node(program, node, network, NAME, text)
+
+
+def _node_for(network: aesl.Network, wanted: NodeToLoad) -> aesl.Node:
+    type_name = wanted.target.name
+    found = network.node(wanted.robot) if wanted.robot else None
+    found = found or network.node(type_name, wanted.number)
+    return found or select(network, {type_name, wanted.robot}).nodes[0]

@@ -1,0 +1,1 @@
+"""Messages of the Thymio Device Manager and their encoding, without I/O."""

@@ -1,0 +1,133 @@
+"""Connects the robots of a runtime to the network servers: messages of clients in, messages of the nodes out.
+
+The servers run in a thread of their own (`thymio_sim_ros/network/thread.py`); robots belong to the thread of the
+executor. A mailbox takes what clients send, and calls in the other thread take what nodes answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from rclpy.node import Node
+
+from aseba_vm.protocol import Message
+from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.network.hub import Network
+from thymio_sim_ros.network.settings import NetworkSettings
+from thymio_sim_ros.network.thread import NetworkThread
+from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
+from thymio_sim_ros.ros.aseba.robot_set import RobotSet
+from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
+
+__all__ = ["NetworkLink"]
+
+CONNECT, DISCONNECT = "connect", "disconnect"
+
+GROUP = 4
+"""Messages that are executed without a break; after it other clients and the node's own work have their turn."""
+CAPACITY = 256
+"""Messages of one client that may wait before it is asked to pause."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Post:
+    """Something from a client of one robot: messages, that it has come or gone, or the text of a program."""
+
+    robot: DeviceEndpoints
+    client: int
+    messages: Sequence[Message] = ()
+    event: str = ""
+    program: ThymioProgram | None = None
+
+
+class NetworkLink:
+    """The networks of all robots of a runtime, one for each robot."""
+
+    def __init__(
+        self, node: Node, robots: RobotSet, settings: NetworkSettings, *, first_id: int, tokens: Tokens
+    ) -> None:
+        """Start the servers. `first_id`: number of the robot at the first port; `tokens`: those that clients need."""
+        log = node.get_logger()
+        self._robots, self._first_id = robots, first_id
+        self._networks: dict[DeviceEndpoints, Network] = {}
+        self._mailbox: Mailbox[_Post] = Mailbox(
+            node,
+            self._handle,
+            sender=lambda post: post.client,
+            weight=lambda post: len(post.messages),
+            capacity=CAPACITY,
+        )
+        self.thread = NetworkThread(settings, tokens=tokens, warn=log.warning, info=log.info)
+        robots.on_change = self.update
+        self.update()
+
+    def update(self) -> None:
+        """Add networks of new robots, and remove those of robots that are gone."""
+        for robot in [robot for robot in self._networks if robot not in list(self._robots)]:
+            robot.send_to_network, robot.on_program = None, lambda program: None
+            self.thread.call(self.thread.hub.remove, self._networks.pop(robot))
+        for robot in self._robots:
+            if robot not in self._networks:
+                nodes = _Robot(robot, self._mailbox)
+                network = Network(
+                    robot.names.name,
+                    nodes,
+                    place=robot.number - self._first_id,
+                    node_ids=(robot.number,) if robot.is_simulated else (),
+                    is_simulated=robot.is_simulated,
+                )
+                network.remember = nodes.remember
+                self._networks[robot] = network
+                self.thread.call(network.set_program, robot.program)
+                self.thread.call(self.thread.hub.add, network)
+                robot.on_program = partial(self.thread.call, network.set_program)
+
+    def drain(self) -> None:
+        """Handle what clients sent before the node had an executor, which nothing else would wake."""
+        self._mailbox.drain()
+
+    def close(self) -> None:
+        """Stop the servers; a second call has no effect."""
+        self._mailbox.close()
+        self.thread.close()
+
+    def _handle(self, post: _Post) -> None:
+        """Execute what a client has sent. Replies keep their order with what the node sends by itself."""
+        robot, network = post.robot, self._networks.get(post.robot)
+        if network is None:  # the robot is gone
+            return
+        if post.event == CONNECT:
+            robot.network_node.connect(post.client)
+            robot.send_to_network = lambda messages: self.thread.call(network.deliver, messages)
+        elif post.event == DISCONNECT:
+            robot.network_node.disconnect(post.client)
+        elif post.program is not None:
+            robot.remember(post.program)
+        else:
+            robot.handle_messages(post.client, post.messages, partial(self.thread.call, network.deliver))
+
+
+class _Robot:
+    """The nodes of a network whose node is a robot of this process. Only for the thread of the servers."""
+
+    def __init__(self, robot: DeviceEndpoints, mailbox: Mailbox[_Post]) -> None:
+        self._robot, self._mailbox = robot, mailbox
+
+    def connect(self, client: int) -> None:
+        self._mailbox.post(_Post(self._robot, client, event=CONNECT))
+
+    def disconnect(self, client: int) -> None:
+        self._mailbox.post(_Post(self._robot, client, event=DISCONNECT))
+
+    def send(self, client: int, messages: Sequence[Message]) -> None:
+        for start in range(0, len(messages), GROUP):
+            self._mailbox.post(_Post(self._robot, client, messages[start : start + GROUP]))
+
+    def remember(self, client: int, program: ThymioProgram) -> None:
+        self._mailbox.post(_Post(self._robot, client, program=program))
+
+    def is_full(self, client: int) -> bool:
+        return self._mailbox.is_full(client)

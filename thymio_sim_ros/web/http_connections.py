@@ -1,0 +1,250 @@
+"""HTTP connections with limits, on aiohttp: the part that all HTTP servers of this project share.
+
+aiohttp itself has no limits for clients that connect and send nothing, send slowly, or do not read. Each connection
+has a slot (`connections`), whose phase follows the traffic; `serve_connections` closes those that are overdue. A server
+is a function from a request to a response; it calls `start_answer` once the request is complete, and `start_stream` if
+the answer has no end.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import select
+from collections.abc import Awaitable, Callable, Iterable, Mapping
+from functools import partial
+from socket import IPPROTO_TCP, SO_SNDBUF, SOL_SOCKET, TCP_KEEPCNT, TCP_KEEPIDLE, TCP_KEEPINTVL, socket
+from types import MappingProxyType
+from typing import Any, cast
+
+from aiohttp import web
+
+from thymio_sim_ros.web.connections import Connections, ConnectionSlot, Phase
+
+__all__ = ["COMMON_HEADERS", "Handler", "Report", "serve_connections", "start_answer", "start_stream", "text_response"]
+
+Handler = Callable[[web.BaseRequest], Awaitable[web.StreamResponse]]
+
+Report = Callable[[str, str], None]
+"""Called with a kind of problem and its description."""
+
+BACKLOG = 1024
+"""Connections that the kernel queues until they are accepted."""
+SEND_BUFFER = 131_072
+"""Bytes that the kernel buffers for a client that does not read; by default these are megabytes."""
+MAX_AHEAD = 65_536
+"""Bytes that a client may send while its request is answered: further requests, or an unread body."""
+_KEEP_ALIVE = ((TCP_KEEPIDLE, 30), (TCP_KEEPINTVL, 10), (TCP_KEEPCNT, 3))
+"""A client that has vanished without closing its connection, also that of a stream, is noticed within a minute; s."""
+COMMON_HEADERS = {
+    "Server": "thymio-sim",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
+"""Headers of every response."""
+_CLOSE_S = 0.3
+_SWEEP_S = 0.5
+_RETRY_S = 0.02
+_ITERATIONS = 6
+"""Iterations of the event loop from the arrival of a request to the beginning of its answer, and some more."""
+_NEVER_S = 1e6
+_TEXT = "text/plain; charset=utf-8"
+
+
+class _Connection(web.RequestHandler):
+    """A connection with a slot."""
+
+    def __init__(
+        self, server: web.Server, connections: Connections, slot: ConnectionSlot, report: Report, **options: Any
+    ) -> None:
+        super().__init__(server, **options)
+        self._connections = connections
+        self._slot = slot
+        self._report = report
+        self._ahead = 0
+        self._busy = Phase.ANSWERING
+        self._stream: asyncio.Task[Any] | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Connect the slot with the transport."""
+        plain = cast(asyncio.Transport, transport)
+        descriptor = plain.get_extra_info("socket").fileno()
+        self._slot.close = plain.abort
+        self._slot.has_pending_io = lambda: _is_ready(
+            descriptor, select.POLLOUT if self._slot.phase is Phase.STALLED else select.POLLIN
+        )
+        super().connection_made(transport)
+
+    def connection_lost(self, exc: BaseException | None) -> None:
+        """Free the slot and end the stream."""
+        self._connections.remove(self._slot)
+        if self._stream is not None:
+            self._stream.cancel()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Pass bytes on; close the connection if the client sends too many before its answer is complete."""
+        slot = self._slot
+        if slot.phase in (Phase.SILENT, Phase.IDLE):
+            self._connections.set_phase(slot, Phase.READING)
+        elif slot.phase is not Phase.READING:
+            self._ahead += len(data)
+            if self._ahead > MAX_AHEAD:
+                slot.close()
+                return
+        super().data_received(data)
+
+    def eof_received(self) -> None:
+        """Close the connection if no answer is being created: the client sends no more bytes."""
+        if self._slot.phase < Phase.STALLED or self._slot.phase is Phase.STREAMING:
+            self.force_close()
+
+    def pause_writing(self) -> None:
+        """Note that the client reads more slowly than the answer is sent."""
+        super().pause_writing()
+        self._connections.set_phase(self._slot, Phase.STALLED)
+
+    def resume_writing(self) -> None:
+        """Note that the client reads again."""
+        super().resume_writing()
+        self._connections.set_phase(self._slot, self._busy)
+
+    def start_answer(self) -> None:
+        """Note that a request is complete."""
+        self._connections.set_phase(self._slot, Phase.ANSWERING)
+
+    def start_stream(self) -> None:
+        """Note that the answer has no end; the current task, which writes it, is canceled when the client leaves."""
+        self._busy, self._stream = Phase.STREAMING, asyncio.current_task()
+        self._connections.set_phase(self._slot, Phase.STREAMING)
+
+    async def finish_response(self, *arguments: Any, **options: Any) -> Any:
+        """Send an answer; afterwards the client may send another request."""
+        try:
+            return await super().finish_response(*arguments, **options)
+        finally:
+            self._ahead = 0
+            self._busy, self._stream = Phase.ANSWERING, None
+            self._connections.set_phase(self._slot, Phase.IDLE)
+
+    def handle_error(
+        self,
+        request: web.BaseRequest,
+        status: int = 500,
+        exc: BaseException | None = None,
+        message: str | None = None,
+    ) -> web.StreamResponse:
+        """The response to an invalid request or an internal error; it quotes nothing of the request."""
+        has_left = self.transport is None or self.transport.is_closing()
+        if status >= 500 and not has_left:  # aiohttp raises several kinds of errors for clients that have left
+            self._report("fault", f"internal error (please report): {exc!r}")
+        response = text_response(status, "This is not a request that can be answered.")
+        response.force_close()
+        return response
+
+
+class _Acceptor:
+    """Accepts connections while there are slots."""
+
+    def __init__(self, server: web.Server, connections: Connections, report: Report, log: logging.Logger) -> None:
+        self._server = server
+        self._connections = connections
+        self._report = report
+        self._log = log
+
+    async def accept_forever(self, listener: socket) -> None:
+        """Accept the connections of a listening socket, until it is cancelled."""
+        loop = asyncio.get_running_loop()
+        listener.setblocking(False)
+        # Accepted sockets inherit these options.
+        listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)
+        for option, value in _KEEP_ALIVE:
+            listener.setsockopt(IPPROTO_TCP, option, value)
+        listener.listen(BACKLOG)
+        while True:
+            try:
+                accepted, peer = await loop.sock_accept(listener)
+            except OSError as error:  # out of file descriptors, or the client has disconnected
+                self._report("accept", f"connections cannot be accepted: {error.strerror}")
+                await asyncio.sleep(_SWEEP_S)
+                continue
+            while self._connections.is_full:
+                self._report("full", "the maximum number of connections is reached; more have to wait")
+                await self._make_room()
+            slot = self._connections.add(str(peer[0]))
+            try:
+                await loop.connect_accepted_socket(partial(self._connection, slot), accepted)
+            except OSError:  # the client has disconnected
+                self._connections.remove(slot)
+                accepted.close()
+
+    async def _make_room(self) -> None:
+        """Close the best candidate for eviction, unless it becomes active in the next iterations of the event loop."""
+        slot = self._connections.eviction_candidate()
+        if slot is None:
+            await asyncio.sleep(_RETRY_S)
+            return
+        since_s = slot.since_s
+        for _ in range(_ITERATIONS):
+            await asyncio.sleep(0)
+        self._connections.evict(slot, since_s)
+
+    def _connection(self, slot: ConnectionSlot) -> _Connection:
+        return _Connection(
+            self._server,
+            self._connections,
+            slot,
+            self._report,
+            loop=asyncio.get_running_loop(),
+            keepalive_timeout=_NEVER_S,  # `connections` closes idle connections
+            access_log=None,
+            logger=self._log,
+            lingering_time=0,
+        )
+
+
+def start_answer(request: web.BaseRequest) -> None:
+    """Note that a request is complete: from now on, the client waits for the server."""
+    cast(_Connection, request.protocol).start_answer()
+
+
+def start_stream(request: web.BaseRequest) -> None:
+    """Note that the answer has no end. The current task is canceled when the client closes the connection."""
+    cast(_Connection, request.protocol).start_stream()
+
+
+def text_response(status: int, text: str, headers: Mapping[str, str] = MappingProxyType({})) -> web.Response:
+    """A line of plain text that is not stored."""
+    given = {**COMMON_HEADERS, "Content-Type": _TEXT, "Cache-Control": "no-store", **headers}
+    return web.Response(status=status, body=f"{text}\n".encode(), headers=given)
+
+
+async def serve_connections(
+    listeners: Iterable[socket], answer: Handler, max_connections: int, report: Report, stop: asyncio.Event
+) -> None:
+    """Serve on listening sockets until `stop` is set; open connections are closed then."""
+    loop = asyncio.get_running_loop()
+    connections = Connections(max_connections, loop.time)
+    log = logging.getLogger(__name__)
+    log.setLevel(logging.CRITICAL)  # invalid requests are not logged; internal errors go to `report`
+    server = web.Server(answer)
+    acceptor = _Acceptor(server, connections, report, log)
+    tasks = [loop.create_task(acceptor.accept_forever(listener)) for listener in listeners]
+    try:
+        while not stop.is_set():
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(stop.wait(), _SWEEP_S)
+            connections.close_overdue()
+    finally:
+        for one in tasks:
+            one.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        await server.shutdown(_CLOSE_S)
+
+
+def _is_ready(descriptor: int, events: int) -> bool:
+    """Whether one of these `poll` events is pending for an open socket."""
+    poll = select.poll()
+    poll.register(descriptor, events)
+    return bool(poll.poll(0))
