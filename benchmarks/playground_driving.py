@@ -17,7 +17,6 @@ import os
 import shutil
 import signal
 import socket
-import struct
 import subprocess
 import tempfile
 import time
@@ -28,6 +27,7 @@ from unittest import mock
 
 from PIL import Image, ImageDraw
 
+from aseba_vm.protocol import FrameReader, Run, UserMessage, decode, encode, requests
 from benchmarks.lib.command import MissingError
 from benchmarks.lib.report import Report, Table
 from tests.processes import free_port
@@ -44,8 +44,8 @@ from thymio_sim_ros.sim.sensors import Sensor, all_sensors, proximity
 
 QUICK = {"seconds": 4.0, "programs": ["in proportion"]}
 STEP_NS = 30_000_000
-SET_BYTECODE, RUN, FIRST_SYSTEM_MESSAGE = 0xA001, 0xA003, 0x8000
-CHUNK_WORDS = 200
+NODE = 1
+"""Number of the robot of the playground."""
 START_S = 30.0
 SKIPPED = 5
 """Reports at the start that do not count."""
@@ -175,25 +175,18 @@ def connected(port: int, deadline: float) -> socket.socket:
 
 
 def drive_reference(connection: socket.socket, program: ThymioProgram, seconds: float) -> list[Sequence[int]]:
-    """Return what the program reports from the playground in so many seconds."""
-
-    def send(kind: int, *words: int) -> None:
-        connection.sendall(struct.pack(f"<HHH{len(words)}H", 2 * len(words), 0, kind, *words))
-
-    words = program.program.words
-    for start in range(0, len(words), CHUNK_WORDS):
-        send(SET_BYTECODE, 1, start, *words[start : start + CHUNK_WORDS])
-    send(RUN, 1)
-    reports, buffer, deadline = [], b"", time.monotonic() + seconds
+    """Return what the program reports from the playground in so many seconds, or later if that is less than needed."""
+    messages = [*requests.set_bytecode(NODE, program.program.words, source=0), Run(0, NODE)]
+    connection.sendall(b"".join(map(encode, messages)))
+    reports, reader, start_s = [], FrameReader(), time.monotonic()
     connection.settimeout(1.0)
-    while time.monotonic() < deadline:
+    while (now_s := time.monotonic() - start_s) < seconds or (len(reports) < SKIPPED + 2 and now_s < seconds + START_S):
         with contextlib.suppress(TimeoutError):
-            buffer += connection.recv(65536)
-        while len(buffer) >= 6 and len(buffer) >= 6 + (size := struct.unpack_from("<H", buffer)[0]):
-            kind = struct.unpack_from("<H", buffer, 4)[0]
-            if kind < FIRST_SYSTEM_MESSAGE:
-                reports.append(struct.unpack_from(f"<{size // 2}h", buffer, 6))
-            buffer = buffer[6 + size :]
+            for message in map(decode, reader.feed(connection.recv(65536))):
+                if isinstance(message, UserMessage):
+                    reports.append(message.words)
+    if len(reports) < 2:
+        raise TimeoutError(f"asebaplayground: {len(reports)} reports in {now_s:.0f} s, expected 2 or more")
     return reports
 
 

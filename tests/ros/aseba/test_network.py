@@ -133,6 +133,19 @@ def test_robots_have_ports_in_order_and_keep_them(ros, network):
     assert network.work(lambda: second.ask(ListNodes(0, 5), NodePresent)) == NodePresent(2, 5)
 
 
+@pytest.mark.parametrize("is_shared", [False, True])
+def test_events_without_names_reach_other_robots_on_a_shared_port_only(ros, network, is_shared):
+    node = network("", robots=["anna", "ben"], follow_simulator=False)
+    node.robots.bus.shares_numbers = is_shared
+    first, second = network.client(node, "anna"), network.client(node, "ben")
+    address, _ = target().addresses["motor.left.target"]
+    network.work(lambda: load(first, "onevent ping\nemit pong 7\n", 1))
+    network.work(lambda: load(second, "onevent pong\nmotor.left.target = event.args[0]\n", 2))
+    assert network.work(lambda: first.ask(UserMessage(0, 0, (5,)), UserMessage)) == UserMessage(1, 1, (7,))
+    words = network.work(lambda: second.ask(GetVariables(0, 2, address, 1), Variables)).values
+    assert words == ((7,) if is_shared else (0,))
+
+
 def test_many_descriptions_at_once(ros, network):
     """Twenty requests in one write are answered completely."""
     node = network()

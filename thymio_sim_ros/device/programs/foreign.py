@@ -11,7 +11,7 @@ from aseba_vm.cli.listing import listing
 from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.device.programs.program import ThymioProgram
 
-__all__ = ["FOREIGN", "MAX_EVENTS", "foreign_program"]
+__all__ = ["FOREIGN", "MAX_EVENTS", "foreign_program", "is_unnamed"]
 
 FOREIGN = "from the network"
 """Name of a program without a file."""
@@ -55,6 +55,12 @@ def foreign_program(
         text=text,
         is_foreign=True,
     )
+
+
+def is_unnamed(program: ThymioProgram, event: str) -> bool:
+    """Whether the event of a program has no name but its number: it means something else in other programs."""
+    made_up = (f"event_{number}" for number, (name, _) in enumerate(program.events) if name == event)
+    return program.is_foreign and event in made_up
 
 
 def _further_events(words: Sequence[int], table: Sequence[tuple[int, int]], known: int) -> list[tuple[str, int]]:

@@ -16,6 +16,7 @@ from math import inf
 from rclpy.node import Node
 
 from thymio_sim_ros.device.behavior_host import is_internal
+from thymio_sim_ros.device.programs.foreign import is_unnamed
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.network import AsebaNetwork, NetworkEvent
 
@@ -32,11 +33,16 @@ COMPUTER = 0
 
 
 class Bus:
-    """The Aseba network of one runtime. `reaches_all`: an event emitted on one robot's topics is for all robots."""
+    """The Aseba network of one runtime.
+
+    `reaches_all`: an event emitted on one robot's topics is for all robots. `shares_numbers`: other programs have given
+    all robots one list of events, so that events without names reach other robots as well.
+    """
 
     def __init__(self, node: Node, robots: Sequence[DeviceEndpoints]) -> None:
         """`robots`: all robots of the runtime, at any time."""
         self.reaches_all = True
+        self.shares_numbers = False
         self._robots = robots
         self._ready: dict[DeviceEndpoints, None] = {}
         self._is_running = False
@@ -84,6 +90,8 @@ class Bus:
 
     def forward(self, sender: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
         """Send an event to all other robots: directly in this runtime, by the network topic elsewhere."""
+        if self._is_of_one_robot(sender, event):
+            return
         source = sender.device.node_id
         for endpoints in self._robots:
             if endpoints is not sender and endpoints.device.radio == sender.device.radio:
@@ -92,9 +100,10 @@ class Bus:
 
     def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
         """Send an event from ROS to all robots that declare it, or only to this one; too many values are rejected."""
+        reaches_all = self.reaches_all and not self._is_of_one_robot(endpoints, event)
         robots = (
             [robot for robot in self._robots if robot.device.radio == endpoints.device.radio]
-            if self.reaches_all
+            if reaches_all
             else [endpoints]
         )
         sizes = {robot: _size(robot, event) for robot in robots}
@@ -105,15 +114,18 @@ class Bus:
             endpoints.warn(about, "rejected: internal events stay in the robot")
         elif too_small:
             endpoints.warn(about, f"rejected: found {len(args)} values, expected at most {min(too_small)}")
-        elif not fits and not (self.reaches_all and self._network.has_others):
+        elif not fits and not (reaches_all and self._network.has_others):
             endpoints.warn(about, f"rejected: the program declares {_declared(endpoints)}")
         else:
             for robot, size in fits.items():
                 robot.receive_event(event, [*args, *[0] * (size - len(args))], source=COMPUTER)
             for robot in fits:
                 self.run_until_idle(robot)
-            if self.reaches_all:
+            if reaches_all:
                 self._network.send(NetworkEvent(event, COMPUTER, endpoints.device.radio, tuple(args)))
+
+    def _is_of_one_robot(self, endpoints: DeviceEndpoints, event: str) -> bool:
+        return not self.shares_numbers and is_unnamed(endpoints.program, event)
 
     def _on_network_event(self, event_message: NetworkEvent) -> None:
         for endpoints in self._robots:

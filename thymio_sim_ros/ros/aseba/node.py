@@ -146,6 +146,7 @@ class AsebaRuntime:
         self._diagnostics = RuntimeDiagnostics(node)
         self.robots = RobotSet(node, self.values, self._diagnostics, link)
         self.robots.bus.reaches_all = params.emit_reaches == "network"
+        self.robots.bus.shares_numbers = params.network.aseba_shared
         self._publish_behaviours()
         self._check = CheckService(node, layout=lambda: self.values.params.layout, robots=lambda: self.robots.names)
         self._follower = SimulatorFollower(node, params, self.robots, link)
