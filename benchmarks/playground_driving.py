@@ -176,15 +176,15 @@ def connected(port: int, deadline: float) -> socket.socket:
 
 def drive_reference(connection: socket.socket, program: ThymioProgram, seconds: float) -> list[Sequence[int]]:
     """Return what the program reports from the playground in so many seconds, or later if that is less than needed."""
-    messages = [*requests.set_bytecode(NODE, program.program.words, source=0), Run(0, NODE)]
-    connection.sendall(b"".join(map(encode, messages)))
-    reports, reader, start_s = [], FrameReader(), time.monotonic()
+    load = [*requests.set_bytecode(NODE, program.program.words), Run(0, NODE)]
+    connection.sendall(b"".join(map(encode, load)))
+    reader, start_s = FrameReader(), time.monotonic()
+    reports: list[Sequence[int]] = []
     connection.settimeout(1.0)
     while (now_s := time.monotonic() - start_s) < seconds or (len(reports) < SKIPPED + 2 and now_s < seconds + START_S):
         with contextlib.suppress(TimeoutError):
-            for message in map(decode, reader.feed(connection.recv(65536))):
-                if isinstance(message, UserMessage):
-                    reports.append(message.words)
+            messages = map(decode, reader.feed(connection.recv(65536)))
+            reports += [message.words for message in messages if isinstance(message, UserMessage)]
     if len(reports) < 2:
         raise TimeoutError(f"asebaplayground: {len(reports)} reports in {now_s:.0f} s, expected 2 or more")
     return reports

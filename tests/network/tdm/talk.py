@@ -80,7 +80,7 @@ class Talk:
         return self.ask(client, m.CompileAndLoadCodeOnVM, key, 1, text, CompileOption.LOAD_ON_TARGET)
 
     def exchange(self) -> None:
-        """Deliver messages until nobody sends any."""
+        """Deliver messages until none is left."""
         self.programs += self.manager.pop_programs()
         while messages := self.manager.pop_messages():
             for number, message in messages:

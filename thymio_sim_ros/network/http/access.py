@@ -29,7 +29,7 @@ _ALLOWED_METHODS = "GET, POST, PUT, OPTIONS"
 class AccessPolicy:
     """Who may make requests to a server that listens on `address`.
 
-    Without `tokens`: programs, local pages, and pages of `allowed_origins`. With them: whoever gives one.
+    Without `tokens`: programs, local pages, and pages of `allowed_origins`. With them: all that give one.
     """
 
     address: str = "localhost"

@@ -130,7 +130,7 @@ class HttpServer:
         self._gateway.remove_network(link.index)
 
     def _set_program(self, network: Network) -> None:
-        """Use the names of the program of a robot, whoever has loaded it."""
+        """Use the names of the program of a robot, whichever tool has loaded it."""
         if network in self._links and (program := network.program) is not None:
             definitions = Definitions(program.events, program.constants)
             self._gateway.set_program(self._links[network].index, program.program, definitions)
