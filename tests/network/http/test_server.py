@@ -262,7 +262,7 @@ def test_a_port_that_is_taken_is_reported():
 
 
 def talk(server, *parts, is_whole=False):
-    """The bytes of the server until it closes the connection; if the request `is_whole`, this side of the connection is closed."""
+    """The bytes of the server until it closes the connection; after the parts of a whole request this side is closed."""
     found = b""
     address = ("127.0.0.1", server.port)
     with socket.create_connection(address, timeout=DEADLINE_S) as connection, contextlib.suppress(ConnectionError):
