@@ -46,6 +46,8 @@ SHUTDOWN = "shutdown"
 """The input that run control subscribes to, for simulated robots too."""
 SENSORS = "simulator/_sensors"
 """Where viewers expect the list of sensors."""
+LONGEST_STEP_NS = SECOND_NS // 4
+"""Longest time that passes for the link between two calls."""
 CAPACITY = 4096
 """Messages of the robot that wait; while there are more, the link does not read."""
 
@@ -96,6 +98,7 @@ class RealRobot:
         self._sensors = node.create_publisher(String, SENSORS, qos.TRANSIENT_LOCAL)
         self._connections = 0
         self._problem = self.robot.problem
+        self._clock_ns, self._wall_ns = 0, time.monotonic_ns()
         self._mailbox: Mailbox[LinkEvent] = Mailbox(
             node, self._on_event, weight=lambda event: len(getattr(event, "messages", (event,))), capacity=CAPACITY
         )
@@ -110,7 +113,7 @@ class RealRobot:
     def post(self, command: Command) -> None:
         """Send a command to the robot. Raises CommandError if it cannot do that, or cannot do it now."""
         try:
-            self.robot.execute(command, time.monotonic_ns())
+            self.robot.execute(command, self._now_ns())
         except ValueError as error:
             raise CommandError(str(error)) from error
         self.flush()
@@ -130,7 +133,7 @@ class RealRobot:
     def close(self) -> None:
         """Stop the wheels, end the link, destroy the topics."""
         if self.robot.is_connected:
-            self.robot.execute(MotorTargets(0, 0), time.monotonic_ns())
+            self.robot.execute(MotorTargets(0, 0), self._now_ns())
         self._mailbox.close()
         self._link.close(b"".join(map(encode, self.robot.pop_messages())))
         self._node.destroy_timer(self._timer)
@@ -139,10 +142,17 @@ class RealRobot:
             self._endpoints = None
         self._node.destroy_publisher(self._sensors)
 
+    def _now_ns(self) -> int:
+        """Time of the link; while this thread is late, it passes slower than wall time: messages wait, too."""
+        wall_ns = time.monotonic_ns()
+        self._clock_ns += min(wall_ns - self._wall_ns, LONGEST_STEP_NS)
+        self._wall_ns = wall_ns
+        return self._clock_ns
+
     def _on_event(self, event: LinkEvent) -> None:
         match event:
             case LinkOpened():
-                self.robot.start(time.monotonic_ns())
+                self.robot.start(self._now_ns())
             case LinkReceived(messages=messages):
                 for message in messages:
                     self.robot.receive(message)
@@ -155,7 +165,7 @@ class RealRobot:
         if self._endpoints is not None:
             self._endpoints.poll()
             self._transforms.poll()
-        self.robot.poll(time.monotonic_ns())
+        self.robot.poll(self._now_ns())
         self._process()
 
     def _process(self) -> None:
