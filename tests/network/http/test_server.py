@@ -262,7 +262,7 @@ def test_a_port_that_is_taken_is_reported():
 
 
 def talk(server, *parts, is_whole=False):
-    """The bytes of the server until it closes the connection; after the parts of a whole request this side is closed."""
+    """The bytes of the server until it closes the connection; this side closes after the parts of a whole request."""
     found = b""
     address = ("127.0.0.1", server.port)
     with socket.create_connection(address, timeout=DEADLINE_S) as connection, contextlib.suppress(ConnectionError):
