@@ -112,6 +112,7 @@ def around(image, place, reach):
 
 def test_while_the_camera_rests_the_ground_is_copied_and_not_drawn_again(driving):
     driving.wait_for_function("() => window.keptFrames > 10")
+    pause(driving, True)
     check(driving, "copied")
 
 
