@@ -101,7 +101,7 @@ test("poses are subscribed to while there are no transforms of a robot, and whil
   const placed = reported(many, frames("b"));
   const withoutPoses = ["/tf", "/a/joint_states", "/b/_led/state"];
   assert.deepEqual(watched(many), withoutPoses, "they will come");
-  assert.deepEqual(watched({ ...many, topics: [] }), topics, "nobody publishes transforms");
+  assert.deepEqual(watched({ ...many, topics: [] }), topics, "no node publishes transforms");
   assert.deepEqual(watched(reported(many, frames("c"))), topics, "they are not of this robot");
   assert.deepEqual(watched(placed), withoutPoses);
   assert.deepEqual(watched(paused(placed, true)), topics);
