@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
-import gymnasium
 import numpy as np
 import pytest
+
+gymnasium = pytest.importorskip("gymnasium", reason="needs gymnasium (pip install gymnasium)")
 from gymnasium.utils.env_checker import check_env
 
 from thymio_sim_ros.rl import TASKS, Rewards, Task, TaskError, ThymioEnv

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
+pytest.importorskip("pettingzoo", reason="needs pettingzoo (pip install pettingzoo)")
 from pettingzoo.test import parallel_api_test, parallel_seed_test
 
 from thymio_sim_ros.rl import TASKS

@@ -8,6 +8,8 @@ import math
 import numpy as np
 import pytest
 
+pytest.importorskip("gymnasium", reason="needs gymnasium (pip install gymnasium)")
+
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.rl import TaskError
 from thymio_sim_ros.rl.starts import RADIUS_M, Starts

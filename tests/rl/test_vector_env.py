@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import gymnasium
 import numpy as np
 import pytest
+
+gymnasium = pytest.importorskip("gymnasium", reason="needs gymnasium (pip install gymnasium)")
 
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.rl import TASKS, TaskError, ThymioVectorEnv
