@@ -113,3 +113,18 @@ def test_a_playground_that_cannot_be_copied_is_rejected(playground: str, found: 
 def test_a_number_below_one_is_rejected() -> None:
     with pytest.raises(TaskError, match="copies: found 0, expected at least 1"):
         ThymioVectorEnv(0)
+
+
+@pytest.mark.process
+def test_processes_take_what_cannot_be_copied() -> None:
+    task = replace(SHORT, playground="arena")
+    options = {"vectorization_mode": "async", "vector_kwargs": {"context": "spawn"}, "task": task}
+    envs = gymnasium.make_vec("thymio_sim_ros.rl:thymio/Avoid-v0", num_envs=2, **options)
+    try:
+        envs.reset(seed=3)
+        _, rewards, *_ = envs.step(np.ones((2, 2), np.float32))
+    finally:
+        envs.close()
+    single = gymnasium.make("thymio_sim_ros.rl:thymio/Avoid-v0", task=task)
+    single.reset(seed=4)  # the second environment gets the next seed
+    assert rewards[1] == single.step(np.ones(2, np.float32))[1]
