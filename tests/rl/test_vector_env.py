@@ -27,6 +27,7 @@ def test_make_vec_uses_one_world() -> None:
     observations, infos = envs.reset(seed=1)
     assert envs.observation_space.contains(observations)
     assert infos["pose"].shape == (ROBOTS, 3)
+    assert (np.abs(infos["pose"][:, :2]) < 0.5).all()  # each in its own square of a meter
     observations, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
     assert envs.observation_space.contains(observations)
     assert rewards.shape == terminated.shape == truncated.shape == (ROBOTS,)

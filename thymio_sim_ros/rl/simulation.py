@@ -38,7 +38,10 @@ Bools = npt.NDArray[np.bool_]
 
 
 class Outcome(NamedTuple):
-    """What a step did to each robot; `poses` are true poses, shape (robots, 3): x, y in m and heading in rad."""
+    """What a step did to each robot.
+
+    `poses` are true poses in the frame of the playground, shape (robots, 3): x, y in m and heading in rad.
+    """
 
     observations: Observations
     rewards: Floats
@@ -63,6 +66,8 @@ class Simulation:
         self._starts = Starts(playground, task.start)
         self._playground, self._offsets = tiled(playground, copies)
         self._robots_per_copy = robots
+        self._origins = np.array([(x, y, 0.0) for x, y in self._offsets for _ in range(robots)])
+        """Pose of each robot's copy, shape (robots, 3)."""
         self.names = tuple(f"robot_{number}" for number in range(copies * robots))
         self._read = dict.fromkeys((*task.observed, *(["ground"] if task.follows_line else [])))
         """Names of the sensors that are read, in order."""
@@ -147,7 +152,7 @@ class Simulation:
         self._steps[new] = self._lost_steps[new] = 0
         rewards[new], terminated[new] = 0.0, False
         observations = observe(self.task.observed, [words[sensor] for sensor in self.task.observed])
-        return Outcome(observations, rewards, terminated, self._steps >= self.task.steps, poses)
+        return Outcome(observations, rewards, terminated, self._steps >= self.task.steps, poses - self._origins)
 
     def _rewards(self, before: Floats, after: Floats, contact: Bools, is_dark: Bools) -> Floats:
         moved = after - before

@@ -22,7 +22,7 @@ class ThymioVectorEnv(gymnasium.vector.VectorEnv[Array, Array, npt.NDArray[Any]]
 
     A robot whose episode has ended begins another in the next step, whatever its action (`AutoresetMode.NEXT_STEP`).
     After `reset(seed=…)` the same actions give the same bits; an episode is not the one that `ThymioEnv` has with this
-    seed. `infos["pose"]` has the true poses, shape (num_envs, 3), from the corner of the world's first copy.
+    seed. `infos["pose"]` has the true poses in the frame of the playground, shape (num_envs, 3).
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012  # Gymnasium's declaration
