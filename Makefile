@@ -44,9 +44,8 @@ check: lint $(VENV)/.ready-test  ## lint and quick tests (no ROS, browser, socke
 	@$(PYTHON) -m pytest -n 2 -q -m 'not process and not browser and not ros and not slow' \
 	    $(addprefix tests/,$(QUICK)) $(ARGS)
 
-# One worker more than processors, because many tests wait for other processes.
 test: platform $(VENV)/.ready-test web  ## run all tests in parallel; ARGS='-n 0 -k name' goes to pytest
-	@$(PYTHON) -m pytest -n $$(( $$(getconf _NPROCESSORS_ONLN) + 1 )) --maxprocesses 4 $(ARGS)
+	@$(PYTHON) -m pytest -n auto --maxprocesses 4 $(ARGS)
 
 lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .

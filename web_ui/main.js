@@ -45,7 +45,7 @@ import { Workspace } from "./shell/workspace.js";
 import { Speaker } from "./sound/speaker.js";
 import { GraphicsNotice } from "./stage/graphics_notice.js";
 import { useHand } from "./stage/hands/use_hand.js";
-import { isWatched, PARAMETERS, subscriptionKey } from "./state/names.js";
+import { isWatched, PARAMETERS, subscriptionKey, urgencyOf } from "./state/names.js";
 import { Store } from "./state/store.js";
 import { h } from "./ui/dom.js";
 import { MessageAt } from "./ui/message_at.js";
@@ -118,6 +118,7 @@ async function main() {
       program.receive(event, store.state.selected);
     },
     wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
+    urgency: (topic) => urgencyOf(store.state, topic),
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
   const actions = new Actions({

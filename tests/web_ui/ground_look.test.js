@@ -80,6 +80,12 @@ test("a table has a border on all sides, the desk playground has walls", () => {
   const around = table.edges.reduce((sum, [[x, y], [toX, toY]]) => sum + Math.hypot(toX - x, toY - y), 0);
   const { min, max } = table.bounds;
   assert.ok(Math.abs(around - 2 * (max.x - min.x + max.y - min.y)) < 1e-6);
-  assert.equal(groundOf(markersOf("desk.json").values())?.isWalled, true);
+  const walled = [...markersOf("desk.json").values()];
+  assert.equal(groundOf(walled)?.isWalled, true);
+  const called = walled.map((marker) => (marker.ns.startsWith("solid/") ? { ...marker, ns: "solid/any name" } : marker));
+  assert.equal(groundOf(called)?.isWalled, true, "walls are known by where they stand");
+  const north = Math.max(...called.map(({ pose }) => pose.position.y));
+  const gap = called.filter(({ pose }) => pose.position.y !== north);
+  assert.equal(groundOf(gap)?.isWalled, false);
   assert.equal(groundOf([]), null);
 });

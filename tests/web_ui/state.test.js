@@ -313,6 +313,7 @@ test("with many robots, beams and values are subscribed to for the selected robo
     simulator: null,
     sensors: [],
     sensorsShown: true,
+    topics: [],
     robots: Object.fromEntries(Array.from({ length: count }, (_, number) => [`r${number}`, NEW_ROBOT])),
   });
   const topics = ["/r0/_ground_truth/odom", "/r0/_led/state", "/r0/_raw/proximity", "/r1/_raw/proximity", "/_markers"];

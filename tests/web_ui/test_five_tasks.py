@@ -226,7 +226,8 @@ def test_the_five_tasks_by_what_the_page_says(hand, ros, tmp_path):
     hand.choose("button", "Show me the topics")
     hand.choose("button", "Copy the command", "#welcome-ros")
     playwright.expect(page.locator("#welcome-ros")).to_contain_text("Copied")
-    run_as_node(ros, page, page.evaluate("navigator.clipboard.readText()"))
+    copied = page.wait_for_function("navigator.clipboard.readText()")  # truthy: the browser writes it a moment later
+    run_as_node(ros, page, copied.json_value())
     page.keyboard.press("Escape")
     playwright.expect(page.locator(".welcome-starts")).to_have_count(0)
     page.wait_for_function("() => document.activeElement.id === 'view'")  # the focus is not lost with the cards

@@ -44,6 +44,12 @@ WATCH = """() => {
             return draw.apply(this, how);
         };
     }
+    window.keptFrames = 0;
+    const copy = WebGL2RenderingContext.prototype.blitFramebuffer;
+    WebGL2RenderingContext.prototype.blitFramebuffer = function (...how) {
+        window.keptFrames += 1;
+        return copy.apply(this, how);
+    };
     const request = window.requestAnimationFrame.bind(window);
     window.requestAnimationFrame = (callback) => request((nowMs) => {
         const end = performance.now() + window.slowMs;
@@ -102,6 +108,12 @@ def check(page, what, light=1.0):
 def around(image, place, reach):
     x, y = round(place["x"]), round(place["y"])
     return image[y - reach : y + reach + 1, x - reach : x + reach + 1].reshape(-1, 3)
+
+
+def test_while_the_camera_rests_the_ground_is_copied_and_not_drawn_again(driving):
+    driving.wait_for_function("() => window.keptFrames > 10")
+    pause(driving, True)
+    check(driving, "copied")
 
 
 def test_floor_and_robot_are_seen_at_rest_at_every_level(driving):

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { INITIAL, reduce } from "../../web_ui/state/index.js";
-import { isWatched, subscriptionKey } from "../../web_ui/state/names.js";
+import { isWatched, subscriptionKey, urgencyOf } from "../../web_ui/state/names.js";
 
 /** @typedef {import("../../web_ui/state/index.js").State} State */
 
@@ -77,27 +77,42 @@ test("a repeated transform is one sample, and the next one follows it", () => {
 test("the selected robot, and a few robots, get their poses from their own topics", () => {
   const many = standing(NAMES);
   assert.equal(many.selected, "a");
-  assert.equal(reported(many, frames("a")), many);
+  assert.equal(reported(many, frames("a")).robots.a, many.robots.a);
   const few = standing(["a", "b"]);
   assert.equal(reported(few, frames("b")), few);
 });
 
-test("unknown frames place no robot", () => {
+test("unknown frames place no robot, and that is noted", () => {
   const many = standing(NAMES);
-  assert.equal(reported(many, frames("b", { odometry: "wheels" })), many);
-  assert.equal(reported(many, frames("b").slice(1)), many);
+  const noted = { ...many.robots.b, isByTransforms: false };
+  const ignored = reported(many, frames("b", { odometry: "wheels" }));
+  assert.deepEqual(ignored.robots.b, noted);
+  assert.deepEqual(reported(many, frames("b").slice(1)).robots.b, noted);
+  assert.equal(reported(ignored, frames("b", { odometry: "wheels" })), ignored);
+  const placed = reported(ignored, frames("b"));
+  assert.equal(placed.robots.b.isByTransforms, true);
+  assert.equal(reported(placed, frames("x")), placed);
 });
 
-test("robot topics are subscribed to until the transforms have arrived, and again while paused", () => {
+test("poses are subscribed to while there are no transforms of a robot, and while paused", () => {
   const topics = ["/tf", "/a/joint_states", "/b/_ground_truth/odom", "/b/joint_states", "/b/_led/state"];
   const watched = (/** @type {State} */ state) => topics.filter((topic) => isWatched(state, topic));
   const many = standing(NAMES);
   const placed = reported(many, frames("b"));
-  assert.deepEqual(watched(many), topics);
-  assert.deepEqual(watched(placed), ["/tf", "/a/joint_states", "/b/_led/state"]);
+  const withoutPoses = ["/tf", "/a/joint_states", "/b/_led/state"];
+  assert.deepEqual(watched(many), withoutPoses, "they will come");
+  assert.deepEqual(watched({ ...many, topics: [] }), topics, "nobody publishes transforms");
+  assert.deepEqual(watched(reported(many, frames("c"))), topics, "they are not of this robot");
+  assert.deepEqual(watched(placed), withoutPoses);
   assert.deepEqual(watched(paused(placed, true)), topics);
   assert.deepEqual(watched(paused(placed, false)), watched(placed));
   assert.deepEqual(watched(standing(["a", "b"])), topics.slice(1));
-  const states = [many, placed, paused(placed, true), reduce(placed, { type: "select", robot: "b" }), standing(["a"])];
+  const states = [many, reported(many, frames("c")), placed, paused(placed, true), reduce(placed, { type: "select", robot: "b" }), standing(["a"])];
   assert.equal(new Set(states.map(subscriptionKey)).size, states.length);
+});
+
+test("what concerns all robots is subscribed to first, then the selected robot", () => {
+  const topics = ["/b/_pen/trail", "/b/_led/state", "/a/_led/state", "/tf", "/a/_raw/ground", "/simulator/_state"];
+  const order = [...topics].sort((one, other) => urgencyOf({ selected: "a" }, one) - urgencyOf({ selected: "a" }, other));
+  assert.deepEqual(order, ["/tf", "/simulator/_state", "/a/_led/state", "/a/_raw/ground", "/b/_led/state", "/b/_pen/trail"]);
 });

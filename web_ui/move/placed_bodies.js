@@ -2,6 +2,7 @@
 // Only a preview for the user: the simulator decides whether a position is free.
 
 import { MARKER } from "../state/markers.js";
+import { yawOf } from "../state/robot.js";
 
 /** @typedef {[number, number]} Point  meters */
 /** @typedef {{ x: number, y: number, yaw: number }} Pose */
@@ -115,9 +116,8 @@ function robots({ robots: known, simulator }) {
 }
 
 /** @param {Marker} marker @returns {PlacedBody} */
-function bodyOf({ ns, type, pose: { position, orientation: q }, scale, points }) {
-  const yaw = Math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
-  const pose = { x: position.x, y: position.y, yaw };
+export function bodyOf({ ns, type, pose: { position, orientation }, scale, points }) {
+  const pose = { x: position.x, y: position.y, yaw: yawOf(orientation) };
   const name = ns.slice(ns.indexOf("/") + 1);
   const [x, y] = [scale.x / 2, scale.y / 2];
   if (type === MARKER.CUBE) {

@@ -23,13 +23,15 @@ export class Client {
    * @param {string} [options.token]                 access token; "" is none
    * @param {(event: ClientEvent) => void} options.emit
    * @param {(topic: string) => boolean} options.wants
+   * @param {(topic: string) => number} options.urgency   topics with a smaller number are subscribed to first
    * @param {string[]} options.parameters
    */
-  constructor({ address, token = "", emit, wants, parameters }) {
+  constructor({ address, token = "", emit, wants, urgency, parameters }) {
     this.address = address;
     this.token = token;
     this.emit = emit;
     this.wants = wants;
+    this.urgency = urgency;
     this.parameters = parameters;
     /** @type {Session | null} */ this.session = null;
   }
@@ -45,6 +47,7 @@ export class Client {
         send: (data) => socket.send(/** @type {string | BufferSource} */ (data)),
         emit: this.emit,
         wants: this.wants,
+        urgency: this.urgency,
         parameters: this.parameters,
       });
       this.emit({ type: "connected" });

@@ -81,12 +81,14 @@ export class Session {
    * @param {(data: string | Uint8Array) => void} options.send
    * @param {(event: SessionEvent) => void} options.emit
    * @param {(topic: string) => boolean} options.wants  whether to subscribe to a topic
+   * @param {(topic: string) => number} [options.urgency]   topics with a smaller number are subscribed to first
    * @param {string[]} [options.parameters]             parameters to watch
    */
-  constructor({ send, emit, wants, parameters = [] }) {
+  constructor({ send, emit, wants, urgency = () => 0, parameters = [] }) {
     this.send = send;
     this.emit = emit;
     this.wants = wants;
+    this.urgency = urgency;
     this.watched = parameters;
     this.names = new Namespace();
     /** @type {Map<number, Channel>} */ this.channels = new Map();
@@ -219,20 +221,21 @@ export class Session {
   /** @param {Channel[]} channels */
   advertise(channels) {
     for (const channel of channels) this.channels.set(channel.id, channel);
-    if (this.names.choose([...this.channels.values()].map(({ topic }) => topic))) this.#rename();
-    else this.#subscribe(channels);
-    this.#emitChannels();
+    const isRenamed = this.names.choose([...this.channels.values()].map(({ topic }) => topic));
+    if (isRenamed) this.#forgetNames();
+    this.#emitChannels(); // first: what is wanted depends on how many robots there are
+    this.refresh();
+    if (!isRenamed) return;
+    this.emitServices();
+    this.watchParameters();
   }
 
   /** The namespace has changed: all names are different. */
-  #rename() {
+  #forgetNames() {
     const subscriptionIds = [...this.subscriptions.keys()];
     if (subscriptionIds.length > 0) this.#sendJson({ op: "unsubscribe", subscriptionIds });
     this.subscriptions.clear();
     this.published.clear();
-    this.#subscribe([...this.channels.values()]);
-    this.emitServices();
-    this.watchParameters();
   }
 
   /** Call when `wants` may return other results: updates the subscriptions. */
@@ -247,9 +250,9 @@ export class Session {
   /** Subscribe to the wanted channels among these. @param {Channel[]} channels */
   #subscribe(channels) {
     const subscriptions = [];
-    for (const channel of channels) {
-      const topic = this.names.inner(channel.topic);
-      if (channel.encoding !== "cdr" || topic === null || !this.wants(topic)) continue;
+    const named = channels.map((channel) => ({ channel, topic: this.names.inner(channel.topic) ?? "" }));
+    const wanted = named.filter(({ channel, topic }) => channel.encoding === "cdr" && topic !== "" && this.wants(topic));
+    for (const { channel, topic } of wanted.sort((one, other) => this.urgency(one.topic) - this.urgency(other.topic))) {
       const definition = this.#definitionOf(channel);
       if (definition === null) continue;
       const id = this.nextId++;

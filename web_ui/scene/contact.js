@@ -2,11 +2,12 @@
 
 import * as THREE from "three";
 
+import { bodyOf, placed } from "../move/placed_bodies.js";
 import { MARKER } from "../state/markers.js";
 import { overlayMaterial } from "./materials.js";
 
 /** @typedef {import("../state/markers.js").Marker} Marker */
-/** @typedef {[number, number]} Point */
+/** @typedef {import("../move/placed_bodies.js").Point} Point */
 
 const COLOR = new THREE.Color(0x3a2614);
 const ABOVE_M = 0.0025; // above every layer of paint
@@ -16,7 +17,6 @@ const WIDE_M = 0.034;
 const HIGH_M = 0.1;
 /** How far the shade is moved away from the light, in widths. */
 const MOVED = { x: 0.36, y: 0.2 };
-const ROUND = 20;
 
 export class ContactShade {
   constructor() {
@@ -66,27 +66,12 @@ export class ContactShade {
 }
 
 /** The outline of an upright solid on the ground, counter-clockwise; null for others. @param {Marker} marker @returns {Point[] | null} */
-function footprint({ ns, type, pose: { position, orientation }, scale }) {
-  if (!ns.startsWith("solid/") || position.z - scale.z / 2 > 0.01) return null;
-  const { x, y, z, w } = orientation;
-  const yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
-  /** @type {Point[]} */ let local;
-  if (type === MARKER.CUBE) {
-    const [halfX, halfY] = [scale.x / 2, scale.y / 2];
-    local = [
-      [-halfX, -halfY],
-      [halfX, -halfY],
-      [halfX, halfY],
-      [-halfX, halfY],
-    ];
-  } else if (type === MARKER.CYLINDER) {
-    local = Array.from({ length: ROUND }, (_, at) => {
-      const angle = (2 * Math.PI * at) / ROUND;
-      return /** @type {Point} */ ([(scale.x / 2) * Math.cos(angle), (scale.y / 2) * Math.sin(angle)]);
-    });
-  } else return null;
-  const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
-  return local.map(([px, py]) => [position.x + px * cos - py * sin, position.y + px * sin + py * cos]);
+function footprint(marker) {
+  const { ns, type, pose, scale } = marker;
+  if (!ns.startsWith("solid/") || pose.position.z - scale.z / 2 > 0.01) return null;
+  if (type !== MARKER.CUBE && type !== MARKER.CYLINDER) return null;
+  const body = bodyOf(marker);
+  return placed(body.outline, body.pose)[0];
 }
 
 /** A convex outline, moved outward by a width. @param {Point[]} ring @param {number} wide @returns {Point[]} */

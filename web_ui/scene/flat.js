@@ -4,6 +4,7 @@
 import * as THREE from "three";
 
 import { hasPicture, MARKER } from "../state/markers.js";
+import { yawOf } from "../state/robot.js";
 import { DESK, groundColor, wallColor } from "./colors.js";
 import { LIGHT } from "./lights.js";
 import { placed, ROBOT_OUTLINE } from "../move/placed_bodies.js";
@@ -124,10 +125,9 @@ export class FlatView {
   /** @param {CanvasRenderingContext2D} context @param {Marker} marker @param {() => void} changed */
   #marker(context, marker, changed) {
     const { type, pose, scale, color, points, colors } = marker;
-    const { w, x, y, z } = pose.orientation;
     context.save();
     context.translate(pose.position.x, pose.position.y);
-    context.rotate(Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)));
+    context.rotate(yawOf(pose.orientation));
     const isSolid = marker.ns.startsWith("solid/");
     context.fillStyle = context.strokeStyle = isSolid ? css(wallColor(color), color.a) : css(groundColor(color), color.a);
     const picture = hasPicture(marker) ? this.#picture(marker, changed) : null;

@@ -35,9 +35,9 @@ export class StillGround {
       return;
     }
     if (!this.isKept) this.#keep(renderer, scene, camera, size);
-    this.#copy(renderer, size);
     renderer.autoClear = false;
-    renderer.clearDepth();
+    renderer.clearDepth(); // before the copy: the first clearing of a frame empties the canvas wholly
+    this.#copy(renderer, size);
     camera.layers.set(0);
     renderer.render(scene, camera);
     renderer.autoClear = true;
@@ -62,6 +62,7 @@ export class StillGround {
     renderer.state.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     gl.disable(gl.SCISSOR_TEST);
     gl.blitFramebuffer(0, 0, x, y, 0, 0, x, y, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    renderer.state.bindFramebuffer(gl.READ_FRAMEBUFFER, null); // else its cache would not notice that this changes with FRAMEBUFFER
   }
 
   dispose() {

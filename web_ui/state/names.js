@@ -50,11 +50,12 @@ const DRAWN = /^(?:_ground_truth|joint_states|_led|buttons|_pen|_sound|_aseba)\b
 /** Topics that the transforms replace while the simulation runs. */
 const POSE_TOPICS = /^(?:_ground_truth|joint_states)\b/;
 
-/** @typedef {{ isByTransforms: boolean, isReal?: boolean }} Placed */
+/** @typedef {{ isByTransforms: boolean | null, isReal?: boolean }} Placed  null: no transforms have come */
 /**
  * @typedef {object} SubscriptionState   the part of the state that determines the subscriptions
  * @property {Readonly<Record<string, Placed>>} robots
  * @property {string} selected
+ * @property {readonly string[]} topics              all that are published
  * @property {{ paused: boolean } | null} simulator
  * @property {readonly { name: string }[]} sensors   sensors that declare rows of the sensor panel
  * @property {boolean} sensorsShown                  whether the sensor panel is open
@@ -89,8 +90,27 @@ export function isWatched(state, topic) {
   const sensor = RAW_TOPIC.exec(topic)?.[3];
   if (sensor !== undefined && !isSensorShown(state, sensor)) return false;
   if (isSensed(state, part.robot)) return true;
-  if (POSE_TOPICS.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
+  if (POSE_TOPICS.test(part.name) && !needsPose(state, part.robot)) return false;
   return DRAWN.test(part.name);
+}
+
+/** Transforms give a pose, unless time stands still or they are not of this robot. @param {SubscriptionState} state @param {string} robot */
+function needsPose({ robots, simulator, topics }, robot) {
+  if (simulator?.paused || !topics.includes(TRANSFORMS)) return true;
+  return robots[robot]?.isByTransforms === false;
+}
+
+/**
+ * How soon a topic is subscribed to: what concerns all robots first, then the selected robot, then the others' lights.
+ *
+ * @param {Pick<SubscriptionState, "selected">} state
+ * @param {string} topic
+ */
+export function urgencyOf({ selected }, topic) {
+  const { robot, name } = splitTopic(topic) ?? { robot: null, name: topic };
+  if (robot === null) return 0;
+  if (robot === selected) return 1;
+  return name === "_led/state" ? 2 : 3;
 }
 
 /**
@@ -110,8 +130,8 @@ export function subscriptionKey(state) {
   const real = Object.entries(state.robots).flatMap(([name, { isReal }]) => (isReal ? [`/${name}`] : []));
   const shown = [sensors, ...real].join(" ");
   if (!hasManyRobots(state)) return shown;
-  const placed = Object.values(state.robots).filter(({ isByTransforms }) => isByTransforms).length;
-  return `${shown} ${state.selected} ${placed} ${state.simulator?.paused}`;
+  const placed = Object.values(state.robots).map(({ isByTransforms }) => Number(isByTransforms ?? 2));
+  return `${shown} ${state.selected} ${placed.join("")} ${state.simulator?.paused}`;
 }
 
 export const PARAMETERS = /** @type {const} */ ({

@@ -31,7 +31,7 @@ import { BUTTONS } from "./names.js";
  * @property {ArrayLike<number> | null} samples                  of its last sound other than a tone
  * @property {ReadonlyMap<string, Marker>} trail                 the line drawn by its pen
  * @property {boolean} isReal                                    without ground truth: drawn where its odometry is
- * @property {boolean} isByTransforms                            whether its pose comes from the shared transforms
+ * @property {boolean | null} isByTransforms   whether its pose comes from the shared transforms; null: none have come
  */
 
 /** @type {Robot} */
@@ -50,7 +50,7 @@ export const NEW_ROBOT = {
   samples: null,
   trail: new Map(),
   isReal: false,
-  isByTransforms: false,
+  isByTransforms: null,
 };
 
 /** One row per topic, or per folder of topics (then `leaf` is the rest of the name). */
@@ -93,13 +93,18 @@ function poseSample({ header, pose }, nowMs) {
   return { pose: poseOf(position, orientation), stampNs: sec * 1e9 + nanosec, arrivedMs: nowMs };
 }
 
+/** The angle about the vertical axis, in radians. @param {{ x: number, y: number, z: number, w: number }} quaternion */
+export function yawOf({ x, y, z, w }) {
+  return Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+}
+
 /**
  * @param {{ x: number, y: number, z: number }} place
  * @param {{ x: number, y: number, z: number, w: number }} q
  * @returns {Pose}
  */
 export function poseOf({ x, y, z }, q) {
-  const yaw = Math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+  const yaw = yawOf(q);
   const roll = Math.atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y));
   const pitch = Math.asin(Math.max(-1, Math.min(1, 2 * (q.w * q.y - q.z * q.x))));
   return { x, y, z, yaw, roll, pitch };

@@ -14,8 +14,8 @@ const BODY = "base_link";
 const WHEELS = /** @type {const} */ ({ left: "left_wheel_link", right: "right_wheel_link" });
 
 /**
- * Set the poses of robots from a TFMessage, unless their own topics are subscribed to. Robots without frames in it are
- * unchanged.
+ * Set the poses of robots from a TFMessage, unless their own topics are subscribed to. Of robots that are not in the
+ * first one it is noted that they need their own topics.
  *
  * @template {{ robots: Readonly<Record<string, Robot>>, selected: string }} S
  * @param {S} state
@@ -33,7 +33,10 @@ export function applyTransforms(state, message, nowMs) {
     const frame = (/** @type {string} */ word) => (name === "" ? word : `${name}/${word}`);
     const odometry = frames.get(frame(ODOMETRY));
     const body = frames.get(frame(BODY));
-    if (odometry?.header.frame_id !== MAP || body?.header.frame_id !== frame(ODOMETRY)) continue;
+    if (odometry?.header.frame_id !== MAP || body?.header.frame_id !== frame(ODOMETRY)) {
+      if (robot.isByTransforms === null) moved[name] = { ...robot, isByTransforms: false };
+      continue;
+    }
     const { sec, nanosec } = body.header.stamp;
     const stampNs = sec * 1e9 + nanosec;
     const isNew = robot.latest?.stampNs !== stampNs;
