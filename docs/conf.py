@@ -30,11 +30,13 @@ html_title = project
 myst_enable_extensions = ["attrs_inline"]
 myst_heading_anchors = 4
 
-# Public interfaces only: what docs/aseba_vm.md, docs/plugins.md and the page about grading promise.
+# Public interfaces only: what docs/aseba_vm.md, docs/plugins.md, docs/reinforcement-learning.md and the page about
+# grading promise.
 autodoc2_packages = [
     {"path": "aseba_vm", "exclude_dirs": ["cli", "jit", "__pycache__"]},
     {"path": "thymio_sim_ros/testing", "module": "thymio_sim_ros.testing"},
     {"path": "thymio_sim_ros/sim/plugin_api", "module": "thymio_sim_ros.sim.plugin_api"},
+    {"path": "thymio_sim_ros/rl", "module": "thymio_sim_ros.rl"},
     {"path": "thymio_sim_ros/tf", "module": "thymio_sim_ros.tf"},
 ]
 autodoc2_output_dir = "docs/apidocs"

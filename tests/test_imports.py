@@ -81,6 +81,8 @@ RULES = {
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
+    f"{OURS}.rl": Rule(_names("loading", "rl", "runner", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
+    f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
     f"{OURS}.testing": Rule(_names("device", "loading", "runner", "sim", "testing"), frozenset({"pytest"})),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
