@@ -1,7 +1,8 @@
 """Aseba ports: an event from a client to a program and back in ms, and sixteen robots whose clients poll at 10 Hz.
 
 Each robot has a client of its own in another process, which reads all variables ten times per second, as Studio and
-thymiodirect do. "Simulated time" is the time that a timer of the first robot's program counts, per wall time. Needs
+thymiodirect do. In the row with a flood, another client sends requests to the first robot without pause, and the second
+robot is polled. "Simulated time" is the time that a timer of the first robot's program counts, per wall time. Needs
 ROS.
 """
 
@@ -17,6 +18,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from aseba_vm.protocol import GetVariables, ListNodes, NodePresent, UserMessage, Variables
+from benchmarks.lib.flood import flooded
 from benchmarks.lib.report import Goal, Report, Table
 from benchmarks.lib.scenes import grid
 from tests.network.aseba_client import AsebaClient
@@ -80,6 +82,18 @@ def poll(clients: list[AsebaClient], seconds: float) -> tuple[list[float], int, 
     return waits, late, counted * TICK_S / passed_s
 
 
+def flood_waits(client: AsebaClient, seconds: float) -> list[float]:
+    """Milliseconds of requests to the second robot, in ascending order."""
+    pauses, waits = random.Random(2), []
+    end_s = time.monotonic() + seconds
+    while time.monotonic() < end_s:
+        time.sleep(pauses.uniform(*PAUSE_S))
+        begin_s = time.monotonic()
+        client.ask(GetVariables(0, 2, 0, 256), Variables)
+        waits.append(1000.0 * (time.monotonic() - begin_s))
+    return sorted(waits)
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add options."""
     parser.add_argument("--events", type=int, default=500, help="events that are sent")
@@ -116,16 +130,20 @@ def measure(options: argparse.Namespace) -> Report:
         waits = sorted(latency(clients[0], options.events))
     with served(options.robots) as clients:
         polls, late, factor = poll(clients, options.seconds)
+    with served(2) as clients, flooded(clients[0].port):
+        beside = flood_waits(clients[1], options.seconds)
     polls.sort()
     rows = [
         ["an event and its answer, one robot", *_quantiles(waits)],
         [f"{options.robots} robots, 512 words each, 10 Hz", *_quantiles(polls)],
+        ["a robot beside one that is flooded", *_quantiles(beside)],
     ]
     p99 = waits[int(0.99 * len(waits))]
     return Report(
         [Table(["Aseba ports; ms", "p50", "p90", "p99", "longest"], rows)],
         [
             Goal("99th percentile of an event and its answer", ALLOWED_MS, p99, "ms"),
+            Goal("99th percentile of a request beside a flood", ALLOWED_MS, beside[int(0.99 * len(beside))], "ms"),
             Goal("simulated time per wall time with polls", 0.95, factor, is_least=True),
             Goal("polls that were late", 0.01 * len(polls) / options.robots, late),
         ],

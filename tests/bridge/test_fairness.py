@@ -72,8 +72,8 @@ def test_a_client_with_few_messages_does_not_wait_for_throttled_clients(monkeypa
     async def scenario() -> None:
         async with bridge() as server, server.client() as client:
             await client.settle()
-            monkeypatch.setattr("thymio_sim_ros.bridge.server.time", SlowClock())
-            async with server.server._throttle_lock:
+            monkeypatch.setattr("thymio_sim_ros.bridge.throttle.time", SlowClock())
+            async with server.server._throttle._pausing:
                 for _ in range(20):
                     await client.settle()
 

@@ -16,6 +16,7 @@ class AsebaClient:
     """One connection to a port of this computer."""
 
     def __init__(self, port: int) -> None:
+        self.port = port
         self.stream = socket.create_connection(("127.0.0.1", port), DEADLINE_S)
         self.stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._reader = FrameReader()

@@ -37,6 +37,7 @@ class Nodes:
         self.is_blocked = False
         self.left = threading.Event()
         self.network = None
+        self.largest_group = 0
 
     def connect(self, client):
         self.clients.add(client)
@@ -46,6 +47,7 @@ class Nodes:
         self.left.set()
 
     def send(self, client, messages):
+        self.largest_group = max(self.largest_group, len(messages))
         for message in messages:
             if isinstance(message, ListNodes):
                 self.network.deliver([NodePresent(self.number, message.version)], client)
@@ -222,6 +224,18 @@ def test_a_client_pauses_while_too_many_of_its_messages_wait(make):
     assert flood(client, encode(Run(0, 99)) * 1000)
     bench.nodes[0].is_blocked = False
     assert bench.client().ask(ListNodes(0, 5), NodePresent)  # accepted: the limit is for each client
+
+
+def test_many_messages_at_once_are_handled_in_small_groups_between_those_of_others(make):
+    """A quarter of a megabyte, handled at once, delayed other clients by more than a second."""
+    bench = make(robots=2)
+    client, other = bench.client(1), bench.client(2)
+    client.ask(ListNodes(0, 5), NodePresent)
+    client.stream.settimeout(DEADLINE_S)
+    client.stream.sendall(encode(Run(0, 99)) * 20_000)
+    assert other.ask(ListNodes(0, 5), NodePresent)
+    assert client.ask(ListNodes(0, 5), NodePresent)
+    assert 1 < bench.nodes[0].largest_group < 100
 
 
 def test_a_port_that_is_taken_is_reported(make):

@@ -35,6 +35,7 @@ from thymio_sim_ros.bridge.switchboard.events import Command, Data, Event, Remov
 from thymio_sim_ros.bridge.switchboard.outcome import Delivery
 from thymio_sim_ros.bridge.switchboard.subscriptions import Routes
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
+from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
 
 __all__ = ["BridgeServer", "EventSink", "ServerSettings"]
@@ -50,8 +51,6 @@ BACKLOG = 128
 _ACCEPTED_AT_ONCE = 4
 """Connections accepted in one iteration of the loop. A handshake takes 3 ms, during which no client is served."""
 _NO_SENDERS: tuple[Routes, tuple[SendFunction, ...]] = ((), ())
-_SMALL_SHARE = 0.05
-"""Share of the loop's time below which a client is not throttled."""
 _TIME_SLOT = -1
 """Key of the newest time in a send queue; no subscription has this ID."""
 
@@ -111,8 +110,7 @@ class BridgeServer:
         """Guards the switchboard and the send queues."""
         self._frames: dict[type, tuple[ServerMessage, bytes]] = {}
         """Encoded frames of the first messages to new clients, by type."""
-        self._throttle_lock: asyncio.Lock
-        """Only one client is throttled at a time: see `_throttle`."""
+        self._throttle: Throttle
         self._is_limit_logged = False
         self._is_closing = False
         self._connections: set[SharedConnection] = set()
@@ -121,7 +119,7 @@ class BridgeServer:
     async def start(self, listeners: Iterable[socket]) -> None:
         """Serve on bound sockets; the server takes ownership of them."""
         self._loop = asyncio.get_running_loop()
-        self._throttle_lock = asyncio.Lock()
+        self._throttle = Throttle(SLICE_S)
         settings = self._settings
         # `websockets` logs each rejected handshake with a traceback; `HandshakeCheck` logs the ones that matter.
         log = logging.getLogger(f"{__name__}.websockets")
@@ -247,7 +245,7 @@ class BridgeServer:
                 queue.send_control(self._handshake_frame(message))
         self._is_limit_logged = self._is_limit_logged and len(self._queues) >= self._settings.max_clients
         try:
-            await self._throttle(time.thread_time() - began_s)
+            await self._throttle.pause(time.thread_time() - began_s)
             await self._read(client, connection)
         except ConnectionClosed:
             pass  # a lost connection is handled like a closed one
@@ -259,34 +257,16 @@ class BridgeServer:
             self._post_events(events)
 
     async def _read(self, client: int, connection: SharedConnection) -> None:
-        """Process messages of a client until it disconnects.
-
-        The client is throttled after each `SLICE_S` of processor time, unless its share of the loop's time is small:
-        such a client must not wait behind the busy ones.
-        """
-        spent_s, since_s = 0.0, time.monotonic()
+        """Process messages of a client until it disconnects."""
+        spent = self._throttle.client()
         async for frame in connection:
             if self._is_closing:
                 return
-            began_s = time.thread_time()
-            self._receive(client, frame)
-            spent_s += time.thread_time() - began_s
+            with spent.measured():
+                self._receive(client, frame)
             while self._sink.is_full(client) and not self._is_closing:
                 await asyncio.sleep(_FULL_PAUSE_S)
-            if spent_s >= SLICE_S:
-                if spent_s > _SMALL_SHARE * (time.monotonic() - since_s):
-                    await self._throttle(spent_s)
-                spent_s, since_s = 0.0, time.monotonic()
-
-    async def _throttle(self, spent_s: float) -> None:
-        """Pause a client for the processor time that it used; only one client is paused at a time.
-
-        All busy clients together therefore use at most half of the loop's time, and other clients are served between
-        two of them, regardless of their number.
-        """
-        async with self._throttle_lock:
-            if not self._is_closing:
-                await asyncio.sleep(spent_s)
+            await spent.pause_if_busy()
 
     def _handshake_frame(self, message: ServerMessage) -> bytes:
         """Encode one of the first messages to a client; cached, because 1500 topics are 2 MB for each client."""

@@ -1,7 +1,8 @@
 """The Aseba protocol on TCP: one port for each network, or one port for all.
 
 Any number of tools, up to a limit, can be connected to one robot at a time. Each frame is written by one call with
-Nagle's algorithm off, as `thymiodirect` needs it (docs/spec/aseba-protocol.md section 1.1).
+Nagle's algorithm off, as `thymiodirect` needs it (docs/spec/aseba-protocol.md section 1.1). What a client sends is read
+in small pieces, and a client that uses much of the loop's time is paused, so that none delays another one for long.
 """
 
 from __future__ import annotations
@@ -11,10 +12,10 @@ import contextlib
 import errno
 import socket
 from collections.abc import Callable, Sequence
-from functools import partial
 
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode, encode
 from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import LAST_PORT, OFF, NetworkSettings
 
@@ -26,8 +27,12 @@ MAX_PAYLOAD = 4096
 """Longest accepted payload in bytes; tools send 516 at most. Other protocols are recognized by longer ones."""
 MAX_UNSENT = 1 << 20
 """Bytes that wait for a client that does not read; it is disconnected beyond them."""
+_READ_BYTES = 512
+"""Bytes of a client that are handled without a break: about fifty messages, half a millisecond."""
+_SLICE_S = 0.002
+"""Processor time after which a busy client is paused for as long."""
 _RETRY_S = 0.005
-"""Time after which a client that had to pause is read again."""
+"""Time after which a client that had to pause, because its messages wait for the robots, is read again."""
 
 Report = Callable[[str, str], None]
 """Takes a warning: what it is about, so that repetitions can be limited, and the text."""
@@ -39,6 +44,7 @@ class AsebaServer:
     def __init__(self, hub: Hub, settings: NetworkSettings, report: Report) -> None:
         """Serve nothing until `start`."""
         self._hub, self._settings, self._report = hub, settings, report
+        self._throttle = Throttle(_SLICE_S)
         self._ports: dict[int, _Port] = {}
         """Ports by place; that of all networks is 0."""
         self.ports_changed: Callable[[], None] = lambda: None
@@ -65,7 +71,7 @@ class AsebaServer:
         place = 0 if self._settings.is_aseba_shared else network.place
         if place not in self._ports:
             first = self._settings.aseba_port
-            port = _Port(self._report)
+            port = _Port(self._report, self._throttle)
             self._ports[place] = port
             try:
                 port.open(self._settings.aseba_address, first + place if first else 0)
@@ -88,12 +94,14 @@ class AsebaServer:
 class _Port:
     """One TCP port, the networks behind it and its clients."""
 
-    def __init__(self, report: Report) -> None:
-        self.report = report
+    def __init__(self, report: Report, throttle: Throttle) -> None:
+        self.report, self.throttle = report, throttle
         self.number = OFF
         self.networks: list[Network] = []
         self.clients: set[_Client] = set()
-        self._tasks: list[asyncio.Task[None]] = []
+        self._accepting: list[asyncio.Task[None]] = []
+        self._serving: set[asyncio.Task[None]] = set()
+        """One task for each client."""
 
     def open(self, address: str, number: int) -> None:
         """Listen. Raises OSError if the port cannot be used."""
@@ -102,7 +110,7 @@ class _Port:
         listeners = listen(address, number)
         self.number = int(listeners[0].getsockname()[1])
         loop = asyncio.get_running_loop()
-        self._tasks = [loop.create_task(self._accept(listener)) for listener in listeners]
+        self._accepting = [loop.create_task(self._accept(listener)) for listener in listeners]
 
     def add(self, network: Network) -> None:
         """Add a network; clients that are connected become its clients too."""
@@ -118,10 +126,8 @@ class _Port:
 
     def close(self) -> None:
         """Stop listening and disconnect all clients."""
-        for task in self._tasks:
+        for task in (*self._accepting, *self._serving):
             task.cancel()
-        for client in list(self.clients):
-            client.abort()
 
     async def _accept(self, listener: socket.socket) -> None:
         loop = asyncio.get_running_loop()
@@ -134,39 +140,43 @@ class _Port:
                     self.report("accept", f"Aseba port {self.number}: {error.strerror}")
                     await asyncio.sleep(_RETRY_S)
                     continue
-                if len(self.clients) >= MAX_CLIENTS:
+                if len(self._serving) >= MAX_CLIENTS:
                     self.report("full", f"Aseba port {self.number}: found a client, expected at most {MAX_CLIENTS}")
                     accepted.close()
                     continue
-                try:
-                    accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                    await loop.connect_accepted_socket(partial(_Client, self, str(peer[0])), accepted)
-                except OSError:  # the client has disconnected
-                    accepted.close()
+                serving = loop.create_task(self._serve(accepted, str(peer[0])))
+                self._serving.add(serving)
+                serving.add_done_callback(self._serving.discard)
+
+    async def _serve(self, accepted: socket.socket, address: str) -> None:
+        try:
+            accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            reader, writer = await asyncio.open_connection(sock=accepted, limit=_READ_BYTES)
+        except OSError:  # the client has disconnected
+            accepted.close()
+            return
+        client = _Client(self, address, writer)
+        self.clients.add(client)
+        try:
+            for network in self.networks:
+                client.join(network)
+            await client.read(reader)
+        finally:
+            self.clients.discard(client)
+            client.leave_all()
+            writer.transport.abort()
+            with contextlib.suppress(OSError):
+                await writer.wait_closed()  # otherwise asyncio logs the error of a lost connection
 
 
-class _Client(asyncio.Protocol):
+class _Client:
     """One connection."""
 
-    _transport: asyncio.Transport
-
-    def __init__(self, port: _Port, address: str) -> None:
-        self._port, self._address = port, address
-        self._reader = FrameReader(MAX_PAYLOAD)
+    def __init__(self, port: _Port, address: str, writer: asyncio.StreamWriter) -> None:
+        self._port, self._address, self._transport = port, address, writer.transport
+        self._frames = FrameReader(MAX_PAYLOAD)
         self._connections: dict[Network, Connection] = {}
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        assert isinstance(transport, asyncio.Transport)
-        self._transport = transport
-        self._port.clients.add(self)
-        for network in self._port.networks:
-            self.join(network)
-
-    def connection_lost(self, _error: Exception | None) -> None:
-        self._port.clients.discard(self)
-        for connection in self._connections.values():
-            connection.close()
-        self._connections.clear()
+        self._spent = port.throttle.client()
 
     def join(self, network: Network) -> None:
         """Become a client of a network."""
@@ -180,48 +190,53 @@ class _Client(asyncio.Protocol):
         if not self._connections:
             self._transport.close()
 
+    def leave_all(self) -> None:
+        """Leave all networks."""
+        for network in list(self._connections):
+            self.leave(network)
+
     def abort(self) -> None:
         """Disconnect at once."""
         self._transport.abort()
 
-    def data_received(self, data: bytes) -> None:
-        messages = []
+    async def read(self, reader: asyncio.StreamReader) -> None:
+        """Pass messages of the client to the nodes until it disconnects."""
         try:
-            for frame in self._reader.feed(data):
-                try:
-                    messages.append(decode(frame))
-                except ProtocolError as error:  # the frame is complete, so the next ones can be read
-                    self._warn(str(error))
+            while data := await reader.read(_READ_BYTES):
+                with self._spent.measured():
+                    self._receive(data)
+                await asyncio.sleep(0)  # more bytes may be there already: the others come first
+                while any(connection.is_full for connection in self._connections.values()):
+                    await asyncio.sleep(_RETRY_S)
+                await self._spent.pause_if_busy()
         except ProtocolError as error:
             self._warn(f"{error}; disconnected, as this is no Aseba message")
-            self.abort()
-            return
+        except OSError:
+            pass  # a lost connection is handled like a closed one
+
+    def _receive(self, data: bytes) -> None:
+        messages = []
+        for frame in self._frames.feed(data):
+            try:
+                messages.append(decode(frame))
+            except ProtocolError as error:  # the frame is complete, so the next ones can be read
+                self._warn(str(error))
         for connection in list(self._connections.values()):
             connection.send(*messages)
-        self._pause_if_full()
-
-    def _pause_if_full(self) -> None:
-        """Read on when the nodes have handled enough of this client's messages."""
-        if self._transport.is_closing():
-            return
-        if any(connection.is_full for connection in self._connections.values()):
-            self._transport.pause_reading()
-            asyncio.get_running_loop().call_later(_RETRY_S, self._pause_if_full)
-        else:
-            self._transport.resume_reading()
 
     def _send(self, messages: Sequence[Message]) -> None:
-        for message in messages:
-            if self._transport.is_closing():
-                return
-            if self._transport.get_write_buffer_size() > MAX_UNSENT:
-                self._warn(f"does not read {MAX_UNSENT} bytes that it was sent; disconnected")
-                self.abort()
-                return
-            try:
-                self._transport.write(encode(message))
-            except ProtocolError as error:
-                self._warn(f"internal error (please report): {error}")
+        with self._spent.measured():
+            for message in messages:
+                if self._transport.is_closing():
+                    return
+                if self._transport.get_write_buffer_size() > MAX_UNSENT:
+                    self._warn(f"does not read {MAX_UNSENT} bytes that it was sent; disconnected")
+                    self.abort()
+                    return
+                try:
+                    self._transport.write(encode(message))
+                except ProtocolError as error:
+                    self._warn(f"internal error (please report): {error}")
 
     def _warn(self, text: str) -> None:
         self._port.report(f"client {self._address}", f"Aseba port {self._port.number}, client {self._address}: {text}")

@@ -23,6 +23,7 @@ from websockets.asyncio.server import Server
 
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.conversation.clients import Closing
@@ -44,8 +45,6 @@ _PERIOD_S, _IDLE_PERIOD_S = 0.05, 0.5
 """Time between two looks at what is due, with clients and without."""
 _SLICE_S = 0.005
 """Processor time after which a client is paused for as long."""
-_SMALL_SHARE = 0.05
-"""Share of the loop's time below which a client is not paused."""
 _CONGESTED, _DRAINED = 1 << 18, 1 << 15
 """Bytes that wait for a client, from which and below which it counts as slow and as fast again."""
 _KERNEL_BUFFER = 1 << 16
@@ -93,8 +92,7 @@ class TdmServer:
         self._servers: list[asyncio.Server | Server] = []
         self._tasks: set[asyncio.Task[None]] = set()
         self._compiler = ThreadPoolExecutor(1, "tdm-compiler")
-        self._throttle_lock = asyncio.Lock()
-        """Only one client is paused at a time."""
+        self._throttle = Throttle(_SLICE_S)
         self._is_delivering = False
 
     def start(self) -> None:
@@ -229,29 +227,20 @@ class TdmServer:
             self._deliver()
 
     async def _read(self, client: int, peer: Peer) -> None:
-        spent_s, since_s = 0.0, time.monotonic()
+        spent = self._throttle.client()
         async for buffer in peer.buffers():
             if client not in self._peers:
                 return
-            began_s = time.thread_time()
-            compilation = self._manager.receive(client, decode(buffer))
-            asked = self._deliver()
-            spent_s += time.thread_time() - began_s
+            with spent.measured():
+                compilation = self._manager.receive(client, decode(buffer))
+                asked = self._deliver()
             if compilation is not None:
                 result = await asyncio.get_running_loop().run_in_executor(self._compiler, compilation.run)
                 self._manager.finish_compilation(compilation, result)
                 asked |= self._deliver()
             while any(self._links[network].is_full for network in asked if network in self._links):
                 await asyncio.sleep(_FULL_PAUSE_S)
-            if spent_s >= _SLICE_S:
-                if spent_s > _SMALL_SHARE * (time.monotonic() - since_s):
-                    await self._throttle(spent_s)
-                spent_s, since_s = 0.0, time.monotonic()
-
-    async def _throttle(self, spent_s: float) -> None:
-        """Pause a client for the processor time that it used, one client after the other."""
-        async with self._throttle_lock:
-            await asyncio.sleep(spent_s)
+            await spent.pause_if_busy()
 
     def _deliver(self) -> set[int]:
         """Send what the manager has for networks and clients; return the networks that have got something."""

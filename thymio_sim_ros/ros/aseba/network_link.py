@@ -28,7 +28,7 @@ CONNECT, DISCONNECT = "connect", "disconnect"
 
 GROUP = 4
 """Messages that are executed without a break; after it other clients and the node's own work have their turn."""
-CAPACITY = 256
+CAPACITY = 32
 """Messages of one client that may wait before it is asked to pause."""
 
 
