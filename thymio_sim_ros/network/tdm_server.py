@@ -43,7 +43,7 @@ MAX_UNSENT = 4 << 20
 
 _PERIOD_S, _IDLE_PERIOD_S = 0.05, 0.5
 """Time between two looks at what is due, with clients and without."""
-_SLICE_S = 0.005
+_SLICE_S = 0.002
 """Processor time after which a client is paused for as long."""
 _CONGESTED, _DRAINED = 1 << 18, 1 << 15
 """Bytes that wait for a client, from which and below which it counts as slow and as fast again."""

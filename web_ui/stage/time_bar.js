@@ -1,5 +1,5 @@
 // Time control: pause, step with its length, reset, speed, and how fast time really runs. While time is paused the
-// stage has `data-paused`.
+// stage has `data-paused`. A real robot has no time to control: the bar says so instead.
 
 import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";
@@ -90,9 +90,7 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
   speed.addEventListener("change", () => actions.setFactor(Number(speed.value)));
   const achieved = h("span", { class: "real small muted" });
   const clock = h("output", { class: "clock", "aria-label": t("time.clock"), title: t("time.clock") });
-  const element = h(
-    "div",
-    { class: "time-parts" },
+  const controls = [
     pause,
     h("span", { class: "split" }, step, lengths.element),
     reset,
@@ -100,7 +98,9 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
     h("label", { class: "speed" }, h("span", { class: "word" }, t("time.speed")), speed),
     achieved,
     clock,
-  );
+  ];
+  const real = h("p", { class: "real-robot muted", hidden: true }, t("time.realRobot"));
+  const element = h("div", { class: "time-parts" }, ...controls, real);
   showLength();
   const fit = fitNames(
     element,
@@ -137,6 +137,8 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
     element,
     render({ connection, readOnly, simulator, timeNs, robots, selected, services }) {
       const reason = disabledReason({ connection, readOnly }, pageText);
+      const isReal = robots[selected]?.isReal ?? false;
+      if (isReal === real.hidden) for (const part of [...controls, real]) part.hidden = !part.hidden;
       const now = simulator?.paused ?? false;
       showPaused(now);
       showAchieved(simulator);

@@ -57,6 +57,7 @@ export function trayPanel(context) {
     slot: "tray",
     element,
     render(state) {
+      element.hidden = state.robots[state.selected]?.isReal ?? false; // a real robot is pressed and tapped by hand
       show();
       pad.render(state);
       hand.render(state);

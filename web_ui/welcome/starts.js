@@ -73,6 +73,12 @@ export function startsOver(context, t, slot, close) {
   const sheet = rosSheet(context, t, ros, close);
   const rosText = h("p", { class: "muted" });
   const driveButton = h("button", { type: "button", class: "btn you", "data-start": "drive", onclick: drive }, t("drive.do"));
+  const watch = h(
+    "button",
+    { type: "button", class: "btn welcome-watch", "data-start": "watch", onclick: () => void load(WATCH) },
+    icon("eye", { small: true }),
+    h("span", {}, t("watch")),
+  );
   const element = h(
     "section",
     { class: "welcome-starts", "aria-label": t("start") },
@@ -83,12 +89,7 @@ export function startsOver(context, t, slot, close) {
       card("program", "welcome-act", t("program"), h("p", { class: "muted" }, t("program.text")), examples),
       card("plug", "welcome-sense", t("ros"), rosText, ros),
     ),
-    h(
-      "button",
-      { type: "button", class: "btn welcome-watch", "data-start": "watch", onclick: () => void load(WATCH) },
-      icon("eye", { small: true }),
-      h("span", {}, t("watch")),
-    ),
+    watch,
   );
   const hello = h("p", { class: "welcome-hello" }, t("hello"));
   slot.append(hello, element, sheet.element);
@@ -102,6 +103,7 @@ export function startsOver(context, t, slot, close) {
   return {
     /** @param {State} state */
     render(state) {
+      watch.hidden = state.robots[state.selected]?.isReal ?? false; // a real robot has no line to follow here
       const now = sheet.render(state);
       if (now !== topic) {
         topic = now;

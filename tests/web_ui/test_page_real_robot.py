@@ -1,0 +1,38 @@
+"""The page of a robot behind an Aseba port: it drives the robot, and offers nothing that only a simulator can do."""
+
+from __future__ import annotations
+
+from urllib.parse import urlsplit
+
+import pytest
+
+pytest.importorskip("playwright.sync_api")
+
+from tests.processes import free_port, wait_for_port
+from tests.web_ui.page_support import MARKS, open_page, wait_for_program, without_welcome
+
+pytestmark = MARKS
+
+DRIVE = "motor.left.target = 100\nmotor.right.target = 100\n"
+
+
+def of(namespace):
+    return ("--ros-args", "-r", f"__ns:={namespace}", "-r", f"/clock:={namespace}/clock")
+
+
+def test_a_real_robot_is_driven_and_its_time_is_left_alone(suite, page, other_page, tmp_path):
+    program = tmp_path / "drive.aesl"
+    program.write_text(DRIVE)
+    port = free_port()
+    simulated = suite("--playground", "base", "--program", "none", "--aseba-port", str(port), *of("/simulated"))
+    wait_for_port(port)
+    address = suite("--robot", f"tcp:localhost:{port}", "--program", str(program), *of("/real"))
+    wait_for_port(urlsplit(address).port)
+    page.goto(without_welcome(address))
+    page.wait_for_function("window.thymio?.connected")
+    wait_for_program(page, "drive.aesl")
+    page.locator(".real-robot").wait_for()
+    assert page.locator("#pause, #speed, .clock, #tray-fold, #tray-unfold").locator("visible=true").count() == 0
+    assert page.locator("#stop").is_visible()
+    open_page(other_page, simulated)
+    other_page.wait_for_function("() => window.thymio.state().robot.latest?.pose.x > 0.05")
