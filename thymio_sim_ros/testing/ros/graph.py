@@ -6,7 +6,7 @@ import contextlib
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -19,12 +19,17 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, try_shutdown
 
+from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.ros import discovery, student
 from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
+from thymio_sim_ros.testing.ros.program import CPU_LIMIT_S, Program
+from thymio_sim_ros.testing.ros.programs import Programs
+from thymio_sim_ros.testing.ros.program_files import find
 from thymio_sim_ros.testing.ros.recorder import Recorder
+from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.sources import beside
 
 __all__ = ["DEADLINE_S", "Ros"]
@@ -84,6 +89,7 @@ class Ros:
         """Executors of the nodes under test, in the order in which these were started."""
         self._recorders: list[Recorder] = []
         self.node = self.make_node(TEST_NODE)
+        self.programs = Programs(self.context, self._all_nodes)
 
     # --- nodes ---
 
@@ -147,6 +153,50 @@ class Ros:
         self.settle()
         return node
 
+    def run(
+        self,
+        source: str | Path,
+        *,
+        executable: str = "",
+        name: str = "",
+        namespace: str = "",
+        parameters: Mapping[str, Any] | None = None,
+        remappings: Mapping[str, str] | None = None,
+        arguments: Sequence[str] = (),
+        stdin: str | Sequence[tuple[float, str]] | None = None,
+        check: bool = True,
+        cpu_limit: float = CPU_LIMIT_S,
+    ) -> Program:
+        """Start a program in a process of its own, and return when it waits for the first time.
+
+        Args:
+            source: Its file, its module (as for `python -m`), or its package if there is an `executable`.
+            executable: Name of a Python program of that package (as for `ros2 run`).
+            name: Name of its node, if not its own.
+            namespace: Namespace of its nodes.
+            parameters: Values of parameters.
+            remappings: Names and what they are remapped to.
+            arguments: Its command line.
+            stdin: What is typed: lines that are there at once, or times (simulated s after the start) and lines;
+                then the input ends. None: nothing but what `Program.type` types.
+            check: Whether an exit code other than 0 fails the test.
+            cpu_limit: Processor time in s that it may use without a wait.
+
+        Raises:
+            StudentError: There is no such file, module or executable.
+            LookupError: The test has no simulation.
+        """
+        __tracebackhide__ = True
+        simulation = self._simulated()
+        target = find(source, executable, self._folder)
+        values = {"use_sim_time": True, **(parameters or {})}
+        program = Program(target.title, check=check, cpu_limit=cpu_limit, until=simulation.until)
+        ros_arguments = student.remap_arguments(name, namespace, remappings or {}, values)
+        self.programs.start(program, target, [*arguments, *ros_arguments], stdin=stdin, now_ns=self._now_ns())
+        for _ in range(NOTICE):
+            self.deliver()
+        return program
+
     def stop(self, node: Node) -> None:
         """Destroy a node before the test ends."""
         self._nodes.remove(node)
@@ -177,6 +227,8 @@ class Ros:
 
     def spin(self) -> None:
         """Spin all executors once, for `SLICE_S` at most."""
+        if self.programs.running:
+            self.programs.take_turns(self._now_ns())
         with self._alive():
             self._run_turns()
             self._executor.spin_once(timeout_sec=SLICE_S)
@@ -223,8 +275,10 @@ class Ros:
         No message between them is lost from then on.
         """
         __tracebackhide__ = True
-        nodes = [*self._nodes, *(life.node for life in self._lives)]
-        self.until(lambda: discovery.all_matched(nodes), what="all publishers and subscriptions found each other")
+        nodes = self._all_nodes()
+        self.until(lambda: all_matched(nodes), what="all publishers and subscriptions found each other")
+        if self.programs.running:
+            self.programs.settle()
         for _ in range(NOTICE):
             self.deliver()
 
@@ -252,7 +306,7 @@ class Ros:
             qos = discovery.as_published(self.node, name, DEPTH, transient_local=transient_local)
         subscription = self.node.create_subscription(kind, name, recorder.add, qos)
         self._recorders.append(recorder)
-        self.until(lambda: discovery.is_matched(self.node, subscription), what=f"the publishers of {name}")
+        self.until(lambda: is_matched(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
         return recorder
 
@@ -273,6 +327,12 @@ class Ros:
         self.until(future.done, what=f"answer of {name}")
         return future.result()
 
+    def _all_nodes(self) -> list[Node]:
+        return [*self._nodes, *(life.node for life in self._lives)]
+
+    def _now_ns(self) -> int:
+        return 0 if self.simulation is None else round(self.simulation.now * SECOND_NS)
+
     # --- reports and the end ---
 
     def now(self) -> str:
@@ -285,6 +345,7 @@ class Ros:
         lines = [head]
         if self.simulation is not None:
             lines += self.simulation.lines()
+        lines += self.programs.lines()
         lines += [repr(recorder) for recorder in self._recorders]
         ours = [TEST_NODE, *(life.node.get_name() for life in self._lives)]
         pytest.fail("\n".join([*lines, *discovery.topic_lines(self.node, ours)]))
@@ -304,6 +365,7 @@ class Ros:
             for life in self._lives:
                 end.callback(life.close)
                 end.callback(self._executor.remove_node, life.node)
+            end.callback(self.programs.close, self._now_ns())
 
     def _end_threads(self) -> None:
         """Shut ROS down before the nodes are destroyed if they run threads, whose loops check `rclpy.ok()`."""

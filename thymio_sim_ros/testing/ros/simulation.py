@@ -109,6 +109,10 @@ class Simulation:
 
     def tick(self) -> None:
         """Advance by one tick of 10 ms, handle all pending messages, and continue long handlers of programs."""
+        __tracebackhide__ = True
+        if self.ros.programs.running:
+            self.ros.programs.take_turns(self.world.now_ns + TICK_NS)
+            self.ros.deliver()
         self.simulator.runner.advance(1)
         self._subscribe_to_events()
         for _ in range(HOPS):

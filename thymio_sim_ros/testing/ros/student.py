@@ -10,6 +10,7 @@ import contextlib
 import importlib
 import importlib.util
 import inspect
+import json
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -66,14 +67,18 @@ def load_class(source: str | Path, class_name: str = "") -> type[Node]:
     return chosen[0]
 
 
-def remap_arguments(name: str, namespace: str, remappings: Mapping[str, str]) -> list[str]:
-    """Return the command line arguments of `ros2 run` that set name, namespace and remappings of a node."""
+def remap_arguments(
+    name: str, namespace: str, remappings: Mapping[str, str], parameters: Mapping[str, Any] | None = None
+) -> list[str]:
+    """Return the command line arguments of `ros2 run` that set name, namespace, remappings and parameters."""
     rules = dict(remappings)
     if namespace:
         rules["__ns"] = "/" + namespace.strip("/")
     if name:
         rules["__node"] = name
     arguments = [word for old, new in rules.items() for word in ("-r", f"{old}:={new}")]
+    for parameter, value in (parameters or {}).items():
+        arguments += ["-p", f"{parameter}:={json.dumps(value)}"]
     return ["--ros-args", *arguments] if arguments else []
 
 
