@@ -79,7 +79,7 @@ class Graph:
     def _alive(self) -> list[Node]:
         """Nodes that are neither destroyed nor still in the constructor of rclpy."""
         nodes = [node for reference in self._nodes if (node := reference()) is not None]
-        return [node for node in nodes if getattr(node, "_Node__handle", None) and node.context.ok()]
+        return [node for node in nodes if getattr(node, "_Node__node", None) and node.context.ok()]
 
     @contextlib.contextmanager
     def _own_calls(self) -> Iterator[None]:

@@ -20,6 +20,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, try_shutdown
 
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
+from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
 from thymio_sim_ros.testing.failure_messages import describe_condition
@@ -88,7 +89,8 @@ class Ros:
         self._turns: dict[Node, ExecutorTurns] = {}
         """Executors of the nodes under test, in the order in which these were started."""
         self._recorders: list[Recorder] = []
-        self.node = self.make_node(TEST_NODE)
+        with dds_profile.used(dds_profile.ANNOUNCING):  # programs find the participant of this node at once
+            self.node = self.make_node(TEST_NODE)
         self.programs = Programs(self.context, self._all_nodes)
 
     # --- nodes ---
