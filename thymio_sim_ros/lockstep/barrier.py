@@ -62,7 +62,7 @@ class Barrier:
 
     def _take(self) -> str:
         with self._subscription.handle:
-            taken = self._subscription.handle.take_message(String, False)  # noqa: FBT003  # not raw
+            taken = self._subscription.handle.take_message(String, False)  # not raw
         return "" if taken is None else str(taken[0].data)
 
     def _ignore(self, _message: String) -> None:

@@ -126,7 +126,7 @@ def main() -> None:
     """Run a program, and exit with its code."""
     options = Options(**json.loads(sys.argv[1]))
     for fd in (options.read_fd, options.write_fd, options.stacks_fd):
-        os.set_inheritable(fd, False)  # noqa: FBT003  # positional only
+        os.set_inheritable(fd, False)  # positional only
     faulthandler.register(STACKS_SIGNAL, file=options.stacks_fd, all_threads=True)
     session = Session(options)
     session.begin()

@@ -40,7 +40,7 @@ def _install_clocks(turns: Turns) -> None:
     def new_clock(cls: Any, *, clock_type: Any = clock.ClockType.SYSTEM_TIME) -> Any:
         made = new(cls, clock_type=clock_type)
         made._Clock__clock = _rclpy.Clock(clock.ClockType.ROS_TIME)
-        made.handle.set_ros_time_override_is_enabled(True)  # noqa: FBT003
+        made.handle.set_ros_time_override_is_enabled(True)
         _set(made, turns.now_ns)
         alive.add(made)
         return made

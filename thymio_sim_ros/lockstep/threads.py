@@ -39,7 +39,7 @@ def _lock_class(turns: Turns) -> type:
         def __init__(self) -> None:
             self._is_locked = False
 
-        def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:  # noqa: FBT001, FBT002
+        def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
             if self._is_locked:
                 if not blocking:
                     turns.poll()

@@ -23,21 +23,28 @@ from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
+from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
-from thymio_sim_ros.testing.ros import discovery, student
-from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
-from thymio_sim_ros.testing.ros.program import CPU_LIMIT_S, Program
-from thymio_sim_ros.testing.ros.programs import Programs
-from thymio_sim_ros.testing.ros.program_files import find
-from thymio_sim_ros.testing.ros.recorder import Recorder
 from thymio_sim_ros.testing.record import SECOND_NS
+from thymio_sim_ros.testing.ros import discovery, student
+from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, START_CPU_S, limited
+from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
+from thymio_sim_ros.testing.ros.program import Program
+from thymio_sim_ros.testing.ros.program_files import find
+from thymio_sim_ros.testing.ros.programs import Programs
+from thymio_sim_ros.testing.ros.recorder import Recorder
 from thymio_sim_ros.testing.sources import beside
 
 __all__ = ["DEADLINE_S", "Ros"]
 
 DEADLINE_S = 20.0
+"""Default deadline of waits in which simulated time does not pass, in s of real time on an idle machine."""
+
 SLICE_S = 0.005
 """Longest wait of the executors in one turn, in s of real time."""
+
+LONG_S = 2.0
+"""Real time of a constructor above which failure reports name it, in s."""
 
 DEPTH = 1000
 """Queue depth of a recorder's subscription."""
@@ -45,8 +52,8 @@ DEPTH = 1000
 NOTICE = 2
 """Deliveries until a publisher knows a subscription: the event, then the task that the event creates."""
 
-THREADS_S = 2.0
-"""Time for threads of nodes under test to notice that ROS is shut down and to end, in s of real time."""
+THREADS_S = 20.0
+"""Last resort: time for threads of nodes under test to notice that ROS is shut down and to end, in s of real time."""
 
 TEST_NODE = "test"
 
@@ -89,6 +96,7 @@ class Ros:
         self._turns: dict[Node, ExecutorTurns] = {}
         """Executors of the nodes under test, in the order in which these were started."""
         self._recorders: list[Recorder] = []
+        self._remarks: list[str] = []
         with dds_profile.used(dds_profile.ANNOUNCING):  # programs find the participant of this node at once
             self.node = self.make_node(TEST_NODE)
         self.programs = Programs(self.context, self._all_nodes)
@@ -104,11 +112,11 @@ class Ros:
         self._nodes.append(node)
         return node
 
-    def add(self, node: Node) -> Node:
+    def add(self, node: Node, *, cpu_limit: float = CPU_LIMIT_S) -> Node:
         """Add a node under test; it gets an executor of its own and is destroyed when the test ends."""
         self._nodes.append(node)
         with self._alive():
-            self._turns[node] = ExecutorTurns(node, self.context)
+            self._turns[node] = ExecutorTurns(node, self.context, cpu_limit)
         return node
 
     def live(self, life: Any) -> Any:
@@ -128,6 +136,7 @@ class Ros:
         remappings: Mapping[str, str] | None = None,
         use_sim_time: bool | None = None,
         arguments: Mapping[str, Any] | None = None,
+        cpu_limit: float = CPU_LIMIT_S,
     ) -> Node:
         """Start a node under test, and wait until it has found its peers.
 
@@ -140,6 +149,7 @@ class Ros:
             remappings: Names and what they are remapped to.
             use_sim_time: Whether it uses simulated time; None: if the test has a simulation.
             arguments: Arguments of its constructor.
+            cpu_limit: Processor time in s that one of its callbacks may use; more fails the test.
 
         Raises:
             StudentError: The source has no node class, or several, or does not call `super().__init__`.
@@ -151,9 +161,22 @@ class Ros:
             use_sim_time = self.simulation is not None
         values = {"use_sim_time": use_sim_time, **(parameters or {})}
         remap = student.remap_arguments(name, namespace, remappings or {})
-        node = self.add(student.start(kind, self.context, remap, values, arguments or {}))
+        with self._constructing(kind):
+            node = student.start(kind, self.context, remap, values, arguments or {})
+        self.add(node, cpu_limit=cpu_limit)
         self.settle()
         return node
+
+    @contextlib.contextmanager
+    def _constructing(self, kind: type[Node]) -> Iterator[None]:
+        """Limit the processor time of a constructor; failure reports name one that takes long."""
+        place = f"the constructor of {kind.__name__} ({student.place(kind)})"
+        wall_s, cpu_s = time.monotonic(), time.process_time()
+        with limited(lambda: place, START_CPU_S):
+            yield
+        wall_s, cpu_s = time.monotonic() - wall_s, time.process_time() - cpu_s
+        if wall_s > LONG_S:
+            self._remarks.append(f"{place} took {wall_s:.1f} s of real time, {cpu_s:.1f} s of processor time")
 
     def run(
         self,
@@ -250,7 +273,8 @@ class Ros:
         """Spin until the condition is true and return its value; fails the test with a report otherwise.
 
         With `sim_time`, the simulation is stepped by at most that many simulated seconds, however long that takes.
-        Without it, the wait lasts at most `timeout` seconds of real time, and simulated time does not pass. Raises
+        Without it, the wait lasts at most `timeout` seconds of real time on an idle machine, and simulated time does
+        not pass. A condition that needs the first message of a topic waits for it (`Recorder.latest`). Raises
         LookupError for `sim_time` without a simulation.
         """
         __tracebackhide__ = True
@@ -262,13 +286,19 @@ class Ros:
         )
 
     def spin_until(self, condition: Callable[[], Any], timeout: float, head: Callable[[], str]) -> Any:
-        """Spin until the condition is true, for at most `timeout` s of real time; `head()` begins a failure report."""
+        """Spin until the condition is true, for at most `timeout` s; `head()` begins a failure report.
+
+        A turn counts as `SLICE_S` at most, so that a busy machine, on which it takes longer, has more real time.
+        """
         __tracebackhide__ = True
-        deadline = time.monotonic() + timeout
-        while not (value := condition()):
-            if time.monotonic() > deadline:
-                self.fail(head())
+        awaited = Awaited(condition)
+        rest_s = timeout
+        while not (value := awaited()):
+            if rest_s <= 0:
+                self.fail(head() + awaited.missing())
+            begin_s = time.monotonic()
             self.spin()
+            rest_s -= min(time.monotonic() - begin_s, SLICE_S)
         return value
 
     def settle(self) -> None:
@@ -347,7 +377,7 @@ class Ros:
         lines = [head]
         if self.simulation is not None:
             lines += self.simulation.lines()
-        lines += self.programs.lines()
+        lines += [*self._remarks, *self.programs.lines()]
         lines += [repr(recorder) for recorder in self._recorders]
         ours = [TEST_NODE, *(life.node.get_name() for life in self._lives)]
         pytest.fail("\n".join([*lines, *discovery.topic_lines(self.node, ours)]))

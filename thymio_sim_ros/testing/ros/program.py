@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import select
@@ -19,15 +20,10 @@ from thymio_sim_ros.lockstep.main import Options
 from thymio_sim_ros.lockstep.real_time import LAST_RESORT_S
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.testing.record import SECOND_NS
+from thymio_sim_ros.testing.ros.cpu_limit import START_CPU_S
 from thymio_sim_ros.testing.ros.process_watch import BLOCKED_S, ProcessWatch
 
-__all__ = ["CPU_LIMIT_S", "Program"]
-
-CPU_LIMIT_S = 2.0
-"""Default limit of processor time for one turn or one callback, in s."""
-
-START_CPU_S = 15.0
-"""Processor time that a program may use in addition before it waits for the first time: it imports modules."""
+__all__ = ["INTERRUPTED_NS", "Program"]
 
 INTERRUPTED_NS = 2 * SECOND_NS
 """Simulated time that an interrupted program has for its end."""
@@ -56,6 +52,8 @@ class Program:
         self._is_typing_over = False
         self._waits: Sequence[str] = ()
         self._turns = 0
+        self._is_waiting = False
+        """Whether it has ended its turn by waiting, not by its end."""
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  # open as long as the program
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115
         self._stacks = tempfile.TemporaryFile()  # noqa: SIM115
@@ -100,7 +98,9 @@ class Program:
 
     # --- for `Programs` ---
 
-    def start(self, options: Mapping[str, Any], *, stdin: str | Sequence[tuple[float, str]] | None, now_ns: int) -> None:
+    def start(
+        self, options: Mapping[str, Any], *, stdin: str | Sequence[tuple[float, str]] | None, now_ns: int
+    ) -> None:
         """Start the process: `options` are those of `Options` that are not its files."""
         self._now_ns = now_ns
         if stdin is not None:
@@ -129,7 +129,12 @@ class Program:
         self._watch = ProcessWatch(self._process, self._stacks)
 
     def take_turn(
-        self, until_ns: int, marks: Mapping[str, int], settle: Callable[[], Mapping[str, Any]], *, interrupt: bool = False
+        self,
+        until_ns: int,
+        marks: Mapping[str, int],
+        settle: Callable[[], Mapping[str, Any]],
+        *,
+        interrupt: bool = False,
     ) -> None:
         """Run the program until it waits for `until_ns` or longer.
 
@@ -137,32 +142,37 @@ class Program:
         """
         __tracebackhide__ = True
         self._watch.begin()
+        self._is_waiting = False
         typed, self._lines = self._lines, []
         message = {
             "marks": marks, "now_ns": self._now_ns, "until_ns": until_ns, "lines": typed,
             "is_closed_after": self._is_typing_over, "is_interrupted": interrupt,
         }  # fmt: skip
-        try:
-            if not self._turns:
-                self._receive()
-            self._turns += 1
-            self._channel.send(message)
-            while (event := self._receive())["event"] != "done":
-                if event["event"] == "settle":
-                    self._channel.send({"match": settle()})
-            self._waits = event["waits"]
-        except ClosedError:
-            self._ended()
+        with contextlib.suppress(ClosedError):
+            self._run(message, settle)
+        self._check_end()
         self._now_ns = max(self._now_ns, until_ns)
+
+    def _run(self, message: dict[str, Any], settle: Callable[[], Mapping[str, Any]]) -> None:
+        __tracebackhide__ = True
+        if not self._turns:
+            self._receive()
+        self._turns += 1
+        self._channel.send(message)
+        while (event := self._receive())["event"] != "done":
+            if event["event"] == "settle":
+                self._channel.send({"match": settle()})
+        self._waits, self._is_waiting = event["waits"], True
 
     def match(self, expected: Mapping[str, Any]) -> None:
         """Wait until its endpoints are matched with all others."""
-        try:
+        self._is_waiting = False
+        with contextlib.suppress(ClosedError):
             self._channel.send({"match": expected})
             while self._receive()["event"] != "matched":
                 pass
-        except ClosedError:
-            self._ended()
+            self._is_waiting = True
+        self._check_end()
 
     def kill(self) -> None:
         """End the process at once, and close all files."""
@@ -200,8 +210,11 @@ class Program:
         where = f"\n  it is at {place}" if place else ""
         pytest.fail("\n".join([f"{self.title} {text}{where}", *self.lines()]))
 
-    def _ended(self) -> None:
+    def _check_end(self) -> None:
+        """Take note of the end of the process unless it waits; an exit code other than 0 fails the test."""
         __tracebackhide__ = True
+        if self._is_waiting:
+            return
         self.exit_code = self._process.wait(LAST_RESORT_S)
         self._channel.close()
         self.endpoints = {}

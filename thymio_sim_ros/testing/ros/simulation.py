@@ -17,6 +17,7 @@ from thymio_sim_ros.ros.interface.names import full_name
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
@@ -30,7 +31,7 @@ HOPS = 2
 """Deliveries per tick: a reading reaches a node under test, and its command comes back."""
 
 ANSWER_S = 2.0
-"""Time for pending messages after a wait in simulated time, in s of real time."""
+"""Time for pending messages after a wait in simulated time, in s of real time on an idle machine."""
 
 _NO_MACHINE = "no Aseba machine runs for {}: start one with the fixture `runtime`"
 
@@ -129,11 +130,13 @@ class Simulation:
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Step until the condition is true, for at most `seconds` of simulated time; returns its value.
 
+        A condition that needs the first message of a topic waits for it (`Recorder.latest`).
         Fails the test otherwise, with a report on robots, programs, recorded messages and topics.
         """
         __tracebackhide__ = True
+        awaited = Awaited(condition)
         for _ in range(round(seconds * SECOND_NS / TICK_NS)):
-            if value := condition():
+            if value := awaited():
                 return value
             self.tick()
         return self.ros.spin_until(

@@ -26,7 +26,7 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["StudentError", "load_class", "remap_arguments", "spinning_forbidden", "start"]
+__all__ = ["StudentError", "load_class", "place", "remap_arguments", "spinning_forbidden", "start"]
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
 _SPUN = (
@@ -113,6 +113,12 @@ def start(
         node.destroy_node()
         raise StudentError(f"{kind.__name__} calls Node.__init__ itself: expected super().__init__(…)")
     return node
+
+
+def place(kind: type[Node]) -> str:
+    """File and line of the constructor of a class."""
+    code = getattr(kind.__init__, "__code__", None)
+    return f"{code.co_filename}, line {code.co_firstlineno}" if code else kind.__module__
 
 
 def _run_file(path: Path) -> ModuleType:
