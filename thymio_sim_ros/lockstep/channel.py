@@ -6,12 +6,14 @@ import json
 import os
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["Channel", "ClosedError"]
 
 _CHUNK = 65536
 
 
-class ClosedError(Exception):
+class ClosedError(ThymioSimError):
     """The other process has ended."""
 
 

@@ -74,7 +74,7 @@ class Keyboard(io.TextIOBase):
 def install(turns: Turns) -> Keyboard:
     """Make it the standard input; settings of a terminal are ignored."""
     keyboard = Keyboard(turns)
-    sys.stdin = keyboard  # type: ignore[assignment]
+    sys.stdin = keyboard
     try:
         import termios
         import tty

@@ -116,9 +116,9 @@ class Session:
 
     def _interrupt(self) -> None:
         """Do what Ctrl-C does: rclpy shuts down, and Python raises KeyboardInterrupt in the main thread."""
-        import rclpy
+        from rclpy.utilities import try_shutdown
 
-        rclpy.try_shutdown()
+        try_shutdown()
         self.turns.interrupt()
 
 

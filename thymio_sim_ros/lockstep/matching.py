@@ -48,7 +48,8 @@ def is_complete(nodes: Sequence[Node], expected: Mapping[str, Mapping[str, int]]
     published, subscribed = expected["publishers"], expected["subscriptions"]
     used = (published.keys() & subscribed.keys()).difference(EVERYWHERE)
     view = nodes[0]
-    own = {one.topic_name for node in nodes for one in (*node.publishers, *node.subscriptions)} & used
+    ends: list[Any] = [one for node in nodes for one in (*node.publishers, *node.subscriptions)]
+    own = {one.topic_name for one in ends} & used
     return (
         all(view.count_publishers(topic) >= published[topic] for topic in own)
         and all(view.count_subscribers(topic) >= subscribed[topic] for topic in own)

@@ -10,6 +10,7 @@ import rclpy
 from rclpy import clock, executors, time_source, utilities
 from rclpy.action import client as action_client
 from rclpy.action import server as action_server
+from rclpy.clock_type import ClockType
 from rclpy.impl.implementation_singleton import rclpy_implementation
 
 from thymio_sim_ros.lockstep.turns import Turns
@@ -37,9 +38,9 @@ def _install_clocks(turns: Turns) -> None:
     new = kind.__new__
     alive: weakref.WeakSet[Any] = weakref.WeakSet()
 
-    def new_clock(cls: Any, *, clock_type: Any = clock.ClockType.SYSTEM_TIME) -> Any:
+    def new_clock(cls: Any, *, clock_type: Any = ClockType.SYSTEM_TIME) -> Any:
         made = new(cls, clock_type=clock_type)
-        made._Clock__clock = _rclpy.Clock(clock.ClockType.ROS_TIME)
+        made._Clock__clock = _rclpy.Clock(ClockType.ROS_TIME)
         made.handle.set_ros_time_override_is_enabled(True)
         _set(made, turns.now_ns)
         alive.add(made)
@@ -69,7 +70,7 @@ def _install_clocks(turns: Turns) -> None:
 
 
 def _set(one: Any, now_ns: int) -> None:
-    one.handle.set_ros_time_override(_rclpy.rcl_time_point_t(now_ns, clock.ClockType.ROS_TIME))
+    one.handle.set_ros_time_override(_rclpy.rcl_time_point_t(now_ns, ClockType.ROS_TIME))
 
 
 # --- waits ---
@@ -199,4 +200,4 @@ def _install_ok(turns: Turns) -> None:
         return ok(context=context)
 
     replaced: Any = rclpy
-    replaced.ok = utilities.ok = counted_ok  # type: ignore[assignment]
+    replaced.ok = utilities.ok = counted_ok

@@ -7,6 +7,7 @@ that are due together comes first differs from run to run).
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from rclpy.context import Context
@@ -55,7 +56,8 @@ class ExecutorTurns:
             except TimeoutException:
                 return may_be_more
             may_be_more |= not isinstance(entity, Timer) and getattr(entity, "topic_name", "") != "/clock"
-            with spinning_forbidden(), limited(lambda: self._describe(entity), self._cpu_limit):
+            describe = partial(self._describe, entity)
+            with spinning_forbidden(), limited(describe, self._cpu_limit):
                 handler()
             handler.result()
 
