@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from geometry_msgs.msg import Twist
+from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 from thymio_sim_ros.testing.ros import Ros, Simulation
@@ -236,6 +238,12 @@ def test_a_busy_loop_and_an_exception_are_named_and_do_not_harm_each_other(sim: 
     assert "lockstep" not in crash.errors
 
 
+def test_until_says_that_no_message_came(sim: Simulation) -> None:
+    commands = sim.ros.collect(Twist, "nothing", qos=QoSProfile(depth=1))
+    with pytest.raises(pytest.fail.Exception, match="no message came on /nothing"):
+        sim.until(lambda: commands.latest.linear.x > 0, seconds=0.1)
+
+
 def test_an_executable_is_found_in_the_sources_of_its_package(tmp_path: Path) -> None:
     package = tmp_path / "robots"
     package.mkdir()
@@ -243,7 +251,7 @@ def test_an_executable_is_found_in_the_sources_of_its_package(tmp_path: Path) ->
     assert find("robots", "drive", tmp_path).options == {"function": "robots.drive:main", "folder": str(package)}
     with pytest.raises(StudentError, match="robots fly: no such executable"):
         find("robots", "fly", tmp_path)
-    with pytest.raises(StudentError, match="absent.py: no such file in"):
+    with pytest.raises(StudentError, match=r"absent\.py: no such file in"):
         find("absent.py", "", tmp_path)
 
 
