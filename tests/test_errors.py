@@ -14,6 +14,7 @@ from thymio_sim_ros.errors import ThymioSimError
 
 NEEDED = {
     "thymio_sim_ros.launch": "launch_ros",
+    "thymio_sim_ros.lockstep": "rclpy",
     "thymio_sim_ros.ros": "rclpy",
     "thymio_sim_ros.testing.ros": "rclpy",
     "thymio_sim_ros.tf": "rclpy",

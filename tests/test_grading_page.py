@@ -41,7 +41,7 @@ def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
 def test_the_page_has_its_examples() -> None:
     assert {"follower.aesl", "avoider.py", "caller.aesl", "comer.aesl", WORKFLOW} <= FILES.keys()
     assert FAILING.keys() == {"test_button.py", "test_misspelt.py"}
-    assert {"test_avoider.py", "test_misspelt.py", "test_two_nodes.py"} == NEED_ROS
+    assert {"test_avoider.py", "test_misspelt.py", "test_patrol.py", "test_two_nodes.py"} == NEED_ROS
     assert PAGE.count("```") == 2 * (len(FILES) + len(FAILING))
 
 
@@ -69,7 +69,7 @@ def test_without_ros_examples_that_need_it_are_skipped(pytester: pytest.Pytester
         "import sys\nfor name in 'rclpy', 'geometry_msgs', 'sensor_msgs':\n    sys.modules[name] = None\n"
     )
     result = run(pytester, "test_call.py", *NEED_ROS)
-    result.assert_outcomes(passed=1, skipped=3)  # a file as a whole, and the tests of the two others
+    result.assert_outcomes(passed=1, skipped=4)  # a file as a whole, and the tests of the three others
 
 
 def test_the_workflow_runs_what_there_is(pytester: pytest.Pytester, folder: Path) -> None:
@@ -103,7 +103,7 @@ def test_every_name_of_the_page_s_tables_exists() -> None:
 def test_every_name_of_the_page_s_ros_table_exists() -> None:
     from thymio_sim_ros.testing.ros import Recorder, Ros, Simulation
 
-    table = PAGE.split("## ROS")[1]
+    table = PAGE.split("## ROS\n")[1]
     assert [name for name in re.findall(r"`ros\.(\w+)", table) if not hasattr(Ros, name)] == []
     assert [
         name for name in re.findall(r"`sim\.(\w+)", table) if name != "simulator" and not hasattr(Simulation, name)

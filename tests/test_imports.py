@@ -85,6 +85,7 @@ RULES = {
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
     f"{OURS}.testing": Rule(_names("device", "loading", "runner", "sim", "testing"), frozenset({"pytest"})),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
+    f"{OURS}.lockstep": Rule(_names("errors", "lockstep"), ROS),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
     f"{OURS}.cli.banner": Rule(ALL_OF_OURS, frozenset({"segno"})),
@@ -152,7 +153,7 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 
 
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
-    with_ros = (f"{OURS}.ros", f"{OURS}.testing.ros", f"{OURS}.launch", f"{OURS}.tf")
+    with_ros = (f"{OURS}.ros", f"{OURS}.testing.ros", f"{OURS}.lockstep", f"{OURS}.launch", f"{OURS}.tf")
     pure = [module for module in SOURCES if not any(_below(module, name) for name in with_ros)]
     pure = [module for module in pure if not module.endswith("__main__")]
     program = (

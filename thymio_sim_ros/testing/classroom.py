@@ -16,6 +16,7 @@ from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
@@ -105,9 +106,10 @@ class Classroom:
         """
         __tracebackhide__ = True
         end_ns = self.runner.now_ns + round(seconds * SECOND_NS)
-        while not (value := condition()):
+        awaited = Awaited(condition)
+        while not (value := awaited()):
             if self.runner.now_ns >= end_ns:
-                head = f"not within {seconds:g} simulated s: {what or describe_condition(condition)}"
+                head = f"not within {seconds:g} simulated s: {what or describe_condition(condition)}{awaited.missing()}"
                 pytest.fail("\n".join([head, *robot_lines(self)]))
             self.tick()
         return value

@@ -31,7 +31,7 @@ def test_it_is_a_list_that_fills(ros, talk):
 
 def test_before_the_first_message_there_is_no_latest(ros, talk):
     numbers = ros.collect(Int32, "numbers")
-    with pytest.raises(LookupError, match="nothing arrived on /numbers yet"):
+    with pytest.raises(LookupError, match="no message came on /numbers"):
         numbers.latest  # noqa: B018  (a property)
 
 

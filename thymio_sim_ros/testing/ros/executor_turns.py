@@ -7,6 +7,7 @@ that are due together comes first differs from run to run).
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from rclpy.context import Context
@@ -14,6 +15,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor, T
 from rclpy.node import Node
 from rclpy.timer import Timer
 
+from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, limited
 from thymio_sim_ros.testing.ros.student import spinning_forbidden
 
 __all__ = ["ExecutorTurns"]
@@ -25,8 +27,10 @@ MAX_ROUNDS = 10
 class ExecutorTurns:
     """The executor of one node. Each node has its own, so that nodes run in the order in which they were started."""
 
-    def __init__(self, node: Node, context: Context) -> None:
+    def __init__(self, node: Node, context: Context, cpu_limit: float = CPU_LIMIT_S) -> None:
+        """`cpu_limit`: processor time in s that a callback may use; more fails the test."""
         self._node = node
+        self._cpu_limit = cpu_limit
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(node)
 
@@ -52,9 +56,16 @@ class ExecutorTurns:
             except TimeoutException:
                 return may_be_more
             may_be_more |= not isinstance(entity, Timer) and getattr(entity, "topic_name", "") != "/clock"
-            with spinning_forbidden():
+            describe = partial(self._describe, entity)
+            with spinning_forbidden(), limited(describe, self._cpu_limit):
                 handler()
             handler.result()
+
+    def _describe(self, entity: Any) -> str:
+        """The callback of an entity."""
+        name = getattr(entity, "topic_name", "") or getattr(entity, "srv_name", "")
+        what = "a timer" if isinstance(entity, Timer) else name or "a task"
+        return f"the callback of node {self._node.get_name()} for {what}"
 
     def shutdown(self) -> None:
         """Shut the executor down without waiting for unfinished callbacks of the node."""

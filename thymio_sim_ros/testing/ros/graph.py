@@ -6,7 +6,7 @@ import contextlib
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -19,19 +19,32 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, try_shutdown
 
+from thymio_sim_ros.lockstep.matching import all_matched, is_matched
+from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
+from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
+from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.ros import discovery, student
+from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, START_CPU_S, limited
 from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
+from thymio_sim_ros.testing.ros.program import Program
+from thymio_sim_ros.testing.ros.program_files import find
+from thymio_sim_ros.testing.ros.programs import Programs
 from thymio_sim_ros.testing.ros.recorder import Recorder
 from thymio_sim_ros.testing.sources import beside
 
 __all__ = ["DEADLINE_S", "Ros"]
 
 DEADLINE_S = 20.0
+"""Default deadline of waits in which simulated time does not pass, in s of real time on an idle machine."""
+
 SLICE_S = 0.005
 """Longest wait of the executors in one turn, in s of real time."""
+
+LONG_S = 2.0
+"""Real time of a constructor above which failure reports name it, in s."""
 
 DEPTH = 1000
 """Queue depth of a recorder's subscription."""
@@ -39,8 +52,8 @@ DEPTH = 1000
 NOTICE = 2
 """Deliveries until a publisher knows a subscription: the event, then the task that the event creates."""
 
-THREADS_S = 2.0
-"""Time for threads of nodes under test to notice that ROS is shut down and to end, in s of real time."""
+THREADS_S = 20.0
+"""Last resort: time for threads of nodes under test to notice that ROS is shut down and to end, in s of real time."""
 
 TEST_NODE = "test"
 
@@ -83,7 +96,10 @@ class Ros:
         self._turns: dict[Node, ExecutorTurns] = {}
         """Executors of the nodes under test, in the order in which these were started."""
         self._recorders: list[Recorder] = []
-        self.node = self.make_node(TEST_NODE)
+        self._remarks: list[str] = []
+        with dds_profile.used(dds_profile.ANNOUNCING):  # programs find the participant of this node at once
+            self.node = self.make_node(TEST_NODE)
+        self.programs = Programs(self.context, self._all_nodes)
 
     # --- nodes ---
 
@@ -96,11 +112,11 @@ class Ros:
         self._nodes.append(node)
         return node
 
-    def add(self, node: Node) -> Node:
+    def add(self, node: Node, *, cpu_limit: float = CPU_LIMIT_S) -> Node:
         """Add a node under test; it gets an executor of its own and is destroyed when the test ends."""
         self._nodes.append(node)
         with self._alive():
-            self._turns[node] = ExecutorTurns(node, self.context)
+            self._turns[node] = ExecutorTurns(node, self.context, cpu_limit)
         return node
 
     def live(self, life: Any) -> Any:
@@ -120,6 +136,7 @@ class Ros:
         remappings: Mapping[str, str] | None = None,
         use_sim_time: bool | None = None,
         arguments: Mapping[str, Any] | None = None,
+        cpu_limit: float = CPU_LIMIT_S,
     ) -> Node:
         """Start a node under test, and wait until it has found its peers.
 
@@ -132,6 +149,7 @@ class Ros:
             remappings: Names and what they are remapped to.
             use_sim_time: Whether it uses simulated time; None: if the test has a simulation.
             arguments: Arguments of its constructor.
+            cpu_limit: Processor time in s that one of its callbacks may use; more fails the test.
 
         Raises:
             StudentError: The source has no node class, or several, or does not call `super().__init__`.
@@ -143,9 +161,66 @@ class Ros:
             use_sim_time = self.simulation is not None
         values = {"use_sim_time": use_sim_time, **(parameters or {})}
         remap = student.remap_arguments(name, namespace, remappings or {})
-        node = self.add(student.start(kind, self.context, remap, values, arguments or {}))
+        with self._constructing(kind):
+            node = student.start(kind, self.context, remap, values, arguments or {})
+        self.add(node, cpu_limit=cpu_limit)
         self.settle()
         return node
+
+    @contextlib.contextmanager
+    def _constructing(self, kind: type[Node]) -> Iterator[None]:
+        """Limit the processor time of a constructor; failure reports name one that takes long."""
+        place = f"the constructor of {kind.__name__} ({student.place(kind)})"
+        wall_s, cpu_s = time.monotonic(), time.process_time()
+        with limited(lambda: place, START_CPU_S):
+            yield
+        wall_s, cpu_s = time.monotonic() - wall_s, time.process_time() - cpu_s
+        if wall_s > LONG_S:
+            self._remarks.append(f"{place} took {wall_s:.1f} s of real time, {cpu_s:.1f} s of processor time")
+
+    def run(
+        self,
+        source: str | Path,
+        *,
+        executable: str = "",
+        name: str = "",
+        namespace: str = "",
+        parameters: Mapping[str, Any] | None = None,
+        remappings: Mapping[str, str] | None = None,
+        arguments: Sequence[str] = (),
+        stdin: str | Sequence[tuple[float, str]] | None = None,
+        check: bool = True,
+        cpu_limit: float = CPU_LIMIT_S,
+    ) -> Program:
+        """Start a program in a process of its own, and return when it waits for the first time.
+
+        Args:
+            source: Its file, its module (as for `python -m`), or its package if there is an `executable`.
+            executable: Name of a Python program of that package (as for `ros2 run`).
+            name: Name of its node, if not its own.
+            namespace: Namespace of its nodes.
+            parameters: Values of parameters.
+            remappings: Names and what they are remapped to.
+            arguments: Its command line.
+            stdin: What is typed: lines that are there at once, or times (simulated s after the start) and lines;
+                then the input ends. None: nothing but what `Program.type` types.
+            check: Whether an exit code other than 0 fails the test.
+            cpu_limit: Processor time in s that it may use without a wait.
+
+        Raises:
+            StudentError: There is no such file, module or executable.
+            LookupError: The test has no simulation.
+        """
+        __tracebackhide__ = True
+        simulation = self._simulated()
+        target = find(source, executable, self._folder)
+        values = {"use_sim_time": True, **(parameters or {})}
+        program = Program(target.title, check=check, cpu_limit=cpu_limit, until=simulation.until)
+        ros_arguments = student.remap_arguments(name, namespace, remappings or {}, values)
+        self.programs.start(program, target, [*arguments, *ros_arguments], stdin=stdin, now_ns=self._now_ns())
+        for _ in range(NOTICE):
+            self.deliver()
+        return program
 
     def stop(self, node: Node) -> None:
         """Destroy a node before the test ends."""
@@ -177,6 +252,8 @@ class Ros:
 
     def spin(self) -> None:
         """Spin all executors once, for `SLICE_S` at most."""
+        if self.programs.running:
+            self.programs.take_turns(self._now_ns())
         with self._alive():
             self._run_turns()
             self._executor.spin_once(timeout_sec=SLICE_S)
@@ -196,7 +273,8 @@ class Ros:
         """Spin until the condition is true and return its value; fails the test with a report otherwise.
 
         With `sim_time`, the simulation is stepped by at most that many simulated seconds, however long that takes.
-        Without it, the wait lasts at most `timeout` seconds of real time, and simulated time does not pass. Raises
+        Without it, the wait lasts at most `timeout` seconds of real time on an idle machine, and simulated time does
+        not pass. A condition that needs the first message of a topic waits for it (`Recorder.latest`). Raises
         LookupError for `sim_time` without a simulation.
         """
         __tracebackhide__ = True
@@ -208,13 +286,19 @@ class Ros:
         )
 
     def spin_until(self, condition: Callable[[], Any], timeout: float, head: Callable[[], str]) -> Any:
-        """Spin until the condition is true, for at most `timeout` s of real time; `head()` begins a failure report."""
+        """Spin until the condition is true, for at most `timeout` s; `head()` begins a failure report.
+
+        A turn counts as `SLICE_S` at most, so that a busy machine, on which it takes longer, has more real time.
+        """
         __tracebackhide__ = True
-        deadline = time.monotonic() + timeout
-        while not (value := condition()):
-            if time.monotonic() > deadline:
-                self.fail(head())
+        awaited = Awaited(condition)
+        rest_s = timeout
+        while not (value := awaited()):
+            if rest_s <= 0:
+                self.fail(head() + awaited.missing())
+            begin_s = time.monotonic()
             self.spin()
+            rest_s -= min(time.monotonic() - begin_s, SLICE_S)
         return value
 
     def settle(self) -> None:
@@ -223,8 +307,10 @@ class Ros:
         No message between them is lost from then on.
         """
         __tracebackhide__ = True
-        nodes = [*self._nodes, *(life.node for life in self._lives)]
-        self.until(lambda: discovery.all_matched(nodes), what="all publishers and subscriptions found each other")
+        nodes = self._all_nodes()
+        self.until(lambda: all_matched(nodes), what="all publishers and subscriptions found each other")
+        if self.programs.running:
+            self.programs.settle()
         for _ in range(NOTICE):
             self.deliver()
 
@@ -252,7 +338,7 @@ class Ros:
             qos = discovery.as_published(self.node, name, DEPTH, transient_local=transient_local)
         subscription = self.node.create_subscription(kind, name, recorder.add, qos)
         self._recorders.append(recorder)
-        self.until(lambda: discovery.is_matched(self.node, subscription), what=f"the publishers of {name}")
+        self.until(lambda: is_matched(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
         return recorder
 
@@ -273,6 +359,12 @@ class Ros:
         self.until(future.done, what=f"answer of {name}")
         return future.result()
 
+    def _all_nodes(self) -> list[Node]:
+        return [*self._nodes, *(life.node for life in self._lives)]
+
+    def _now_ns(self) -> int:
+        return 0 if self.simulation is None else round(self.simulation.now * SECOND_NS)
+
     # --- reports and the end ---
 
     def now(self) -> str:
@@ -285,6 +377,7 @@ class Ros:
         lines = [head]
         if self.simulation is not None:
             lines += self.simulation.lines()
+        lines += [*self._remarks, *self.programs.lines()]
         lines += [repr(recorder) for recorder in self._recorders]
         ours = [TEST_NODE, *(life.node.get_name() for life in self._lives)]
         pytest.fail("\n".join([*lines, *discovery.topic_lines(self.node, ours)]))
@@ -304,6 +397,7 @@ class Ros:
             for life in self._lives:
                 end.callback(life.close)
                 end.callback(self._executor.remove_node, life.node)
+            end.callback(self.programs.close, self._now_ns())
 
     def _end_threads(self) -> None:
         """Shut ROS down before the nodes are destroyed if they run threads, whose loops check `rclpy.ok()`."""

@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any, overload
 
+from thymio_sim_ros.testing.awaited import NothingYetError
 from thymio_sim_ros.testing.failure_messages import pluralized
 
 __all__ = ["Recorder"]
@@ -42,10 +43,8 @@ class Recorder(Sequence[Any]):
 
     @property
     def latest(self) -> Any:
-        """The last message. Raises LookupError if there is none."""
-        if not self._messages:
-            raise LookupError(f"nothing arrived on {self.topic} yet")
-        return self._messages[-1]
+        """The last message. Raises NothingYetError, a LookupError, if there is none; `until` then waits for it."""
+        return self[-1]
 
     def next(
         self,
@@ -87,6 +86,8 @@ class Recorder(Sequence[Any]):
     @overload
     def __getitem__(self, index: slice) -> list[Any]: ...
     def __getitem__(self, index: int | slice) -> Any:
+        if not self._messages and isinstance(index, int):
+            raise NothingYetError(f"no message came on {self.topic}")
         return self._messages[index]
 
     def __eq__(self, other: object) -> bool:

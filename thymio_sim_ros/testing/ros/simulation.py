@@ -17,6 +17,7 @@ from thymio_sim_ros.ros.interface.names import full_name
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
@@ -30,7 +31,7 @@ HOPS = 2
 """Deliveries per tick: a reading reaches a node under test, and its command comes back."""
 
 ANSWER_S = 2.0
-"""Time for pending messages after a wait in simulated time, in s of real time."""
+"""Time for pending messages after a wait in simulated time, in s of real time on an idle machine."""
 
 _NO_MACHINE = "no Aseba machine runs for {}: start one with the fixture `runtime`"
 
@@ -109,6 +110,10 @@ class Simulation:
 
     def tick(self) -> None:
         """Advance by one tick of 10 ms, handle all pending messages, and continue long handlers of programs."""
+        __tracebackhide__ = True
+        if self.ros.programs.running:
+            self.ros.programs.take_turns(self.world.now_ns + TICK_NS)
+            self.ros.deliver()
         self.simulator.runner.advance(1)
         self._subscribe_to_events()
         for _ in range(HOPS):
@@ -125,11 +130,13 @@ class Simulation:
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Step until the condition is true, for at most `seconds` of simulated time; returns its value.
 
+        A condition that needs the first message of a topic waits for it (`Recorder.latest`).
         Fails the test otherwise, with a report on robots, programs, recorded messages and topics.
         """
         __tracebackhide__ = True
+        awaited = Awaited(condition)
         for _ in range(round(seconds * SECOND_NS / TICK_NS)):
-            if value := condition():
+            if value := awaited():
                 return value
             self.tick()
         return self.ros.spin_until(

@@ -10,6 +10,7 @@ import contextlib
 import importlib
 import importlib.util
 import inspect
+import json
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -25,7 +26,7 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["StudentError", "load_class", "remap_arguments", "spinning_forbidden", "start"]
+__all__ = ["StudentError", "load_class", "place", "remap_arguments", "spinning_forbidden", "start"]
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
 _SPUN = (
@@ -66,14 +67,18 @@ def load_class(source: str | Path, class_name: str = "") -> type[Node]:
     return chosen[0]
 
 
-def remap_arguments(name: str, namespace: str, remappings: Mapping[str, str]) -> list[str]:
-    """Return the command line arguments of `ros2 run` that set name, namespace and remappings of a node."""
+def remap_arguments(
+    name: str, namespace: str, remappings: Mapping[str, str], parameters: Mapping[str, Any] | None = None
+) -> list[str]:
+    """Return the command line arguments of `ros2 run` that set name, namespace, remappings and parameters."""
     rules = dict(remappings)
     if namespace:
         rules["__ns"] = "/" + namespace.strip("/")
     if name:
         rules["__node"] = name
     arguments = [word for old, new in rules.items() for word in ("-r", f"{old}:={new}")]
+    for parameter, value in (parameters or {}).items():
+        arguments += ["-p", f"{parameter}:={json.dumps(value)}"]
     return ["--ros-args", *arguments] if arguments else []
 
 
@@ -108,6 +113,12 @@ def start(
         node.destroy_node()
         raise StudentError(f"{kind.__name__} calls Node.__init__ itself: expected super().__init__(…)")
     return node
+
+
+def place(kind: type[Node]) -> str:
+    """File and line of the constructor of a class."""
+    code = getattr(kind.__init__, "__code__", None)
+    return f"{code.co_filename}, line {code.co_firstlineno}" if code else kind.__module__
 
 
 def _run_file(path: Path) -> ModuleType:

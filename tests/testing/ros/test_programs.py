@@ -1,0 +1,266 @@
+"""Programs in processes of their own: what students hand in, against simulated time."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from geometry_msgs.msg import Twist
+from rclpy.qos import QoSProfile
+
+from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
+from thymio_sim_ros.testing.ros import Ros, Simulation
+from thymio_sim_ros.testing.ros.domain import reserved
+from thymio_sim_ros.testing.ros.program import Program
+from thymio_sim_ros.testing.ros.program_files import find
+from thymio_sim_ros.testing.ros.student import StudentError
+
+pytestmark = pytest.mark.process
+
+SCRIPTS = {
+    "dance": """
+        import sys, time
+        import rclpy
+        from geometry_msgs.msg import Twist
+
+        rclpy.init()
+        node = rclpy.create_node("dance")
+        speed = node.declare_parameter("speed", 0.05).value
+        wheels = node.create_publisher(Twist, "wheels", 10)
+        command = Twist()
+        command.linear.x = speed
+        start = time.time()
+        for _ in range(int(sys.argv[1])):
+            wheels.publish(command)
+            time.sleep(0.1)
+        wheels.publish(Twist())
+        print("took", round(time.time() - start, 3))
+        rclpy.shutdown()
+    """,
+    "menu": """
+        import rclpy
+        from geometry_msgs.msg import Twist
+
+        rclpy.init()
+        node = rclpy.create_node("menu")
+        wheels = node.create_publisher(Twist, "cmd_vel", 10)
+        while (choice := input("forward, stop or quit? ")) != "quit":
+            command = Twist()
+            command.linear.x = 0.1 if choice == "forward" else 0.0
+            wheels.publish(command)
+        print("bye")
+    """,
+    "rated": """
+        import threading
+        import rclpy
+        from geometry_msgs.msg import Twist
+
+        rclpy.init()
+        node = rclpy.create_node("rated")
+        wheels = node.create_publisher(Twist, "cmd_vel", 10)
+        threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+        rate = node.create_rate(20)
+        while rclpy.ok():
+            command = Twist()
+            command.linear.x = 0.1
+            wheels.publish(command)
+            print("now", node.get_clock().now().nanoseconds)
+            rate.sleep()
+    """,
+    "many": """
+        import queue, threading, time
+        import rclpy
+        from geometry_msgs.msg import Twist
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        from rclpy.executors import MultiThreadedExecutor
+        from sensor_msgs.msg import Range
+
+        rclpy.init()
+        node = rclpy.create_node("many")
+        group, lock, seen, count = ReentrantCallbackGroup(), threading.Lock(), queue.Queue(), 0
+
+        def hear(message):
+            global count
+            with lock:
+                count += 1
+            seen.put(message.range)
+
+        def slow():
+            time.sleep(0.25)
+            print("slow", round(time.monotonic(), 3), count)
+
+        def work():
+            while rclpy.ok():
+                try:
+                    print("range", seen.get(timeout=0.07), round(time.monotonic(), 3))
+                except queue.Empty:
+                    print("empty", round(time.monotonic(), 3))
+
+        node.create_subscription(Range, "proximity/center", hear, 10, callback_group=group)
+        node.create_timer(0.1, slow, callback_group=group)
+        threading.Thread(target=work).start()
+        executor = MultiThreadedExecutor(3)
+        executor.add_node(node)
+        try:
+            executor.spin()
+        except KeyboardInterrupt:
+            print("interrupted")
+    """,
+    "first": """
+        import time
+        import rclpy
+        from sensor_msgs.msg import Range
+
+        rclpy.init()
+        node = rclpy.create_node("first")
+        last = None
+
+        def hear(message):
+            global last
+            last = message
+
+        node.create_subscription(Range, "proximity/center", hear, 10)
+        while last is None:
+            rclpy.spin_once(node, timeout_sec=0.05)
+        print("first at", round(node.get_clock().now().nanoseconds * 1e-9, 2))
+        end = time.time() + 0.5
+        while time.time() < end:
+            rclpy.spin_once(node, timeout_sec=0)
+        print("done at", round(node.get_clock().now().nanoseconds * 1e-9, 2))
+    """,
+    "busy": """
+        import time
+
+        def count():
+            number = 0
+            while True:
+                number += 1
+
+        time.sleep(0.2)
+        count()
+    """,
+    "crash": """
+        import time
+
+        time.sleep(0.2)
+        print(1 / 0)
+    """,
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with all scripts."""
+    for name, text in SCRIPTS.items():
+        (tmp_path / f"{name}.py").write_text(textwrap.dedent(text))
+    return tmp_path
+
+
+@pytest.fixture
+def sim(folder: Path) -> Iterator[Simulation]:
+    """A simulation in a graph whose scripts are in `folder`."""
+    with reserved() as domain:
+        made = simulated(domain, folder)
+        yield made
+        made.ros.close()
+
+
+def simulated(domain: int, folder: Path) -> Simulation:
+    """A simulation with one robot."""
+    ros = Ros(domain, folder=folder)
+    simulator = ros.live(Simulator(ros.context, SimulatorParams(start_paused=True, playground="base")))
+    made = Simulation(ros, simulator)
+    ros.settle()
+    return made
+
+
+def test_a_script_with_sleeps_drives_in_simulated_time_and_ends(sim: Simulation) -> None:
+    parameters, remappings = {"speed": 0.1}, {"wheels": "cmd_vel"}
+    program = sim.ros.run("dance.py", arguments=["10"], parameters=parameters, remappings=remappings)
+    sim.step(0.9)
+    assert 0.08 < sim.thymio.pose.x_m < 0.1
+    assert program.wait(1) == 0
+    assert program.output == "took 1.0\n"
+    sim.step(0.5)
+    assert sim.thymio.speed == 0
+
+
+def test_input_comes_at_simulated_times(sim: Simulation) -> None:
+    program = sim.ros.run("menu.py", stdin=[(0.5, "forward"), (1.5, "stop"), (2, "quit")])
+    assert program.output == "forward, stop or quit? "
+    assert "waits for input" in program.lines()[0]
+    sim.step(0.4)
+    assert sim.thymio.speed == 0
+    sim.step(1)
+    assert sim.thymio.speed > 0.08
+    assert program.wait(1) == 0
+    assert sim.now == pytest.approx(2.0, abs=0.02)
+    assert program.output.endswith("bye\n")
+
+
+def test_waiting_for_the_first_message_and_polling_the_clock_both_end(sim: Simulation) -> None:
+    program = sim.ros.run("first.py")
+    assert program.wait(2) == 0
+    first, done = (float(line.split()[-1]) for line in program.output.splitlines())
+    assert done == pytest.approx(first + 0.5, abs=0.02)
+
+
+def test_two_programs_with_threads_run_the_same_twice(folder: Path) -> None:
+    assert outcome(folder) == outcome(folder)
+
+
+def outcome(folder: Path) -> tuple[object, ...]:
+    """What two programs at once write and do in 1.5 s."""
+    with reserved() as domain:
+        sim = simulated(domain, folder)
+        try:
+            rated, many = sim.ros.run("rated.py"), sim.ros.run("many.py")
+            sim.step(1.5)
+            assert rated.output.count("now") == 30
+            sim.ros.programs.stop(many, sim.world.now_ns)
+            assert "interrupted" in many.output
+            return rated.output, many.output, sim.thymio.path
+        finally:
+            sim.ros.close()
+
+
+def test_a_busy_loop_and_an_exception_are_named_and_do_not_harm_each_other(sim: Simulation) -> None:
+    sim.ros.run("busy.py", cpu_limit=0.2)
+    with pytest.raises(pytest.fail.Exception) as failed:
+        sim.step(0.3)
+    assert "busy.py used more than 0.2 s of processor time without a wait" in str(failed.value)
+    assert "in count" in str(failed.value)
+    crash = sim.ros.run("crash.py", check=False)
+    assert crash.wait(1) == 1
+    assert crash.errors.splitlines()[-1] == "ZeroDivisionError: division by zero"
+    assert "lockstep" not in crash.errors
+
+
+def test_until_says_that_no_message_came(sim: Simulation) -> None:
+    commands = sim.ros.collect(Twist, "nothing", qos=QoSProfile(depth=1))
+    with pytest.raises(pytest.fail.Exception, match="no message came on /nothing"):
+        sim.until(lambda: commands.latest.linear.x > 0, seconds=0.1)
+
+
+def test_an_executable_is_found_in_the_sources_of_its_package(tmp_path: Path) -> None:
+    package = tmp_path / "robots"
+    package.mkdir()
+    (package / "setup.py").write_text("entry_points={'console_scripts': ['drive = robots.drive:main']}")
+    assert find("robots", "drive", tmp_path).options == {"function": "robots.drive:main", "folder": str(package)}
+    with pytest.raises(StudentError, match="robots fly: no such executable"):
+        find("robots", "fly", tmp_path)
+    with pytest.raises(StudentError, match=r"absent\.py: no such file in"):
+        find("absent.py", "", tmp_path)
+
+
+def test_a_program_needs_a_simulation(folder: Path) -> None:
+    with reserved() as domain:
+        ros = Ros(domain, folder=folder)
+        run: Callable[..., Program] = ros.run
+        try:
+            with pytest.raises(LookupError, match="simulation"):
+                run("dance.py")
+        finally:
+            ros.close()

@@ -1,0 +1,69 @@
+"""Barrier: marks by which one process knows that all earlier messages of another one have arrived.
+
+A participant of DDS receives the messages of another one in the order in which they were published, since all come in
+by one port and are read by one thread. So when a mark has arrived, everything published before it has arrived too,
+whatever its topic and its reliability (docs/decisions.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
+from std_msgs.msg import String
+
+from thymio_sim_ros.lockstep import real_time
+
+__all__ = ["Barrier"]
+
+TOPIC = "/_thymio_sim/turns"
+_QOS = QoSProfile(depth=1000)
+
+
+class Barrier:
+    """The marks of one participant. No executor spins its node."""
+
+    def __init__(self, context: Context, source: str) -> None:
+        """`source`: a name that no other participant of this test has."""
+        self.source = source
+        self.sent = 0
+        self.context = context
+        self._received: dict[str, int] = {}
+        self.node = Node(
+            f"_turns_{source}",
+            context=context,
+            namespace="/",
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+            parameter_overrides=[Parameter("start_type_description_service", value=False)],
+        )
+        self._publisher = self.node.create_publisher(String, TOPIC, _QOS)
+        self._subscription = self.node.create_subscription(String, TOPIC, self._ignore, _QOS)
+
+    def mark(self) -> None:
+        """Publish a mark: what is published before it arrives before it."""
+        self.sent += 1
+        self._publisher.publish(String(data=f"{self.source} {self.sent}"))
+
+    def wait(self, marks: Mapping[str, int]) -> None:
+        """Wait until these marks of other participants have arrived. Raises NotAnsweredError."""
+        wanted = {source: mark for source, mark in marks.items() if source != self.source}
+        real_time.wait_for(lambda: self._has(wanted), f"the messages of {', '.join(wanted)}")
+
+    def _has(self, wanted: Mapping[str, int]) -> bool:
+        while taken := self._take():
+            source, _, mark = taken.rpartition(" ")
+            self._received[source] = int(mark)
+        return all(self._received.get(source, 0) >= mark for source, mark in wanted.items())
+
+    def _take(self) -> str:
+        with self._subscription.handle:
+            taken = self._subscription.handle.take_message(String, False)  # not raw
+        return "" if taken is None else str(taken[0].data)
+
+    def _ignore(self, _message: String) -> None:
+        pass

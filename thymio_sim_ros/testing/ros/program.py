@@ -1,0 +1,227 @@
+"""Program: a student's program in a process of its own, which has a turn in each tick of simulated time."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import pytest
+
+from thymio_sim_ros.lockstep.channel import Channel, ClosedError
+from thymio_sim_ros.lockstep.main import Options
+from thymio_sim_ros.lockstep.real_time import LAST_RESORT_S
+from thymio_sim_ros.ros.compat import dds_profile
+from thymio_sim_ros.testing.record import SECOND_NS
+from thymio_sim_ros.testing.ros.cpu_limit import START_CPU_S
+from thymio_sim_ros.testing.ros.process_watch import BLOCKED_S, ProcessWatch
+
+__all__ = ["INTERRUPTED_NS", "Program"]
+
+INTERRUPTED_NS = 2 * SECOND_NS
+"""Simulated time that an interrupted program has for its end."""
+
+_LOOK_S = 0.05
+"""Real time between two looks at the processor time."""
+
+_LAST_LINES = 6
+
+
+class Program:
+    """A program under test. Invariant: it runs only in its turns, whose order and times the test determines."""
+
+    def __init__(self, title: str, *, check: bool, cpu_limit: float, until: Callable[..., Any]) -> None:
+        """`title`: how reports call it; `until`: `Simulation.until`."""
+        self.title = title
+        self.exit_code: int | None = None
+        """None while it runs; negative if a signal ended it."""
+        self.marks: dict[str, int] = {}
+        self.endpoints: dict[str, dict[str, int]] = {}
+        self._check = check
+        self._cpu_limit = cpu_limit
+        self._until = until
+        self._now_ns = 0
+        self._lines: list[tuple[int, str]] = []
+        self._is_typing_over = False
+        self._waits: Sequence[str] = ()
+        self._turns = 0
+        self._is_waiting = False
+        """Whether it has ended its turn by waiting, not by its end."""
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115  # open as long as the program
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
+        self._stacks = tempfile.TemporaryFile()  # noqa: SIM115
+
+    # --- for the test ---
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it has not ended."""
+        return self.exit_code is None
+
+    @property
+    def output(self) -> str:
+        """What it has written to standard output so far."""
+        return _text(self._output)
+
+    @property
+    def errors(self) -> str:
+        """What it has written to standard error so far, with the traceback of its end if there is one."""
+        return _text(self._errors)
+
+    def type(self, line: str) -> None:
+        """Type a line, which the program can read from its next turn on."""
+        self._lines.append((self._now_ns, line + "\n"))
+
+    def wait(self, seconds: float = 60.0) -> int:
+        """Let simulated time pass until it has ended, and return its exit code; fails the test after `seconds`."""
+        __tracebackhide__ = True
+        self._until(lambda: not self.is_running, seconds, what=f"{self.title} has ended")
+        assert self.exit_code is not None
+        return self.exit_code
+
+    def lines(self) -> list[str]:
+        """Describe its state and its last output, one line each."""
+        if self.is_running:
+            waits = ", ".join(dict.fromkeys(what for what in self._waits if what))
+            state = f"runs, waits for {waits}" if waits else "runs"
+        else:
+            state = f"ended with exit code {self.exit_code} at {self._now_ns / SECOND_NS:.2f} s"
+        last = (self.output + self.errors).splitlines()[-_LAST_LINES:]
+        return [f"program {self.title}: {state}", *(f"  | {line}" for line in last)]
+
+    # --- for `Programs` ---
+
+    def start(
+        self, options: Mapping[str, Any], *, stdin: str | Sequence[tuple[float, str]] | None, now_ns: int
+    ) -> None:
+        """Start the process: `options` are those of `Options` that are not its files."""
+        self._now_ns = now_ns
+        if stdin is not None:
+            timed = [(0.0, line) for line in stdin.splitlines()] if isinstance(stdin, str) else list(stdin)
+            self._lines = [(now_ns + round(at * SECOND_NS), line + "\n") for at, line in timed]
+            self._is_typing_over = True
+        read_fd, to_test = os.pipe()
+        from_test, write_fd = os.pipe()
+        stacks_fd = self._stacks.fileno()
+        given = Options(read_fd=from_test, write_fd=to_test, stacks_fd=stacks_fd, **options)
+        command = [sys.executable, "-m", "thymio_sim_ros.lockstep.main", json.dumps(asdict(given))]
+        environment = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"}
+        with dds_profile.used(dds_profile.ANNOUNCING, environment):
+            self._process = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=self._output,
+                stderr=self._errors,
+                pass_fds=(from_test, to_test, stacks_fd),
+                cwd=given.folder,
+                env=environment,
+            )
+        os.close(from_test)
+        os.close(to_test)
+        self._channel = Channel(read_fd, write_fd)
+        self._watch = ProcessWatch(self._process, self._stacks)
+
+    def take_turn(
+        self,
+        until_ns: int,
+        marks: Mapping[str, int],
+        settle: Callable[[], Mapping[str, Any]],
+        *,
+        interrupt: bool = False,
+    ) -> None:
+        """Run the program until it waits for `until_ns` or longer.
+
+        `settle()` is called when it has new endpoints; it returns the endpoints of all processes.
+        """
+        __tracebackhide__ = True
+        self._watch.begin()
+        self._is_waiting = False
+        typed, self._lines = self._lines, []
+        message = {
+            "marks": marks, "now_ns": self._now_ns, "until_ns": until_ns, "lines": typed,
+            "is_closed_after": self._is_typing_over, "is_interrupted": interrupt,
+        }  # fmt: skip
+        with contextlib.suppress(ClosedError):
+            self._run(message, settle)
+        self._check_end()
+        self._now_ns = max(self._now_ns, until_ns)
+
+    def _run(self, message: dict[str, Any], settle: Callable[[], Mapping[str, Any]]) -> None:
+        __tracebackhide__ = True
+        if not self._turns:
+            self._receive()
+        self._turns += 1
+        self._channel.send(message)
+        while (event := self._receive())["event"] != "done":
+            if event["event"] == "settle":
+                self._channel.send({"match": settle()})
+        self._waits, self._is_waiting = event["waits"], True
+
+    def match(self, expected: Mapping[str, Any]) -> None:
+        """Wait until its endpoints are matched with all others."""
+        self._is_waiting = False
+        with contextlib.suppress(ClosedError):
+            self._channel.send({"match": expected})
+            while self._receive()["event"] != "matched":
+                pass
+            self._is_waiting = True
+        self._check_end()
+
+    def kill(self) -> None:
+        """End the process at once, and close all files."""
+        if self.exit_code is None:
+            self._process.kill()
+            self.exit_code = self._process.wait()
+            self._channel.close()
+
+    def close(self) -> None:
+        """Close the files of its output."""
+        for file in (self._output, self._errors, self._stacks):
+            file.close()
+
+    def _receive(self) -> dict[str, Any]:
+        """Wait for a message of the program, as long as it uses no more than its processor time."""
+        __tracebackhide__ = True
+        limit_s = self._cpu_limit + (START_CPU_S if self._turns <= 1 else 0.0)
+        while not select.select([self._channel.read_fd], [], [], _LOOK_S)[0]:
+            if self._process.poll() is not None:
+                raise ClosedError
+            if self._watch.used_s() > limit_s:
+                self._fail(f"used more than {limit_s:g} s of processor time without a wait")
+            if self._watch.is_blocked():
+                self._fail(f"waits for something outside the simulation since {BLOCKED_S:g} s of real time")
+        event = self._channel.receive()
+        if event["event"] != "settle":  # a mark of an endpoint that is not matched yet does not arrive
+            self.marks.update(event.get("marks", {}))
+        self.endpoints = event.get("endpoints", self.endpoints)
+        return event
+
+    def _fail(self, text: str) -> None:
+        __tracebackhide__ = True
+        place = self._watch.place()
+        self.kill()
+        where = f"\n  it is at {place}" if place else ""
+        pytest.fail("\n".join([f"{self.title} {text}{where}", *self.lines()]))
+
+    def _check_end(self) -> None:
+        """Take note of the end of the process unless it waits; an exit code other than 0 fails the test."""
+        __tracebackhide__ = True
+        if self._is_waiting:
+            return
+        self.exit_code = self._process.wait(LAST_RESORT_S)
+        self._channel.close()
+        self.endpoints = {}
+        if self._check and self.exit_code:
+            pytest.fail(f"{self.title} ended with exit code {self.exit_code}\n{self.errors}".rstrip())
+
+
+def _text(file: Any) -> str:
+    size = os.fstat(file.fileno()).st_size
+    return os.pread(file.fileno(), size, 0).decode(errors="replace")
