@@ -35,8 +35,12 @@ def square(number: int) -> int:
     return number * number
 
 
-def run_and_kill_once(mark: Path, sweep: Sweep, number: int) -> list[Row]:
-    """Execute a run; the worker of run 5 ends, once."""
-    if number == 5:
+def nothing(number: int) -> None:
+    """Do nothing."""
+
+
+def run_and_kill_once(mark: Path, sweep: Sweep, fatal: int, number: int) -> list[Row]:
+    """Execute a run; the worker of the run with the number `fatal` ends, once."""
+    if number == fatal:
         kill_worker_once(mark)
     return run_robots(sweep, number)

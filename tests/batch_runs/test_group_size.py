@@ -31,6 +31,16 @@ def test_groups_grow_step_by_step() -> None:
     assert sizes_after((1, 0.0)).next(100_000, 2) == GROWTH
 
 
-@pytest.mark.parametrize(("waiting", "size"), [(400, 100), (41, 10), (3, 1)])
-def test_the_last_tasks_are_shared_by_all_threads(waiting: int, size: int) -> None:
+def test_on_a_large_cluster_groups_take_longer() -> None:
+    assert sizes_after((100, 50.0)).next(100_000, 800) == 16  # 8 s
+
+
+def test_groups_of_no_duration_have_one_task() -> None:
+    sizes = GroupSize(0.0)
+    sizes.add(1, 0.001)
+    assert sizes.next(1000, 2) == 1
+
+
+@pytest.mark.parametrize(("waiting", "size"), [(1000, 250), (400, 100), (300, 75), (200, 62), (3, 3)])
+def test_the_last_tasks_are_shared_but_not_one_by_one(waiting: int, size: int) -> None:
     assert sizes_after((50, 0.1)).next(waiting, 2) == size

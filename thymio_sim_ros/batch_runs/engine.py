@@ -22,7 +22,7 @@ from distributed import Client, Future, KilledWorker, LocalCluster, Worker, Work
 from thymio_sim_ros import __version__
 from thymio_sim_ros.batch_runs.errors import EngineError
 from thymio_sim_ros.batch_runs.failure import Failure
-from thymio_sim_ros.batch_runs.group_size import GroupSize
+from thymio_sim_ros.batch_runs.group_size import GROUP_S, GroupSize
 
 __all__ = ["run_all"]
 
@@ -56,6 +56,7 @@ def run_all(
     workers: int | None = None,
     scheduler: str = "",
     dashboard: str = "",
+    group_s: float = GROUP_S,
 ) -> Generator[Outcomes[Result], None, None]:
     """Call a function with each task; yield the outcomes as they come, each exactly once, in any order.
 
@@ -69,6 +70,7 @@ def run_all(
         workers: Processes on this machine; None: one per core. They listen on loopback only.
         scheduler: Address of a running Dask scheduler, such as "tcp://10.0.0.1:8786", instead of this machine.
         dashboard: Address at which this machine's cluster has a dashboard, such as "127.0.0.1:8787"; "": none.
+        group_s: Duration of a group of tasks in s, or more on a large cluster; 0: each task is scheduled alone.
 
     Raises:
         EngineError: The cluster cannot be used, or was lost.
@@ -79,7 +81,7 @@ def run_all(
         else:
             stack.enter_context(_quiet())
             client = stack.enter_context(_local(workers, dashboard))
-        yield from _Dispatch(client, function, tasks).outcomes()
+        yield from _Dispatch(client, function, tasks, GroupSize(group_s)).outcomes()
 
 
 @contextlib.contextmanager
@@ -103,8 +105,12 @@ class _IgnoreInterrupt(WorkerPlugin):
 
 @contextlib.contextmanager
 def _local(workers: int | None, dashboard: str) -> Iterator[Client]:
-    # Without routes the HTTP server, which Dask always starts, answers nothing.
-    settings: dict[str, Any] = {"distributed.scheduler.allowed-failures": ATTEMPTS - 1}
+    # The profiler of Dask samples the stack 100 times a second. Without routes the HTTP server, which Dask always
+    # starts, answers nothing.
+    settings: dict[str, Any] = {
+        "distributed.scheduler.allowed-failures": ATTEMPTS - 1,
+        "distributed.worker.profile.enabled": False,
+    }
     if not dashboard:
         settings["distributed.scheduler.http.routes"] = []
     page = {"dashboard": bool(dashboard), "dashboard_address": dashboard or "127.0.0.1:0"}
@@ -145,15 +151,17 @@ def _connected(scheduler: str) -> Iterator[Client]:
 class _Dispatch(Generic[Task, Result]):
     """Sends groups of tasks to a cluster. Invariant: each task is waiting, suspected, in a group, or has an outcome."""
 
-    def __init__(self, client: Client, function: Callable[[Task], Result], tasks: Sequence[Task]) -> None:
-        self._client, self._tasks = client, tasks
+    def __init__(
+        self, client: Client, function: Callable[[Task], Result], tasks: Sequence[Task], size: GroupSize
+    ) -> None:
+        self._client, self._tasks, self._size = client, tasks, size
         self._function = client.submit(_same, function, pure=False)  # a task of its own: sent to each worker once
         self._waiting = deque(range(len(tasks)))
         self._suspects: deque[int] = deque()
         """Tasks of groups whose workers were lost; each runs while nothing else does."""
         self._groups: dict[object, tuple[Future[Any], list[int]]] = {}
-        self._finished: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
-        self._size = GroupSize()
+        self._ended: queue.SimpleQueue[tuple[object, Any]] = queue.SimpleQueue()
+        """Keys of groups with what they returned, or their exception."""
         self._threads, self._counted_s = 1, 0.0
 
     def outcomes(self) -> Iterator[Outcomes[Result]]:
@@ -161,11 +169,11 @@ class _Dispatch(Generic[Task, Result]):
         while self._waiting or self._suspects or self._groups:
             self._send()
             try:
-                future = self._finished.get(timeout=PULSE_S)
+                ended = self._ended.get(timeout=PULSE_S)
             except queue.Empty:
                 yield []
             else:
-                yield self._collect(future)
+                yield self._collect(*ended)
 
     def _send(self) -> None:
         self._count_threads()
@@ -179,7 +187,18 @@ class _Dispatch(Generic[Task, Result]):
         tasks = [self._tasks[number] for number in numbers]
         future = self._client.submit(_run_group, self._function, tasks, __version__, pure=False)
         self._groups[future.key] = (future, numbers)
-        future.add_done_callback(self._finished.put)
+        future.add_done_callback(self._fetch)
+
+    def _fetch(self, future: Future[Any]) -> None:
+        """Get what a group has returned, on a thread of Dask: it waits if a worker was lost with the result.
+
+        `Future.result(timeout)` is of no use here: when the time is over, it raises an UnboundLocalError.
+        """
+        try:
+            found = future.result()
+        except BaseException as error:  # cancellation is not an Exception
+            found = error
+        self._ended.put((future.key, found))
 
     def _count_threads(self) -> None:
         """Count the threads of the cluster, which may grow and shrink, once per second."""
@@ -188,18 +207,14 @@ class _Dispatch(Generic[Task, Result]):
             self._counted_s = now_s
             self._threads = max(1, sum(self._client.nthreads().values()))
 
-    def _collect(self, future: Future[Any]) -> Outcomes[Result]:
-        """Return the outcomes of a group that has ended."""
-        try:
-            seconds, results = future.result(timeout=PULSE_S)
-        except TimeoutError:  # the result was lost with its worker: it is being computed again
-            self._finished.put(future)
-            return []
-        except KilledWorker:
-            return self._suspect(self._groups.pop(future.key)[1])
-        except Exception as error:  # whatever the cluster says instead of running our code
-            raise EngineError(f"the cluster does not run the tasks: {_line(error)}") from error
-        _, numbers = self._groups.pop(future.key)
+    def _collect(self, key: object, found: Any) -> Outcomes[Result]:
+        """Return the outcomes of a group that has ended: its seconds and results, or an exception."""
+        _, numbers = self._groups.pop(key)
+        if isinstance(found, KilledWorker):
+            return self._suspect(numbers)
+        if isinstance(found, BaseException):  # whatever the cluster says instead of running our code
+            raise EngineError(f"the cluster does not run the tasks: {_line(found)}") from found
+        seconds, results = found
         self._size.add(len(numbers), seconds)
         return list(zip(numbers, results, strict=True))
 
