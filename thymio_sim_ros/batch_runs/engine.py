@@ -75,18 +75,17 @@ def run_all(
     Raises:
         EngineError: The cluster cannot be used, or was lost.
     """
-    with contextlib.ExitStack() as stack:
-        if scheduler:
-            client = stack.enter_context(_connected(scheduler))
-        else:
-            stack.enter_context(_quiet())
-            client = stack.enter_context(_local(workers, dashboard))
-        yield from _Dispatch(client, function, tasks, GroupSize(group_s)).outcomes()
+    cluster = _connected(scheduler) if scheduler else _local(workers, dashboard)
+    with _quiet(), cluster as client:
+        try:
+            yield from _Dispatch(client, function, tasks, GroupSize(group_s)).outcomes()
+        except OSError as error:  # of a connection; those of tasks are failures
+            raise EngineError(f"the cluster was lost: {_line(error)}") from error
 
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep the messages of Dask from the terminal; lost workers are part of the results."""
+    """Keep the messages of Dask from the terminal; whatever matters is an outcome or an EngineError."""
     logger = logging.getLogger("distributed")
     before = logger.level
     logger.setLevel(logging.CRITICAL + 1)
