@@ -54,6 +54,7 @@ RULES = {
     f"{OURS}.device": Rule(_names("aseba_vm", "device", "registry") | DECLARATIONS, never=NO_WALL_CLOCK),
     f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
     f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),
+    f"{OURS}.runner_faults": Rule(_names("device", "runner", "sim"), never=NO_WALL_CLOCK),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
     f"{OURS}.web": Rule(_names("web", "bridge", "playground_index", "resources", "sim"), frozenset({"aiohttp"})),
     f"{OURS}.network": Rule(
@@ -81,6 +82,12 @@ RULES = {
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
+    f"{OURS}.batch_runs": Rule(_names("batch_runs"), frozenset({"dask", "distributed"})),
+    f"{OURS}.sweep": Rule(
+        _names("aseba_vm", "device", "loading", "resources", "runner", "runner_faults", "sim", "sweep"),
+        frozenset({"pyarrow"}),
+        NO_WALL_CLOCK - {"time"},
+    ),
     f"{OURS}.rl": Rule(_names("loading", "rl", "runner", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
     f"{OURS}.testing": Rule(_names("device", "loading", "runner", "sim", "testing"), frozenset({"pytest"})),

@@ -6,8 +6,8 @@ from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.playground.track_line import SENSOR_CENTER, TrackLine
 from thymio_sim_ros.testing import Classroom, no_contact
-from thymio_sim_ros.testing.line_following import SENSOR_CENTER, TrackLine
 
 
 def distance_to(points: list[Point], point: Point) -> float:

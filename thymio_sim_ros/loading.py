@@ -8,7 +8,7 @@ import itertools
 import logging
 import re
 import urllib.parse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from aseba_vm import AeslError
@@ -16,7 +16,7 @@ from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.device.programs.program import ThymioProgram, load_file, load_program, parse
+from thymio_sim_ros.device.programs.program import NO_CONSTANTS, ThymioProgram, load_file, load_program, parse
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId, assign_programs
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.format_detection import MAX_BYTES, is_recognized
@@ -87,10 +87,26 @@ def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
 
 def read_assignments(path: str, robots: Sequence[str], layout: str = THYMIO) -> dict[str, Assignment]:
     """Assign the programs of a file to robots, as the Aseba runtime does. Raises the exceptions of `read_program`."""
+    return assignments_of(*read_text(path), robots, layout)
+
+
+def assignments_of(
+    text: str,
+    name: str,
+    robots: Sequence[str],
+    layout: str = THYMIO,
+    *,
+    constants: Mapping[str, int] = NO_CONSTANTS,
+) -> dict[str, Assignment]:
+    """Assign the programs of a text with this name to robots, as `read_assignments` does for a file.
+
+    `constants` replace those of the text. Raises ProgramError for an error in the text.
+    """
     is_alone = len(robots) == 1
     members = {robot: RobotId("" if is_alone else robot, number) for number, robot in enumerate(robots, start=1)}
     names = [member.name for member in members.values() if member.name]
-    shares = assign_programs(load_file(*read_text(path), layout, robots=names), list(members.values()))
+    file = load_file(text, name, layout, constants=constants, robots=names)
+    shares = assign_programs(file, list(members.values()))
     return {robot: shares[member.name] for robot, member in members.items()}
 
 

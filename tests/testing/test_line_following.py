@@ -7,8 +7,8 @@ import math
 import pytest
 
 from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.sim.playground.track_line import TrackLine
 from thymio_sim_ros.testing import Classroom, followed_line
-from thymio_sim_ros.testing.line_following import TrackLine
 
 SQUARE = TrackLine([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], closed=True)
 EIGHT = TrackLine([(-1.0, -1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)], closed=True)

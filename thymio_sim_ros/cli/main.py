@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal
-from thymio_sim_ros.cli import convert, env, foxglove_layout, replay, runner, suite
+from thymio_sim_ros.cli import convert, env, foxglove_layout, replay, runner, suite, sweep
 from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
@@ -21,6 +21,7 @@ COMMANDS: Mapping[str, Callable[[Sequence[str]], int]] = {
     "env": env.run,
     "foxglove-layout": foxglove_layout.run,
     "replay": replay.run,
+    "sweep": sweep.run,
 }
 
 

@@ -20,12 +20,12 @@ from thymio_sim_ros.cli.options import (
     program_option,
 )
 from thymio_sim_ros.cli.output import print_json
-from thymio_sim_ros.cli.runner_faults import RunnerFaults
 from thymio_sim_ros.cli.runner_sound import SOUND_SENSOR, run_with_sound
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.runner_faults import RunnerFaults
 
 __all__ = ["run"]
 

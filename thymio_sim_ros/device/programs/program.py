@@ -14,6 +14,7 @@ from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = [
+    "NO_CONSTANTS",
     "ProgramError",
     "ThymioFile",
     "ThymioProgram",

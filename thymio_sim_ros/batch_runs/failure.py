@@ -1,0 +1,14 @@
+"""What a task without a result leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Failure"]
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """A task without a result, and the reason on one line."""
+
+    reason: str
