@@ -1,4 +1,4 @@
-"""Grades the submissions of a class: one sandbox for each, several at a time, results in the order of the submissions."""
+"""Grades the submissions of a class in sandboxes, several at a time; results are in the order of the submissions."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from thymio_sim_ros.grading.submissions import Submission
 
-__all__ = ["PASSED", "GradedTest", "Graded", "Verdict"]
+__all__ = ["PASSED", "Graded", "GradedTest", "Verdict"]
 
 PASSED = "passed"
 """The outcome that gives points; any other gives none."""

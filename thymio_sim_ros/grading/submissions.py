@@ -89,25 +89,22 @@ def prepared(submission: Submission, expected: Iterable[str]) -> Submission:
 def _class_entries(path: Path) -> list[Submission]:
     if path.is_dir():
         return [_from_path(entry) for entry in sorted(path.iterdir()) if not _is_clutter(entry.name)]
-    content = read_zip(path.read_bytes(), whole_class=True)
-    tops: dict[str, dict[str, bytes]] = {}
-    for name, data in content.items():
-        top, _, rest = name.partition("/")
-        if not _is_clutter(top):
-            tops.setdefault(top, {})[rest] = data
-    if len(tops) == 1 and "" not in (only := next(iter(tops.values()))) and not _MOODLE.fullmatch(next(iter(tops))):
-        return _from_entries(only)
-    return [entry for top, files in tops.items() for entry in [_from_files(top, files)]]
+    tops = _by_top(read_zip(path.read_bytes(), whole_class=True))
+    if len(tops) == 1:
+        ((top, only),) = tops.items()
+        if "" not in only and not _MOODLE.fullmatch(top):  # the folder of the class itself
+            tops = _by_top(only)
+    return [_from_files(top, files) for top, files in tops.items()]
 
 
-def _from_entries(files: Mapping[str, bytes]) -> list[Submission]:
-    """Submissions of a zip whose files are all in one folder."""
+def _by_top(files: Content) -> dict[str, dict[str, bytes]]:
+    """Files by the first part of their path; a file without a folder has the rest ""."""
     tops: dict[str, dict[str, bytes]] = {}
     for name, data in files.items():
         top, _, rest = name.partition("/")
         if not _is_clutter(top):
             tops.setdefault(top, {})[rest] = data
-    return [_from_files(top, content) for top, content in tops.items()]
+    return tops
 
 
 def _from_path(path: Path) -> Submission:

@@ -47,8 +47,9 @@ class Classroom:
     ) -> None:
         """A playground by name, path or text; one program for all robots, or one by robot's name.
 
-        Relative paths start in `folder`. `run_log` is a file for the run log, which `close` completes. Raises PlaygroundError or ProgramError for invalid content, ResourceError for
-        a missing file, KeyError for an unknown robot.
+        Relative paths start in `folder`. `run_log` is a file for the run log, which `close` completes. Raises
+        PlaygroundError or ProgramError for invalid content, ResourceError for a missing file, KeyError for an unknown
+        robot.
         """
         self._folder = folder
         loaded = playground_of(playground, folder)

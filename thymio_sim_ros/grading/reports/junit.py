@@ -25,7 +25,7 @@ def junit_xml(class_: Sequence[Graded]) -> str:
         }
         counts["errors"] = counts["tests"] - counts["failures"] - counts["skipped"] - outcomes.count("passed")
         name = graded.submission.name
-        suite = ElementTree.SubElement(root, "testsuite", name=name, **{key: str(n) for key, n in counts.items()})
+        suite = ElementTree.SubElement(root, "testsuite", {"name": name} | {key: str(n) for key, n in counts.items()})
         properties = ElementTree.SubElement(suite, "properties")
         for key, points in {"points": graded.points, "maximum": graded.maximum}.items():
             ElementTree.SubElement(properties, "property", name=key, value=number(points))

@@ -62,7 +62,8 @@ def _head(title: str) -> str:
 def _row(name: str, verdict: Verdict) -> str:
     kind = "passed" if verdict.outcome == "passed" else "lost"
     points = f"{number(verdict.points)} of {number(verdict.test.points)}"
-    return f'<tr><td>{html.escape(name)}</td><td class="{kind}">{html.escape(verdict.outcome)}</td><td>{points}</td></tr>\n'
+    outcome = f'<td class="{kind}">{html.escape(verdict.outcome)}</td>'
+    return f"<tr><td>{html.escape(name)}</td>{outcome}<td>{points}</td></tr>\n"
 
 
 def _details(name: str, verdict: Verdict, log: str) -> list[str]:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 
-__all__ = ["file_name", "number", "shown_message", "shown_remark", "short_names"]
+__all__ = ["file_name", "number", "short_names", "shown_message", "shown_remark"]
 
 _CONTROLS = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _HIDDEN = "a hidden test"

@@ -41,7 +41,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """Result of a job. `remark`: why the job as a whole failed; `collected`: tests and points (as a fraction's text)."""
+    """Result of a job. `remark`: why the job as a whole failed; `collected`: tests and points, a fraction as text."""
 
     outcomes: Mapping[str, Outcome]
     collected: tuple[tuple[str, str], ...] = ()

@@ -1,7 +1,7 @@
 """A file system, process table and network of its own, by Linux namespaces.
 
-The new root is a small file system in memory. It has the system's files, read-only, and one writable folder. The network has
-the loopback device only.
+The new root is a small file system in memory. It has the system's files, read-only, and one writable folder. The
+network has the loopback device only.
 """
 
 from __future__ import annotations

@@ -7,7 +7,8 @@ A line is a JSON object with the secret of the process and its kind:
     {"secret": "…", "do": "result", "test": "test_it.py::test_a", "outcome": "failed", "message": "…"}
     {"secret": "…", "do": "end"}
 
-Every test has one begin and one result, in the order in which they were selected. A test without a result has no points.
+Every test has one begin and one result, in the order in which they were selected. A test without a result has no
+points.
 """
 
 from __future__ import annotations

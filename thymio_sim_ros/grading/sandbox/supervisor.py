@@ -155,7 +155,7 @@ class _Supervisor:
         return work
 
     def _replace_tests_by_submission(self, work: Path) -> None:
-        """Remove the Python files of the assignment, then write the submission. Files of the assignment have priority."""
+        """Remove the Python files of the assignment, then write the submission, but no file whose name is taken."""
         for name in self._job.assignment:
             if name.endswith(".py"):
                 (work / name).unlink()

@@ -8,7 +8,8 @@ import os
 __all__ = [
     "CLONE_NEWIPC", "CLONE_NEWNET", "CLONE_NEWNS", "CLONE_NEWPID", "CLONE_NEWUSER", "CLONE_NEWUTS", "MS_BIND",
     "MS_NODEV", "MS_NOSUID", "MS_PRIVATE", "MS_RDONLY", "MS_REC", "MS_REMOUNT", "die_with_parent", "drop_capabilities",
-    "forbid_new_privileges", "hide_memory", "mount", "pivot_root", "reap_orphans", "set_filter", "syscall", "umount", "unshare",
+    "forbid_new_privileges", "hide_memory", "mount", "pivot_root", "reap_orphans", "set_filter",
+    "syscall", "umount", "unshare",
 ]  # fmt: skip
 
 CLONE_NEWNS, CLONE_NEWUTS, CLONE_NEWIPC = 0x0002_0000, 0x0400_0000, 0x0800_0000

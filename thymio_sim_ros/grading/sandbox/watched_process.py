@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import selectors
 import signal
@@ -88,10 +89,8 @@ class WatchedProcess:
 
     def send(self, line: str) -> None:
         """Send a line to the process."""
-        try:
+        with contextlib.suppress(BrokenPipeError):  # it has ended, as `lines` will find
             os.write(self._control, line.encode() + b"\n")
-        except BrokenPipeError:
-            pass  # it has ended, as `lines` will find
 
     def lines(self) -> Iterator[bytes]:
         """Yield the lines of its report. Raises Ended or LimitError."""
