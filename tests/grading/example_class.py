@@ -25,7 +25,7 @@ output_mb = 1
 disk_mb = 20
 """
 
-TESTS = '''
+TESTS = """
 import runpy
 from pathlib import Path
 
@@ -58,9 +58,9 @@ def test_it_starts(thymio, steer):
 def test_it_touches_nothing(thymio, steer, seed):
     drive(thymio, steer, 6)
     assert no_contact(thymio)
-'''
+"""
 
-HIDDEN = '''
+HIDDEN = """
 import runpy
 from pathlib import Path
 
@@ -71,7 +71,7 @@ import pytest
 def test_it_turns_when_something_is_near():
     left, right = runpy.run_path(str(Path(__file__).with_name("controller.py")))["steer"]((4000,) * 7)
     assert left != right, "the secret of the hidden test"
-'''
+"""
 
 GOOD = """
 def steer(prox):

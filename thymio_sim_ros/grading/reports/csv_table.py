@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Sequence
 
-from thymio_sim_ros.grading.reports.texts import number, short_names, shown_remark
+from thymio_sim_ros.grading.reports.texts import number, short_names, shown_name, shown_remark
 from thymio_sim_ros.grading.results import Graded, GradedTest
 
 __all__ = ["csv_table"]
@@ -22,7 +22,13 @@ def csv_table(class_: Sequence[Graded], tests: Sequence[GradedTest]) -> str:
     for graded in class_:
         each = [number(verdict.points) for verdict in graded.verdicts]
         submission = graded.submission
-        row = [submission.name, submission.identifier, number(graded.points), number(graded.maximum), _verdict(graded)]
+        row = [
+            shown_name(graded),
+            submission.identifier,
+            number(graded.points),
+            number(graded.maximum),
+            _verdict(graded),
+        ]
         table.writerow(map(_plain, [*row, *each, shown_remark(graded)]))
     return text.getvalue()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 
-from thymio_sim_ros.grading.reports.texts import number, shown_message
+from thymio_sim_ros.grading.reports.texts import number, shown_message, shown_name
 from thymio_sim_ros.grading.results import Graded, Verdict
 
 __all__ = ["junit_xml"]
@@ -24,7 +24,7 @@ def junit_xml(class_: Sequence[Graded]) -> str:
             "skipped": outcomes.count("skipped"),
         }
         counts["errors"] = counts["tests"] - counts["failures"] - counts["skipped"] - outcomes.count("passed")
-        name = graded.submission.name
+        name = shown_name(graded)
         suite = ElementTree.SubElement(root, "testsuite", {"name": name} | {key: str(n) for key, n in counts.items()})
         properties = ElementTree.SubElement(suite, "properties")
         for key, points in {"points": graded.points, "maximum": graded.maximum}.items():

@@ -6,7 +6,7 @@ import base64
 import html
 from collections.abc import Mapping
 
-from thymio_sim_ros.grading.reports.texts import number, short_names, shown_message, shown_remark
+from thymio_sim_ros.grading.reports.texts import number, short_names, shown_message, shown_name, shown_remark
 from thymio_sim_ros.grading.results import Graded, Verdict
 
 __all__ = ["index_page", "submission_page"]
@@ -32,7 +32,7 @@ def submission_page(graded: Graded, logs: Mapping[str, str]) -> str:
     Everything that comes from a submission is escaped text, or a picture, in which browsers run no scripts.
     """
     names = short_names([verdict.test for verdict in graded.verdicts])
-    parts = [_head(graded.submission.name)]
+    parts = [_head(shown_name(graded))]
     parts.append(f"<p><b>{number(graded.points)} of {number(graded.maximum)} points</b></p>\n")
     if remark := shown_remark(graded):
         parts.append(f"<p>{html.escape(remark)}</p>\n")
@@ -49,7 +49,7 @@ def index_page(title: str, isolation: str, rows: Mapping[str, Graded]) -> str:
     parts = [_head(title), f"<p>Isolation: {html.escape(isolation)}</p>\n"]
     parts.append("<table><tr><th>Name</th><th>Points</th><th>Remark</th></tr>\n")
     for page, graded in rows.items():
-        link = f'<a href="{html.escape(page)}">{html.escape(graded.submission.name)}</a>'
+        link = f'<a href="{html.escape(page)}">{html.escape(shown_name(graded))}</a>'
         points = f"{number(graded.points)} of {number(graded.maximum)}"
         parts.append(f"<tr><td>{link}</td><td>{points}</td><td>{html.escape(shown_remark(graded))}</td></tr>\n")
     return "".join([*parts, "</table></body></html>\n"])

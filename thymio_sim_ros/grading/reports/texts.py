@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 
-__all__ = ["file_name", "number", "short_names", "shown_message", "shown_remark"]
+__all__ = ["file_name", "number", "short_names", "shown_message", "shown_name", "shown_remark"]
 
 _CONTROLS = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _HIDDEN = "a hidden test"
@@ -35,6 +35,11 @@ def shown_message(verdict: Verdict) -> str:
         return "" if verdict.outcome == "passed" else _HIDDEN
     parts = [verdict.message, f"output:\n{verdict.output}" if verdict.output else ""]
     return _CONTROLS.sub("\ufffd", "\n\n".join(filter(None, parts)))
+
+
+def shown_name(graded: Graded) -> str:
+    """Name of a submission, without characters that XML refuses: it may come from a file name."""
+    return _CONTROLS.sub("\ufffd", graded.submission.name)
 
 
 def shown_remark(graded: Graded) -> str:
