@@ -17,8 +17,8 @@ hidden = ["test_hidden.py"]
 files = ["controller.py"]
 
 [limits]
-cpu_s = 4
-idle_s = 4
+cpu_s = 3
+idle_s = 3
 memory_mb = 500
 processes = 24
 output_mb = 1
@@ -83,7 +83,8 @@ STRAIGHT = "def steer(prox): return 400, 400"
 def acting(action: str) -> str:
     """A good controller that first does something else, each time it is asked."""
     body = "\n".join(f"    {line}" for line in action.strip().splitlines())
-    return f"import os, socket, subprocess, sys, threading, time\ndef steer(prox):\n{body}\n    return good(prox)\n{GOOD.replace('steer', 'good')}"
+    imports = "import os, socket, subprocess, sys, threading, time"
+    return f"{imports}\ndef steer(prox):\n{body}\n    return good(prox)\n{GOOD.replace('steer', 'good')}"
 
 
 @dataclass(frozen=True)
@@ -114,14 +115,13 @@ PUPILS = {
     "Loops once": Pupil(acting("while prox[6] == 4000: pass"), "4", "CPU time limit"),
     "Sleeps": Pupil(acting("time.sleep(1e6) if prox[6] == 4000 else None"), "4", "idle limit"),
     "Reads input": Pupil(acting("input()"), "0", "failed"),
-    "Forks": Pupil(acting("os.fork()"), "6", "passed"),
+    "Forks": Pupil(acting("if prox[6] == 4000: os.fork()"), "6", "passed"),
     "Fork bomb": Pupil(
         acting("while prox[6] == 4000:\n    try: os.fork()\n    except OSError: pass"), "4", "CPU time limit"
     ),
     "Threads": Pupil(acting("threading.Thread(target=time.sleep, args=(1e6,)).start() if prox[6] else None"), "6", ""),
     "Deletes files": Pupil(
-        acting("subprocess.run(['rm', '-rf', '/usr', os.environ['HOST_FOLDER'], '..'], stderr=subprocess.DEVNULL)")
-        .replace("os.environ['HOST_FOLDER']", "HOST_FOLDER"), "0", "failed"
+        acting("import shutil\nfor path in HOST_FOLDER, '/usr/bin', '.': shutil.rmtree(path, True)"), "1", "failed"
     ),
     "Calls the network": Pupil(acting("socket.create_connection(('127.0.0.1', HOST_PORT), 1)"), "0", "failed"),
     "Prints gigabytes": Pupil(acting("while True: print('x' * 10000)"), "0", "output limit"),
@@ -130,9 +130,9 @@ PUPILS = {
         acting("with open('/tmp/full', 'wb') as f:\n    while True: f.write(bytes(10 ** 6))"), "0", "failed"
     ),
     "Kills": Pupil(acting("os.kill(-1, 9)"), "0", "failed"),
-    "Kills the supervisor": Pupil(acting("os.kill(1, 9); os.kill(os.getppid(), 9)"), "6", "passed"),
+    "Kills the supervisor": Pupil(acting("for pid in (1, os.getppid()):\n    try: os.kill(pid, 9)\n    except OSError: pass"), "6", "passed"),
     "Reads hidden tests": Pupil(
-        acting("assert not [n for _, _, names in os.walk('..') for n in names if n.startswith('test_')], 'found'"),
+        acting("assert not [n for _, _, names in os.walk('..') for n in names if n.endswith('.py') and 'test' in n], 'found'"),
         "6", "passed"
     ),
     "Forges": Pupil(

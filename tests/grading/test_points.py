@@ -31,5 +31,5 @@ def test_parameters_share_the_points_of_their_function(pytester: pytest.Pytester
 @pytest.mark.parametrize("arguments", ["", "'3'", "-1", "True", "1, 2", "number=3", "float('nan')"])
 def test_an_invalid_mark_is_explained(pytester: pytest.Pytester, arguments: str) -> None:
     items = pytester.getitems(f"import pytest\n@pytest.mark.points({arguments})\ndef test_a(): pass")
-    with pytest.raises(pytest.UsageError, match="test_a: mark points: found .*, expected one number from 0 on"):
+    with pytest.raises(pytest.UsageError, match=r"test_a: mark points: found .*, expected one number from 0 on"):
         points_of(items)
