@@ -49,8 +49,11 @@ def local_map(workers: int) -> Map:
     """A `Map` that uses this machine, with so many sandboxes at a time."""
 
     def apply(function: Callable[[Submission], Graded], submissions: Iterable[Submission]) -> Iterator[Graded]:
-        with ThreadPoolExecutor(workers) as pool:  # threads only wait: each starts a process
+        pool = ThreadPoolExecutor(workers)  # its threads only wait: each starts a process
+        try:
             yield from pool.map(function, submissions)
+        finally:
+            pool.shutdown(cancel_futures=True)  # Ctrl-C has reached the sandboxes, too
 
     return apply
 

@@ -71,7 +71,6 @@ def run_job(job: Job) -> Report:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         env=environment,
-        start_new_session=True,
     ) as process:
         try:
             output, errors = process.communicate(pickle.dumps(job), timeout=limit)

@@ -49,7 +49,8 @@ class Place:
 def supervise(job: Job, place: Place) -> Report:
     """Run a job to its end and return the report."""
     os.umask(0o022)
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # the first process of a namespace ignores what it does not handle
+    if place.has_own_processes:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # the first process of a namespace ignores what it does not handle
     syscalls.hide_memory()
     syscalls.reap_orphans()
     supervisor = _Supervisor(job, place)
