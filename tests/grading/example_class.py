@@ -130,9 +130,11 @@ PUPILS = {
         acting("with open('/tmp/full', 'wb') as f:\n    while True: f.write(bytes(10 ** 6))"), "0", "failed"
     ),
     "Kills": Pupil(acting("os.kill(-1, 9)"), "0", "failed"),
-    "Kills the supervisor": Pupil(acting("for pid in (1, os.getppid()):\n    try: os.kill(pid, 9)\n    except OSError: pass"), "6", "passed"),
+    "Kills the supervisor": Pupil(
+        acting("for pid in (1, os.getppid()):\n    try: os.kill(pid, 9)\n    except OSError: pass"), "6", "passed"
+    ),
     "Reads hidden tests": Pupil(
-        acting("assert not [n for _, _, names in os.walk('..') for n in names if n.endswith('.py') and 'test' in n], 'found'"),
+        acting("for _, _, names in os.walk('..'): assert not [n for n in names if n[:4] + n[-3:] == 'test.py']"),
         "6", "passed"
     ),
     "Forges": Pupil(
