@@ -80,8 +80,10 @@ def test_the_workflow_runs_what_there_is(pytester: pytest.Pytester, folder: Path
     assert requirement == f"{project['name']}[ros]"
     assert "ros" in project["optional-dependencies"]
     words = shlex.split(command)
-    assert words[:3] == ["python", "-m", "pytest"]
-    run(pytester, *words[3:], "test_follower.py").assert_outcomes(passed=5)
+    begin = words.index("python")
+    assert words[:begin] == ["timeout", "--kill-after=10s", "8m", "prlimit", "--cpu=300"]
+    assert words[begin : begin + 3] == ["python", "-m", "pytest"]
+    run(pytester, *words[begin + 3 :], "test_follower.py").assert_outcomes(passed=5)
     assert "<testcase" in (folder / "report.xml").read_text()
 
 

@@ -11,6 +11,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -28,10 +29,27 @@ NO_ROS = (
 )
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option for run logs."""
+    about = "write the run log of the world of each test into this folder (thymio-sim replay)"
+    parser.getgroup("thymio").addoption("--run-logs", metavar="DIR", type=Path, default=None, help=about)
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the mark."""
-    about = f"{MARK}({', '.join(KEYWORDS)}): the simulated world of a test"
-    config.addinivalue_line("markers", about)
+    """Register the marks."""
+    config.addinivalue_line("markers", f"{MARK}({', '.join(KEYWORDS)}): the simulated world of a test")
+    config.addinivalue_line("markers", "points(number): points of a test function (thymio-sim grade)")
+
+
+def _run_log(request: pytest.FixtureRequest) -> Path | None:
+    """The file for the run log of a test, if there are to be logs."""
+    folder: Path | None = request.config.getoption("--run-logs", None)
+    if folder is None:
+        return None
+    from thymio_sim_ros.runlog.test_files import run_log_path
+
+    folder.mkdir(parents=True, exist_ok=True)
+    return run_log_path(folder, request.node.nodeid)
 
 
 def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
@@ -47,14 +65,18 @@ def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
 
 
 @pytest.fixture
-def classroom(request: pytest.FixtureRequest) -> Classroom:
+def classroom(request: pytest.FixtureRequest) -> Iterator[Classroom]:
     """A simulated world with its robots, without ROS; the mark `thymio` has its options."""
     from thymio_sim_ros.testing import Classroom
 
     wanted = _wanted(request)
     programs = wanted.pop("programs", None)
     program = wanted.pop("program", "none")
-    return Classroom(programs=program if programs is None else programs, folder=request.path.parent, **wanted)
+    if programs is None:
+        programs = program
+    classroom = Classroom(programs=programs, folder=request.path.parent, run_log=_run_log(request), **wanted)
+    yield classroom
+    classroom.close()
 
 
 @pytest.fixture
@@ -117,6 +139,7 @@ def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simula
         marked = {name: value for name, value in _wanted(request).items() if name in known}
         wanted = {"playground": "base", **marked, **parameters}
         wanted["playground"] = beside(wanted["playground"], request.path.parent)
+        wanted.setdefault("log", str(_run_log(request) or ""))
         defaults = replace(SimulatorParams(start_paused=True), **wanted)
         made = Simulation(ros, ros.live(Simulator(ros.context, defaults)), folder=request.path.parent)
         ros.settle()

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal
-from thymio_sim_ros.cli import convert, env, foxglove_layout, replay, runner, suite, sweep
+from thymio_sim_ros.cli import convert, env, foxglove_layout, grade, replay, runner, suite, sweep
 from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
@@ -20,6 +20,7 @@ COMMANDS: Mapping[str, Callable[[Sequence[str]], int]] = {
     "convert": convert.run,
     "env": env.run,
     "foxglove-layout": foxglove_layout.run,
+    "grade": grade.run,
     "replay": replay.run,
     "sweep": sweep.run,
 }

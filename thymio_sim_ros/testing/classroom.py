@@ -12,6 +12,7 @@ import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
+from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import Playground
@@ -43,11 +44,13 @@ class Classroom:
         seed: int = 0,
         noise: bool = True,
         folder: Path | None = None,
+        run_log: Path | None = None,
     ) -> None:
         """A playground by name, path or text; one program for all robots, or one by robot's name.
 
-        Relative paths start in `folder`. Raises PlaygroundError or ProgramError for invalid content, ResourceError for
-        a missing file, KeyError for an unknown robot.
+        Relative paths start in `folder`. `run_log` is a file for the run log, which `close` completes. Raises
+        PlaygroundError or ProgramError for invalid content, ResourceError for a missing file, KeyError for an unknown
+        robot.
         """
         self._folder = folder
         loaded = playground_of(playground, folder)
@@ -59,7 +62,8 @@ class Classroom:
                 own[name] = program_of(program, folder)
         else:
             own = dict.fromkeys(names, program_of(programs, folder))
-        self.runner = Runner(loaded, own, seed=seed, noise=noise)
+        self._log = None if run_log is None else RunLog(run_log.open("w", encoding="utf-8", newline="\n"))
+        self.runner = Runner(loaded, own, seed=seed, noise=noise, log=self._log)
         self.robots: Mapping[str, Thymio] = {name: Thymio(name, self) for name in names}
         self._record_events()
 
@@ -120,6 +124,11 @@ class Classroom:
         for thymio in self:
             thymio.record.clear()
         self._record_events()
+
+    def close(self) -> None:
+        """Complete the run log, if there is one; no time passes afterwards."""
+        if self._log is not None:
+            self._log.close()
 
     def machine(self, robot: str) -> RobotMachine:
         """The machine of a robot."""

@@ -1,0 +1,39 @@
+"""Reports: content from submissions is only text in them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import xml.etree.ElementTree as ElementTree
+from fractions import Fraction
+
+from thymio_sim_ros.grading.reports.csv_table import csv_table
+from thymio_sim_ros.grading.reports.junit import junit_xml
+from thymio_sim_ros.grading.reports.page import index_page, submission_page
+from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
+from thymio_sim_ros.grading.submissions import Submission
+
+TEST = GradedTest("test_a.py::test_it", Fraction(1, 3))
+EVIL = "<script>alert(1)</script>\x00\x1b]]>"
+GRADED = Graded(
+    Submission("=cmd|' /C calc'!A0" + EVIL),
+    [Verdict(TEST, "failed", EVIL, EVIL, files={"trace.svg": b"<svg onload='alert(1)'/>"})],
+)
+
+
+def test_the_table_has_no_formulas() -> None:
+    row = next(iter(csv.DictReader(io.StringIO(csv_table([GRADED], [TEST])))))
+    assert row["name"].startswith("'=cmd")
+    assert (row["points"], row["maximum"], row["verdict"]) == ("0", "0.33", "failed")
+
+
+def test_junit_is_valid_xml_whatever_was_printed() -> None:
+    suite = ElementTree.fromstring(junit_xml([GRADED]).encode()).find("testsuite")
+    assert suite is not None
+    assert "<script>alert(1)</script>\ufffd" in str(suite.findtext("testcase/failure"))
+
+
+def test_pages_escape_text_and_pictures() -> None:
+    for page in (submission_page(GRADED, {}), index_page("class", "none", {"a.html": GRADED})):
+        assert "<script" not in page
+        assert "onload" not in page

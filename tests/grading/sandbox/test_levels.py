@@ -1,0 +1,59 @@
+"""Every level of isolation that this machine gives: what a submission can and cannot do in it."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.grading.assignment import Limits
+from thymio_sim_ros.grading.sandbox.job import Job
+from thymio_sim_ros.grading.sandbox.levels import AUTOMATIC, run_job, why_unavailable
+
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="sandboxes need Linux"),
+]
+
+TESTS = """
+import os, runpy, socket
+from pathlib import Path
+
+def probe(name):
+    return runpy.run_path(str(Path(__file__).with_name("probe.py")))[name]
+
+def test_it_writes_its_own_folder(): probe("write_here")()
+def test_it_reads_files_of_others(): probe("read")()
+def test_it_connects_by_tcp(): probe("connect")()
+def test_it_signals_others(): probe("signal")()
+def test_it_gets_rights(): probe("unshare")()
+"""
+PROBE = """
+import ctypes, os, socket
+def write_here():
+    with open("file", "w") as file: file.write("1")
+def read(): open({path!r}).read()
+def connect(): socket.create_connection(("127.0.0.1", {port}), 1)
+def signal(): os.kill({pid}, 0)
+def unshare():
+    if ctypes.CDLL(None).unshare(0x10000000): raise OSError("refused")
+"""
+
+
+@pytest.mark.parametrize("level", AUTOMATIC)
+def test_a_level_gives_what_it_promises(level: str, tmp_path: Path) -> None:
+    if reason := why_unavailable(level):
+        pytest.skip(f"{level}: {reason}")
+    (tmp_path / "secret").write_text("secret")
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        probe = PROBE.format(path=str(tmp_path / "secret"), port=listener.getsockname()[1], pid=os.getpid())
+        names = [f"test_probe.py::{line.split('(')[0][4:]}" for line in TESTS.splitlines() if "def test" in line]
+        files = {"test_probe.py": TESTS.encode()}
+        report = run_job(Job(level, ("test_probe.py",), files, {"probe.py": probe.encode()}, tuple(names), Limits()))
+    assert report.remark == ""
+    assert {name: one.outcome for name, one in report.outcomes.items()} == dict.fromkeys(names, "failed") | {
+        names[0]: "passed"
+    }

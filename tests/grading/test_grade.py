@@ -1,0 +1,135 @@
+"""The command `thymio-sim grade` on an example class: exact marks, whatever the submissions try."""
+
+from __future__ import annotations
+
+import csv
+import json
+import socket
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+from tests.grading.example_class import HARMLESS, PUPILS, moodle_zip, write_assignment
+from thymio_sim_ros.cli import main
+from thymio_sim_ros.cli.errors import USAGE_ERROR
+from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.sandbox.levels import best_level
+from thymio_sim_ros.runlog.replay import replay
+
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="sandboxes need Linux"),
+]
+
+
+@pytest.fixture(scope="module")
+def level() -> str:
+    """The strongest isolation of this machine, if it gives own processes and an own network."""
+    try:
+        found = best_level()
+    except GradingError as error:
+        pytest.skip(str(error))
+    if found == "landlock":
+        pytest.skip("neither bubblewrap nor namespaces are available here")
+    return found
+
+
+def grade(folder: Path, names: tuple[str, ...], workers: int) -> Path:
+    """Grade a part of the class; return the folder of the reports."""
+    listener = socket.create_server(("127.0.0.1", 0))
+    precious = folder / "precious"
+    precious.mkdir()
+    (precious / "file").write_text("kept")
+    port = listener.getsockname()[1]
+    class_ = moodle_zip(folder / "class.zip", names, host_folder=precious, host_port=port)
+    assignment, output = write_assignment(folder / "assignment"), folder / "grades"
+    with listener:
+        words = ["grade", class_, "--assignment", assignment, "-o", output, "--workers", workers]
+        assert main.main(list(map(str, words))) == 0
+        listener.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            listener.accept()
+    assert (precious / "file").read_text() == "kept"
+    return output
+
+
+def rows(output: Path) -> dict[str, dict[str, str]]:
+    """The rows of the table by name."""
+    with (output / "marks.csv").open(newline="") as file:
+        return {row["name"]: row for row in csv.DictReader(file)}
+
+
+def assert_marks(output: Path, names: tuple[str, ...]) -> None:
+    """The exact marks of these pupils."""
+    found = rows(output)
+    assert {name: found[name]["points"] for name in names} == {name: PUPILS[name].points for name in names}
+    for name in names:
+        assert PUPILS[name].row in f"{found[name]['verdict']} {found[name]['remark']}", name
+
+
+@pytest.fixture(scope="module")
+def small(level: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The reports of a part of the class, graded by one worker."""
+    return grade(tmp_path_factory.mktemp("small"), HARMLESS, 1)
+
+
+def test_a_small_class_gets_its_marks(small: Path) -> None:
+    assert_marks(small, HARMLESS)
+    assert rows(small)["Good"]["id"] == "1000"
+
+
+@pytest.mark.slow
+def test_the_class_of_thirty_gets_its_marks_and_harms_nothing(level: str, small: Path, tmp_path: Path) -> None:
+    assert len(PUPILS) == 30
+    output = grade(tmp_path, tuple(PUPILS), 2)
+    assert_marks(output, tuple(PUPILS))
+    one, two = rows(small), rows(output)
+    for name in HARMLESS:
+        assert {**one[name], "id": ""} == {**two[name], "id": ""}  # one worker or two
+
+
+def test_a_failure_has_a_page_with_a_picture_and_a_run_log(small: Path) -> None:
+    page = next(small.glob("pupils/*-Straight/index.html")).read_text()
+    assert "assert no_contact(thymio)" in page
+    assert "data:image/svg+xml;base64," in page
+    logs = sorted(small.glob("pupils/*-Straight/*.jsonl"))
+    assert [log.name for log in logs] == ["test-2.jsonl", "test-3.jsonl", "test-4.jsonl"]
+    assert f"thymio-sim replay {logs[0].name}" in page
+    result = replay(logs[0])
+    assert (result.differs, result.is_complete, result.seconds) == (None, True, 6.0)
+
+
+def test_pupils_do_not_see_what_a_hidden_test_says(small: Path) -> None:
+    for name in ("index.html", "results.json", "../../junit.xml"):
+        assert "the secret" not in next(small.glob(f"pupils/*-Stands/{name}")).read_text()
+    assert "the secret of the hidden test" in next(small.glob("teacher/*-Stands.txt")).read_text()
+
+
+def test_reports_for_platforms_have_points_and_verdicts(small: Path) -> None:
+    result = json.loads(next(small.glob("pupils/*-Straight/results.json")).read_text())
+    assert (result["score"], sum(test["max_score"] for test in result["tests"])) == (1.0, 6.0)
+    assert {test["visibility"] for test in result["tests"]} == {"visible", "after_published"}
+    suites = {suite.get("name"): suite for suite in ElementTree.parse(small / "junit.xml").getroot()}
+    assert {name: suites[name].get("failures") for name in ("Good", "Straight")} == {"Good": "0", "Straight": "4"}
+    assert suites["Ends the process"].get("errors") == "5"
+
+
+@pytest.mark.parametrize(
+    ("tests", "reported"),
+    [
+        ("import controller", "No module named 'controller'"),
+        ("def helper(): pass", "no tests found"),
+        ("import pytest\n@pytest.mark.points('3')\ndef test_a(): pass", "mark points: found '3', expected one number"),
+    ],
+)
+def test_tests_that_cannot_be_collected_are_rejected(
+    level: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], tests: str, reported: str
+) -> None:
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "controller.py").write_text("")
+    (tmp_path / "test_it.py").write_text(tests)
+    words = ["grade", str(tmp_path / "class"), "--assignment", str(tmp_path / "test_it.py"), "-o", str(tmp_path / "o")]
+    assert main.main(words) == USAGE_ERROR
+    assert reported in capsys.readouterr().err

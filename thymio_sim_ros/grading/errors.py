@@ -1,0 +1,11 @@
+"""The error of the grader."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.errors import ThymioSimError
+
+__all__ = ["GradingError"]
+
+
+class GradingError(ThymioSimError):
+    """A class cannot be graded at all; the text says where, what was found, what was expected."""

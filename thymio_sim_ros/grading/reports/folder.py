@@ -1,0 +1,60 @@
+"""Writes all reports of a class into a folder.
+
+marks.csv            the table of the class
+junit.xml            all verdicts
+index.html           points of all submissions, with links
+pupils/001-Anna/     index.html, results.json (Gradescope), run logs of failed tests: what a pupil may get
+teacher/001-Anna.txt messages and output of all tests, hidden ones included
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from thymio_sim_ros.grading.reports.csv_table import csv_table
+from thymio_sim_ros.grading.reports.gradescope import gradescope_json
+from thymio_sim_ros.grading.reports.junit import junit_xml
+from thymio_sim_ros.grading.reports.page import index_page, submission_page
+from thymio_sim_ros.grading.reports.texts import file_name
+from thymio_sim_ros.grading.results import Graded, GradedTest
+
+__all__ = ["write_reports", "write_submission"]
+
+
+def write_reports(
+    folder: Path, title: str, isolation: str, tests: Sequence[GradedTest], class_: Sequence[Graded]
+) -> None:
+    """Write the reports of the class as a whole. Raises OSError."""
+    _write(folder / "marks.csv", csv_table(class_, tests))
+    _write(folder / "junit.xml", junit_xml(class_))
+    rows = {f"pupils/{file_name(graded, n)}/index.html": graded for n, graded in enumerate(class_, start=1)}
+    _write(folder / "index.html", index_page(title, isolation, rows))
+
+
+def write_submission(folder: Path, graded: Graded, position: int) -> None:
+    """Write the reports of one submission, number `position` of the class from 1. Raises OSError."""
+    name = file_name(graded, position)
+    own = folder / "pupils" / name
+    own.mkdir(parents=True, exist_ok=True)
+    logs = {}
+    for number, verdict in enumerate(graded.verdicts, start=1):
+        if "run.jsonl" in verdict.files and not verdict.test.is_hidden:
+            logs[verdict.test.name] = f"test-{number}.jsonl"
+            (own / f"test-{number}.jsonl").write_bytes(verdict.files["run.jsonl"])
+    _write(own / "index.html", submission_page(graded, logs))
+    _write(own / "results.json", gradescope_json(graded))
+    (folder / "teacher").mkdir(exist_ok=True)
+    _write(folder / "teacher" / f"{name}.txt", _everything(graded))
+
+
+def _everything(graded: Graded) -> str:
+    lines = [graded.submission.name, graded.remark, *graded.submission.notes]
+    for verdict in graded.verdicts:
+        lines += ["", f"=== {verdict.test.name}: {verdict.outcome}, {verdict.cpu_s:.2f} s of CPU time"]
+        lines += [verdict.message, verdict.output]
+    return "\n".join(lines) + "\n"
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8", errors="replace", newline="\n")

@@ -1,0 +1,64 @@
+"""What the grader gives a sandbox, and what it gets back."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from thymio_sim_ros.grading.assignment import Limits
+
+__all__ = ["Job", "Outcome", "Report"]
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """Files of an assignment and of one submission, and the tests that run: all in the order of `selected`.
+
+    Without `selected`, the tests are only collected, and there is no submission.
+    """
+
+    level: str
+    tests: tuple[str, ...]
+    assignment: Mapping[str, bytes]
+    submission: Mapping[str, bytes]
+    selected: tuple[str, ...] | None
+    limits: Limits
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The outcome of a test; see `results.Verdict`."""
+
+    outcome: str
+    message: str = ""
+    output: str = ""
+    cpu_s: float = 0.0
+    files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """Result of a job. `remark`: why the job as a whole failed; `collected`: tests and points, a fraction as text."""
+
+    outcomes: Mapping[str, Outcome]
+    collected: tuple[tuple[str, str], ...] = ()
+    remark: str = ""
+    notes: tuple[str, ...] = ()
+
+    def to_json(self) -> str:
+        """As text, bytes in base64."""
+        return json.dumps(asdict(self), default=lambda data: base64.b64encode(data).decode())
+
+    @classmethod
+    def from_json(cls, text: str) -> Report:
+        """From `to_json`."""
+        data: dict[str, Any] = json.loads(text)
+        outcomes = {
+            test: Outcome(**{**one, "files": {name: base64.b64decode(text) for name, text in one["files"].items()}})
+            for test, one in data["outcomes"].items()
+        }
+        collected = tuple((test, points) for test, points in data["collected"])
+        return cls(outcomes, collected, data["remark"], tuple(data["notes"]))

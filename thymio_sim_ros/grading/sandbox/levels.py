@@ -1,0 +1,103 @@
+"""The levels of isolation: which of them this machine gives, and the command that starts a sandbox of a level."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+
+from thymio_sim_ros.grading.assignment import Limits
+from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.sandbox.job import Job, Report
+from thymio_sim_ros.grading.sandbox.readable import python_path, readable_paths
+
+__all__ = ["LEVELS", "best_level", "run_job", "why_unavailable"]
+
+LEVELS: Mapping[str, str] = {
+    "bubblewrap": "own file system, processes and network, by bubblewrap",
+    "namespaces": "own file system, processes and network, by Linux namespaces",
+    "landlock": "files of others are closed and TCP is refused, by Landlock; UDP and the list of processes are open",
+    "limits": "limits of CPU time, memory, processes and output only; files of your user and the network are OPEN",
+}
+"""Levels, strongest first, and what they give."""
+
+AUTOMATIC = ("bubblewrap", "namespaces", "landlock")
+"""Levels that are chosen without being asked for."""
+
+_LAUNCHER = "thymio_sim_ros.grading.sandbox.launcher"
+_GRACE_S = 120.0
+"""Real time beyond the last resort after which a sandbox is ended from outside."""
+
+
+def best_level() -> str:
+    """The strongest level that this machine gives. Raises GradingError with the reasons if there is none."""
+    reasons = {}
+    for level in AUTOMATIC:
+        reason = why_unavailable(level)
+        if not reason:
+            return level
+        reasons[level] = reason
+    text = "; ".join(f"{level}: {reason}" for level, reason in reasons.items())
+    raise GradingError(f"this machine isolates no submissions ({text}); --isolation limits grades without isolation")
+
+
+def why_unavailable(level: str) -> str:
+    """Why a level is not available here; empty if it is. It is tried, not guessed."""
+    if not sys.platform.startswith("linux"):
+        return "found no Linux; on Windows use WSL 2"
+    if level == "bubblewrap" and shutil.which("bwrap") is None:
+        return "bwrap is not installed"
+    if level == "bubblewrap" and os.geteuid() == 0:
+        return "not used as root, for whom namespaces are enough"
+    probe = b"def test_nothing(): pass\n"
+    job = Job(level, ("test_probe.py",), {"test_probe.py": probe}, {}, None, Limits())
+    try:
+        report = run_job(job)
+    except GradingError as error:
+        return str(error)
+    return "" if report.collected else report.remark.strip().rpartition("\n")[2]
+
+
+def run_job(job: Job) -> Report:
+    """Run a job in a sandbox of its level. Raises GradingError if the sandbox cannot be entered or is destroyed."""
+    limit = job.limits.wall_s + _GRACE_S
+    environment = {**os.environ, "PYTHONPATH": python_path()}
+    with subprocess.Popen(
+        _command(job),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=environment,
+    ) as process:
+        try:
+            output, errors = process.communicate(pickle.dumps(job), timeout=limit)
+        except subprocess.TimeoutExpired:
+            raise GradingError(f"the sandbox did not end within {limit:g} s") from None
+        finally:
+            process.kill()  # with it, the kernel ends its namespaces
+    try:
+        return Report.from_json(output.decode())
+    except ValueError:
+        said = errors.decode("utf-8", "replace").strip().rpartition("\n")[2]
+        raise GradingError(f"the sandbox ended with code {process.returncode}: {said or 'no message'}") from None
+
+
+def _command(job: Job) -> Sequence[str]:
+    launcher = [sys.executable, "-P", "-m", _LAUNCHER]
+    return [*_bubblewrap(int(job.limits.disk_mb * 1e6)), *launcher] if job.level == "bubblewrap" else launcher
+
+
+def _bubblewrap(disk_bytes: int) -> list[str]:
+    options = ["bwrap", "--unshare-all", "--die-with-parent", "--as-pid-1", "--new-session", "--cap-drop", "ALL"]
+    options += ["--proc", "/proc", "--dev", "/dev"]
+    for folder in ("/dev/shm", "/tmp", "/grade"):
+        options += ["--size", str(disk_bytes), "--tmpfs", folder]
+    for path in readable_paths():
+        if os.path.islink(path) and not os.readlink(path).startswith("/"):
+            options += ["--symlink", os.readlink(path), path]
+        else:
+            options += ["--ro-bind", os.path.realpath(path), path]
+    return [*options, "--chdir", "/"]

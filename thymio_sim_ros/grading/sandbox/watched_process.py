@@ -1,0 +1,217 @@
+"""One test process and its descendants, watched: their report and output are read, and limits are enforced."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import selectors
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.grading.assignment import Limits
+from thymio_sim_ros.grading.sandbox.usage import descendants, memory_used, used
+
+__all__ = ["Ended", "LimitError", "WatchedProcess"]
+
+POLL_S = 0.1
+_MEMORY_POLLS = 5
+"""Polls between two measurements of the memory; one process alone is limited by the kernel."""
+_CHUNK = 65536
+_LINE_BYTES = 1_000_000
+_KEPT = 20_000
+"""Bytes of output that are kept of its begin, and of its end."""
+_IDLE_SHARE = 0.01
+"""Part of a processor below which a process that waits is idle."""
+
+
+class LimitError(ThymioSimError):
+    """A limit was exceeded; `outcome` is its short name, the text says more."""
+
+    def __init__(self, outcome: str, text: str, *, is_final: bool = False) -> None:
+        super().__init__(text)
+        self.outcome, self.is_final = outcome, is_final
+
+
+class Ended(ThymioSimError):  # noqa: N818  (no error of the supervisor)
+    """The process has ended; the text says how."""
+
+
+class WatchedProcess:
+    """A process with a channel for its report. Invariant: its output never blocks it and never fills the memory."""
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        *,
+        folder: Path,
+        environment: dict[str, str],
+        confine: Callable[[], None],
+        limits: Limits,
+        disk_folder: Path | None,
+        ends_at: float,
+    ) -> None:
+        """Start it in `folder`. `disk_folder`: where the size of its files is measured, None where a file system limits
+        it. `ends_at`: `time.monotonic()` of the last resort.
+        """
+        report, report_child = os.pipe()
+        control_child, self._control = os.pipe()
+        self._report = report
+        try:
+            self._process = subprocess.Popen(
+                [*command, str(report_child), str(control_child)],
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                pass_fds=(report_child, control_child),
+                preexec_fn=confine,
+            )
+        finally:
+            os.close(report_child)
+            os.close(control_child)
+        assert self._process.stdout is not None
+        self._output = self._process.stdout.fileno()
+        self._limits, self._disk_folder, self._ends_at = limits, disk_folder, ends_at
+        self._selector = selectors.DefaultSelector()
+        for file in (self._report, self._output):
+            os.set_blocking(file, False)
+            self._selector.register(file, selectors.EVENT_READ)
+        self._lines = b""
+        self._head, self._tail, self._size = b"", b"", 0
+        self._polls = 0
+        self._test_began_s = used().cpu_s
+        self._idle_from = (time.monotonic(), 0.0)
+
+    def send(self, line: str) -> None:
+        """Send a line to the process."""
+        with contextlib.suppress(BrokenPipeError):  # it has ended, as `lines` will find
+            os.write(self._control, line.encode() + b"\n")
+
+    def lines(self) -> Iterator[bytes]:
+        """Yield the lines of its report. Raises Ended or LimitError."""
+        next_check = time.monotonic() + POLL_S
+        while True:
+            ready = {key.fd for key, _ in self._selector.select(max(0.0, next_check - time.monotonic()))}
+            if self._output in ready:
+                self._read_output()
+            if self._report in ready:
+                yield from self._read_report()
+            if time.monotonic() >= next_check:
+                self._check_limits()
+                if self._process.poll() is not None:
+                    yield from self._read_report()
+                    self._read_output()
+                    raise Ended(_how_it_ended(self._process.returncode))
+                next_check = time.monotonic() + POLL_S
+
+    def take_output(self) -> tuple[str, float]:
+        """Return the output and processor time in s since the last call: of one test."""
+        self._read_output()
+        total_s = used().cpu_s
+        cpu_s = total_s - self._test_began_s
+        skipped = self._size - len(self._head) - len(self._tail)
+        between = f"\n… {skipped} bytes are left out …\n".encode() if skipped else b""
+        text = (self._head + between + self._tail).decode("utf-8", "replace")
+        self._head, self._tail, self._size = b"", b"", 0
+        self._test_began_s = total_s
+        self._idle_from = (time.monotonic(), total_s)
+        return text, cpu_s
+
+    def last_line(self) -> str:
+        """The last line of the output that `take_output` has not returned yet."""
+        return (self._head + self._tail).decode("utf-8", "replace").strip().rpartition("\n")[2]
+
+    def close(self, kill_all: Callable[[], None]) -> None:
+        """End it with all its descendants."""
+        while descendants():
+            kill_all()
+            self._process.poll()
+            _reap()
+        self._selector.close()
+        for file in (self._report, self._control):
+            os.close(file)
+        assert self._process.stdout is not None
+        self._process.stdout.close()
+
+    def _read_report(self) -> Iterator[bytes]:
+        while chunk := _read(self._report, self._selector):
+            self._lines += chunk
+            *complete, self._lines = self._lines.split(b"\n")
+            yield from complete
+            if len(self._lines) > _LINE_BYTES:
+                raise LimitError("output limit", "the report has a line without end")
+
+    def _read_output(self) -> None:
+        while chunk := _read(self._output, self._selector):
+            self._size += len(chunk)
+            if room := _KEPT - len(self._head):
+                self._head, chunk = self._head + chunk[:room], chunk[room:]
+            self._tail = (self._tail + chunk)[-_KEPT:]
+            if self._size > self._limits.output_mb * 1e6:
+                raise LimitError("output limit", f"more than {self._limits.output_mb:g} MB of output")
+
+    def _check_limits(self) -> None:
+        limits, now = self._limits, time.monotonic()
+        memory_limit = int(limits.memory_mb * 1e6)
+        self._polls += 1
+        if self._polls % _MEMORY_POLLS == 0 and memory_used(memory_limit) > memory_limit:
+            raise LimitError("memory limit", f"more than {limits.memory_mb:g} MB of memory")
+        usage = used()
+        if usage.cpu_s > limits.total_cpu_s:
+            raise LimitError(
+                "CPU time limit", f"more than {limits.total_cpu_s:g} s of CPU time for all tests", is_final=True
+            )
+        if usage.cpu_s - self._test_began_s > limits.cpu_s:
+            raise LimitError("CPU time limit", f"more than {limits.cpu_s:g} s of CPU time")
+        since, cpu_s = self._idle_from
+        if usage.is_working or usage.cpu_s - cpu_s > max(0.02, _IDLE_SHARE * (now - since)):
+            self._idle_from = (now, usage.cpu_s)
+        elif now - since > limits.idle_s:
+            raise LimitError("idle limit", f"no process computed for {limits.idle_s:g} s: it sleeps or waits in vain")
+        if now > self._ends_at:
+            text = f"more than {limits.wall_s:g} s of real time for all tests, the last resort"
+            raise LimitError("wall-clock limit", text, is_final=True)
+        if self._disk_folder is not None and _disk_use(self._disk_folder) > limits.disk_mb * 1e6:
+            raise LimitError("disk limit", f"more than {limits.disk_mb:g} MB of files")
+
+
+def _read(file: int, selector: selectors.BaseSelector) -> bytes:
+    try:
+        chunk = os.read(file, _CHUNK)
+    except BlockingIOError:
+        return b""
+    if not chunk and file in selector.get_map():
+        selector.unregister(file)  # closed by the process, which may still run
+    return chunk
+
+
+def _disk_use(folder: Path) -> int:
+    size = 0
+    for parent, _, names in os.walk(folder):
+        for name in names:
+            try:
+                size += os.lstat(os.path.join(parent, name)).st_blocks * 512
+            except OSError:
+                continue
+    return size
+
+
+def _reap() -> None:
+    """Wait for an end among the descendants that this process has inherited, and reap those that have ended."""
+    try:
+        os.waitpid(-1, 0)
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+    except ChildProcessError:
+        pass
+
+
+def _how_it_ended(code: int) -> str:
+    if code >= 0:
+        return f"the process of the test ended, with exit code {code}"
+    return f"the process of the test was ended by {signal.Signals(-code).name}"

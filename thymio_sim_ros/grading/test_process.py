@@ -1,0 +1,187 @@
+"""The process that runs the tests of a submission, supervised by `sandbox/supervisor.py`.
+
+Usage: python -m thymio_sim_ros.grading.test_process <folder for logs> <test file>… <report> <control>
+
+`report` and `control` are file descriptors; `sandbox/report_protocol.py` describes what goes through them.
+"""
+
+from __future__ import annotations
+
+import json
+import linecache
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thymio_sim_ros.grading.points import points_of
+from thymio_sim_ros.runlog.test_files import trace_path
+
+__all__ = ["GradingPlugin", "main"]
+
+_LONGEST = 20_000
+"""Characters of a message that are reported."""
+
+
+def main(argv: Sequence[str]) -> None:
+    """Run the tests; ends the process."""
+    folder, *tests, report, control = argv
+    commands = open(int(control), encoding="utf-8")  # noqa: SIM115  # open to the end
+    for file in (int(report), int(control)):
+        os.set_inheritable(file, False)
+    task = json.loads(commands.readline())
+    plugin = GradingPlugin(
+        Path(folder), _Reporter(int(report), task["secret"]).send, commands.readline, task["selected"]
+    )
+    options = ["-p", "thymio_sim_ros.pytest_plugin", "-p", "no:cacheprovider", "-p", "no:faulthandler", "-s"]
+    options += ["-c", os.devnull, "--rootdir", os.getcwd(), "--confcutdir", os.getcwd(), "--run-logs", folder]
+    options += ["--tb=short"]
+    pytest.main([*options, *tests], plugins=[plugin])
+    plugin.finish()
+    os._exit(0)  # threads of the submission may still run
+
+
+class _Reporter:
+    """Writes the report. A process that the submission forks has no access to it."""
+
+    def __init__(self, file: int, secret: str) -> None:
+        self._file: int | None = file
+        self._secret = secret
+        os.register_at_fork(after_in_child=self._close)
+
+    def send(self, kind: str, **content: object) -> None:
+        """Write a line. In a forked process this ends the process, which would otherwise repeat the tests."""
+        if self._file is None:
+            os._exit(0)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        line = json.dumps({"secret": self._secret, "do": kind, **content}).encode() + b"\n"
+        while line:
+            line = line[os.write(self._file, line) :]
+
+    def _close(self) -> None:
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
+
+
+class GradingPlugin:
+    """pytest plug-in that reports to the supervisor, and waits for it between collecting and running."""
+
+    def __init__(
+        self, folder: Path, send: Callable[..., None], wait: Callable[[], str], selected: Sequence[str] | None
+    ) -> None:
+        """`folder`: where pictures go. `selected`: the tests that run, in order; None: they are only collected."""
+        self._folder, self._send, self._wait, self._selected = folder, send, wait, selected
+        self._broken: list[str] = []
+        self._skipped: list[str] = []
+        self._points: dict[str, Fraction] = {}
+        self._reports: list[pytest.TestReport] = []
+        self._path = list(sys.path)
+        self._has_run = False
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_configure(self, config: pytest.Config) -> None:
+        """Remove pytest's own output, so that only that of the submission is left."""
+        config.pluginmanager.unregister(name="terminalreporter")
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """Note test files that cannot be imported, or are skipped as a whole."""
+        if report.failed:
+            self._broken.append(report.longreprtext)
+        elif report.skipped and isinstance(report.longrepr, tuple):
+            self._skipped.append(f"{report.nodeid}: {report.longrepr[2]}")
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Compute the points of all tests, then keep those that are selected."""
+        try:
+            self._points = dict(zip([item.nodeid for item in items], points_of(items), strict=True))
+        except pytest.UsageError as error:
+            self._broken.append(str(error))
+        if self._selected is not None:
+            found = {item.nodeid: item for item in items}
+            items[:] = [found[test] for test in self._selected if test in found]
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Report the tests; continue when the supervisor has replaced their sources by the submission."""
+        if self._broken:
+            self._send("broken", message="\n".join(self._broken)[-_LONGEST:])
+            os._exit(0)
+        _keep_sources(Path.cwd())
+        tests = [(item.nodeid, str(self._points[item.nodeid])) for item in session.items]
+        self._send("collected", tests=tests, notes=self._skipped)
+        if not self._wait():
+            os._exit(0)
+        sys.path[:] = self._path  # without the folder of the tests, where the submission is now
+        self._has_run = True
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        """Report the begin of a test."""
+        self._reports.clear()
+        self._send("begin", test=nodeid)
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Keep the report of a phase."""
+        self._reports.append(report)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
+        """Draw the paths of the robots when a test fails, while they are there."""
+        report = yield
+        if call.when == "call" and report.failed:  # type: ignore[attr-defined]
+            _draw(item, trace_path(self._folder, item.nodeid))
+        return report
+
+    def pytest_runtest_logfinish(self, nodeid: str) -> None:
+        """Report the outcome of a test: that of its first phase that did not pass."""
+        outcome, message = "passed", ""
+        for report in self._reports:
+            if not report.passed and outcome == "passed":
+                outcome, message = report.outcome, _message(report)
+        self._send("result", test=nodeid, outcome=outcome, message=message[-_LONGEST:])
+
+    def finish(self) -> None:
+        """Report the end, or why there was nothing to run."""
+        if self._has_run:
+            self._send("end")
+        else:
+            self._send("broken", message="\n".join(self._broken) or "pytest ended before it had collected the tests")
+
+
+def _message(report: pytest.TestReport) -> str:
+    if report.skipped and isinstance(report.longrepr, tuple):
+        return str(report.longrepr[2])
+    return str(report.longreprtext)
+
+
+def _keep_sources(folder: Path) -> None:
+    """Keep the lines of all sources of the tests in memory: failure messages quote them when the files are gone."""
+    for path in folder.rglob("*.py"):
+        lines = linecache.getlines(str(path))
+        linecache.cache[str(path)] = (len(lines), None, lines, str(path))  # without a time, it is never checked again
+
+
+def _draw(item: pytest.Item, path: Path) -> None:
+    """Draw the world of a test, if it has one."""
+    arguments: Mapping[str, Any] = getattr(item, "funcargs", {})
+    stage = arguments.get("classroom") or getattr(arguments.get("thymio"), "stage", None)
+    stage = stage or getattr(arguments.get("ros"), "simulation", None)
+    if stage is None:
+        return
+    from thymio_sim_ros.testing.trace_picture import draw_traces
+
+    traces = {thymio.name: [moment.pose for moment in thymio.path] for thymio in stage}
+    try:
+        path.write_text(draw_traces(stage.world.playground, traces), encoding="utf-8")
+    except OSError:
+        return  # the submission has filled the disk: its verdict stays without a picture
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
