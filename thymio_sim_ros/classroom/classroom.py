@@ -52,7 +52,8 @@ class Classroom:
     def state(self) -> Mapping[str, Any]:
         """Return what the teacher's page shows; poses are received from now on for a while."""
         self._asked_s = asyncio.get_running_loop().time()
-        return {"pupils": [seat.summary() for seat in self.seats.values()], "shown": self._shown}
+        pupils = [{**seat.summary(), "notice": self._messages.get(one, "")} for one, seat in self.seats.items()]
+        return {"pupils": pupils, "shown": self._shown}
 
     async def plan(self, number: str) -> Mapping[str, Any] | None:
         """Return a playground seen from above by the `plan` of a pupil; None if there is none that can be read."""

@@ -250,7 +250,6 @@ class Seat:
             "programs": programs,
             "overview": client.overview,
             "plan": self.plan,
-            "notice": self._notice.text,
             "link": self.link(),
             "watch": self.link(read_only=True),
         }

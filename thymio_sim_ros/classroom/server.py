@@ -1,4 +1,4 @@
-"""The HTTP server of the teacher's page: the files of the page, and the interface of `requests`, which needs the token."""
+"""The HTTP server of the teacher's page: its files, and the interface of `requests`, which needs the token."""
 
 from __future__ import annotations
 
