@@ -126,9 +126,9 @@ class BridgeClient:
             case ms.AdvertiseServices(services=services):
                 self._services |= {one.name: one.id for one in services if one.name == _PAUSE}
             case ms.ParameterValues(parameters=parameters):
-                for one in parameters:
-                    if isinstance(one.value, str) and one.name in _WATCHED:
-                        self._on_parameter(one.name, one.value)
+                for parameter in parameters:
+                    if isinstance(parameter.value, str) and parameter.name in _WATCHED:
+                        self._on_parameter(parameter.name, parameter.value)
 
     async def _subscribe(self, topic: str) -> None:
         number = self._channels[topic]

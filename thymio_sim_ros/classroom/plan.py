@@ -47,7 +47,8 @@ def _solid(solid: Solid) -> dict[str, Any]:
 
 
 def _bounds(playground: Playground) -> list[float]:
-    points = [point for part in (*playground.floors, *playground.solids) for point in part.vertices]
+    points = [point for floor in playground.floors for point in floor.vertices]
+    points += [point for solid in playground.solids for point in solid.vertices]
     points += [(robot.x_m + side, robot.y_m + side) for robot in playground.robots for side in (-0.15, 0.15)]
     xs, ys = zip(*(points or [(-0.5, -0.5), (0.5, 0.5)]), strict=True)
     return [_rounded(value) for value in (min(xs), min(ys), max(xs), max(ys))]

@@ -79,7 +79,7 @@ def _rows(text: str) -> list[tuple[int, list[str]]]:
     """The rows that are not empty, with their lines from 1."""
     first = next((line for line in text.splitlines() if line.strip()), "")
     delimiter = max(";\t,", key=first.count)
-    reader = csv.reader(text.splitlines(), delimiter=delimiter)
+    reader = csv.reader(text.splitlines(), delimiter=delimiter, skipinitialspace=True)
     rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
     return [(line, cells) for line, cells in rows if any(cells)]
 

@@ -92,7 +92,7 @@ async def _message(classroom: Classroom, fields: Mapping[str, Any]) -> None:
 
 async def _show(classroom: Classroom, fields: Mapping[str, Any]) -> None:
     shown = fields.get("pupil")
-    if shown is not None and shown not in classroom.seats:
+    if shown is not None and not (isinstance(shown, str) and shown in classroom.seats):
         raise RefusalError(400, "pupil: expected the id of a pupil, or null")
     await classroom.show(shown)
 

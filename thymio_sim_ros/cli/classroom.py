@@ -97,12 +97,13 @@ def _banner(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place],
     first, last = (options.domain(place) for place in (places[0], places[-1]))
     access = "this computer only" if is_loopback(options.address) else "everyone in your network with a link"
     kept = "kept" if is_kept else "lost at the end: keep them with --folder"
+    found = describe_range(discovery(os.environ))
     return "\n".join(
         [
             f"Teacher   {describe_urls('http', options.address, options.first_port, '/', folder.teacher_token)}",
             f"Pupils    {len(places)}; their links are on the teacher's page, as a sheet to print",
             f"Access    {access}",
-            f"Domains   ROS_DOMAIN_ID {min(first, last)} to {max(first, last)}, {describe_range(discovery(os.environ))}",
+            f"Domains   ROS_DOMAIN_ID {min(first, last)} to {max(first, last)}, {found}",
             f"Programs  {kept}",
             "Stop      Ctrl-C",
         ]
