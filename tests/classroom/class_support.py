@@ -51,9 +51,14 @@ class RunningClass:
             body: bytes = answer.read()
             return body
 
+    def state(self) -> list[Any]:
+        """What the teacher's page knows about all pupils."""
+        pupils: list[Any] = json.loads(self.request("state"))["pupils"]
+        return pupils
+
     def pupil(self, pupil: str) -> Any:
-        """What the teacher's page knows about a pupil."""
-        return next(one for one in json.loads(self.request("state"))["pupils"] if one["id"] == pupil)
+        """What it knows about one of them."""
+        return next(one for one in self.state() if one["id"] == pupil)
 
     def until(self, pupil: str, condition: Callable[[Any], bool]) -> Any:
         """Wait for a state of a pupil and return it."""

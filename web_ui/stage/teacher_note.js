@@ -6,21 +6,21 @@ import { icon } from "../ui/icons.js";
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function teacherNotePanel({ text, announce, scene }) {
-  const t = text("page");
+  const pageText = text("page");
   let hiddenNote = "";
   let announced = "";
   const words = h("p", { class: "teacher-words" });
-  const link = h("a", { class: "btn soft", target: "_blank", rel: "noreferrer", hidden: true }, icon("eye"), t("notice.look"));
+  const link = h("a", { class: "btn soft", target: "_blank", rel: "noreferrer", hidden: true }, icon("eye"), pageText("notice.look"));
   const hide = h("button", {
     type: "button",
     class: "btn icon",
-    "aria-label": t("notice.dismiss"),
+    "aria-label": pageText("notice.dismiss"),
     onclick: () => {
       hiddenNote = key;
       scene.invalidate();
     },
   }, icon("close"));
-  const element = h("div", { class: "message note-box teacher-note", hidden: true }, h("div", { class: "grow" }, h("p", { class: "cap" }, t("notice.teacher")), words), link, hide);
+  const element = h("div", { class: "message note-box teacher-note", hidden: true }, h("div", { class: "grow" }, h("p", { class: "cap" }, pageText("notice.teacher")), words), link, hide);
   let key = "";
   return {
     slot: "messages",
@@ -36,7 +36,7 @@ export function teacherNotePanel({ text, announce, scene }) {
       if (!link.hidden) setAttribute(link, "href", address);
       if (note !== announced) {
         announced = note;
-        if (note !== "") announce(`${t("notice.teacher")}: ${note}`);
+        if (note !== "") announce(`${pageText("notice.teacher")}: ${note}`);
       }
     },
   };
