@@ -85,7 +85,7 @@ def test_plans_are_those_of_pupils(teacher: Teacher) -> None:
         ("POST", "message", [], 400),
         ("POST", "message", {"text": 3}, 400),
         ("POST", "message", {"text": "x" * 501}, 400),
-        ("POST", "pause", {"pupils": ["nobody"], "paused": True}, 400),
+        ("POST", "pause", {"pupils": ["eve"], "paused": True}, 400),
         ("POST", "pause", {"pupils": "ada", "paused": True}, 400),
         ("POST", "pause", {"paused": 1}, 400),
         ("POST", "show", {"pupil": ["ada"]}, 400),

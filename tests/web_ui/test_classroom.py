@@ -31,9 +31,9 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     ada.locator(".chip", has_text="not started").wait_for()
     page.locator("#count", has_text="2 / 2").wait_for()
     page.wait_for_function("""() => {
-        const { width, height } = document.querySelector("[data-pupil=jurg] canvas");
-        const drawn = document.querySelector("[data-pupil=jurg] canvas").getContext("2d").getImageData(0, 0, width, height);
-        return drawn.data.some((value) => value > 0);
+        const canvas = document.querySelector("[data-pupil=jurg] canvas");
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return data.some((value) => value > 0);
     }""")
     assert "token" not in page.url
 

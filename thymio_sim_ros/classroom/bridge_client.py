@@ -1,7 +1,7 @@
 """The connection to a pupil's suite, as a client of its Foxglove bridge.
 
-State and program come in when they change; poses only while they are wanted, so that a suite that nobody watches does
-no work for them.
+State and program come in when they change; poses only while they are wanted: without the teacher's page, suites do no
+work for them.
 """
 
 from __future__ import annotations
