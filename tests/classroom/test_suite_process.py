@@ -18,6 +18,7 @@ def test_a_pupil_has_two_ports_a_domain_and_no_servers_for_other_programs() -> N
     line = " ".join(command(OPTIONS, PLACE, "welcome"))
     assert "--port 8105 --foxglove-port 8106" in line
     assert "--no-aseba --no-tdm" in line
+    assert line.endswith("--ros-args -p simulator:batch_ticks:=3 -p simulator:clock_rate:=20.0")
     assert environment(OPTIONS, PLACE, {})["ROS_DOMAIN_ID"] == "3"
 
 
