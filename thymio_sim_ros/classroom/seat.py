@@ -32,6 +32,8 @@ STEADY_S = 60.0
 """A suite that has run for this time counts as working: its next restart comes soon."""
 START_S = 90.0
 """Time until a suite that has started must answer; long, for twenty that start together."""
+RECONNECT_S = 10.0
+"""Time until a suite whose connection was lost must answer again."""
 _CONNECT_S = 0.3
 
 
@@ -152,19 +154,18 @@ class Seat:
         """Follow the suite by its bridge; returns when it does not answer any more."""
         host = "127.0.0.1" if is_loopback(self._options.address) else self._options.address
         host = "127.0.0.1" if host == "0.0.0.0" else host
-        client = BridgeClient(
-            f"ws://{host}:{self._options.foxglove_port(self.place)}/", self.place.token, self._on_parameter
-        )
-        end_s = asyncio.get_running_loop().time() + START_S
-        self._client = client
+        url = f"ws://{host}:{self._options.foxglove_port(self.place)}/"
+        clock_s = asyncio.get_running_loop().time
+        end_s = clock_s() + START_S
         try:
-            while not client.status.state:
+            while clock_s() < end_s:
+                client = self._client = BridgeClient(url, self.place.token, self._on_parameter)
                 greeting = asyncio.create_task(self._greet(client))
                 try:
                     await client.run()
                 except (OSError, WebSocketException):
-                    if client.status.state or asyncio.get_running_loop().time() > end_s:
-                        return
+                    if client.status.state:  # a connection that worked is lost: perhaps only that
+                        end_s = clock_s() + RECONNECT_S
                     await asyncio.sleep(_CONNECT_S)
                 finally:
                     greeting.cancel()
