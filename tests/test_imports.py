@@ -73,6 +73,10 @@ RULES = {
     f"{OURS}.network.tdm": Rule(
         _names("aseba_vm", "device.programs", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK
     ),
+    f"{OURS}.classroom": Rule(
+        _names("addresses", "bridge", "classroom", "loading", "resources", "sim"), frozenset({"segno", "websockets"})
+    ),
+    f"{OURS}.classroom.server": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.tf": Rule(

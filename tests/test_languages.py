@@ -122,6 +122,7 @@ def test_french_has_no_break_spaces_at_its_punctuation(file: str) -> None:
 PARTS = {
     "blockly": "blockly",
     "class_tab": "class",
+    "classroom": "classroom",
     "creator": "creator",
     "editor": "editor",
     "examples": "examples",
@@ -253,5 +254,5 @@ def test_the_page_offers_a_language_whose_folder_was_added(tmp_path: Path) -> No
     done = subprocess.run(command, cwd=tmp_path / "web_ui", capture_output=True, text=True, check=True)
     assert json.loads(done.stdout) == ["Zzish", "Haltu", "Dark"]
     assert build.script(tmp_path / "web_ui", "build") == 0
-    scripts = list((tmp_path / "web_ui" / "dist" / "assets").glob("index-*.js"))
+    scripts = list((tmp_path / "web_ui" / "dist" / "assets").glob("*.js"))
     assert any("Zzish" in script.read_text(encoding="utf-8") for script in scripts)

@@ -119,7 +119,7 @@ async function main() {
     },
     wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
     urgency: (topic) => urgencyOf(store.state, topic),
-    parameters: [PARAMETERS.playground, PARAMETERS.factor],
+    parameters: [PARAMETERS.playground, PARAMETERS.factor, PARAMETERS.notice, PARAMETERS.noticeLink],
   });
   const actions = new Actions({
     client,

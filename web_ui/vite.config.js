@@ -2,6 +2,8 @@
 
 import { readdirSync, readFileSync } from "node:fs";
 
+import { fileURLToPath } from "node:url";
+
 import { defineConfig } from "vite";
 
 import { documentation } from "./documentation/pages.js";
@@ -39,6 +41,11 @@ const blocklyMedia = {
   },
 };
 
+/** @param {string} file */
+function here(file) {
+  return fileURLToPath(new URL(file, import.meta.url));
+}
+
 export default defineConfig({
   base: "./",
   plugins: [evaluatedTexts, shippedDocumentation, blocklyMedia],
@@ -50,6 +57,7 @@ export default defineConfig({
     // when only the page changes. So has Blockly (0.85 MB), which is loaded with the first program of blocks.
     chunkSizeWarningLimit: 900,
     rolldownOptions: {
+      input: { index: here("index.html"), class: here("class.html") }, // the page, and that of a teacher
       output: {
         codeSplitting: {
           groups: [

@@ -10,13 +10,14 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal
-from thymio_sim_ros.cli import convert, env, foxglove_layout, grade, replay, runner, suite, sweep
+from thymio_sim_ros.cli import classroom, convert, env, foxglove_layout, grade, replay, runner, suite, sweep
 from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
 
 COMMANDS: Mapping[str, Callable[[Sequence[str]], int]] = {
     "runner": runner.run,
+    "class": classroom.run,
     "convert": convert.run,
     "env": env.run,
     "foxglove-layout": foxglove_layout.run,

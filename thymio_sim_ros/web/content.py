@@ -59,10 +59,14 @@ class Content:
     `/config.json` is given, `/shapes.json` declares the installed shapes.
     """
 
-    def __init__(self, folder: Path | None, config: bytes) -> None:
-        """`folder` has the built page, None if it has not been built; `config` is the JSON text of `/config.json`."""
+    def __init__(self, folder: Path | None, config: bytes, *, index: str = "index.html") -> None:
+        """`folder` has the built page, None if it has not been built; `config` is the JSON text of `/config.json`.
+
+        `index` is the file of the path `/`.
+        """
         self._folder = None if folder is None else folder.resolve()
         self._config = _document(config, ".json")
+        self._index_file = index
         self._index = PlaygroundIndex()
         self._files: dict[Path, tuple[tuple[int, int], Document]] = {}
         self._playgrounds: dict[str, tuple[bytes, Document]] = {}
@@ -86,7 +90,7 @@ class Content:
             return self._shapes
         if len(names) == 2 and names[0] == _PLAYGROUNDS and names[1].endswith(_PLAYGROUND_ENDING):
             return self._playground(names[1].removesuffix(_PLAYGROUND_ENDING))
-        return self._file(names or ("index.html",))
+        return self._file(names or (self._index_file,))
 
     @functools.cached_property
     def _shapes(self) -> Document:

@@ -21,7 +21,7 @@ from thymio_sim_ros.web.hosts import host_name
 from thymio_sim_ros.web.http_connections import COMMON_HEADERS, Report, serve_connections, start_answer, text_response
 from thymio_sim_ros.web.settings import Settings
 
-__all__ = ["serve"]
+__all__ = ["Page", "serve"]
 
 _CHUNK = 32_768
 """Bytes that are written in one iteration of the event loop: data that a client does not read is not copied as a whole,
@@ -32,7 +32,7 @@ _GZIP = re.compile(r"(?:^|,)\s*gzip\s*(?:;\s*q=(?!0(?:\.0*)?\s*(?:,|$))[\d.]+\s*
 """Matches gzip in `Accept-Encoding`, unless its quality is 0."""
 
 
-class _Page:
+class Page:
     """Creates the responses to requests."""
 
     def __init__(self, content: Content, settings: Settings, report: Report, pool: ThreadPoolExecutor) -> None:
@@ -100,7 +100,7 @@ async def serve(
     loop = asyncio.get_running_loop()
     loop.set_exception_handler(lambda _loop, context: report(_kind(context), _description(context)))
     with ThreadPoolExecutor(2, "page") as pool:
-        page = _Page(content, settings, report, pool)
+        page = Page(content, settings, report, pool)
         await serve_connections(listeners, page.answer, settings.max_connections, report, stop)
 
 

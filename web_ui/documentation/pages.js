@@ -24,6 +24,7 @@ export const SOURCES = {
   tf: "docs/tf.md",
   world: "docs/world.md",
   plugins: "docs/plugins.md",
+  classroom: "docs/classroom.md",
   grading: "docs/grading.md",
   glossary: "docs/glossary.md",
 };

@@ -6,6 +6,7 @@ import { bannerPanel } from "./banner.js";
 import { fallenPanel } from "./fallen.js";
 import { moveHintPanel } from "./move_hint.js";
 import { noticesPanel } from "./notices.js";
+import { teacherNotePanel } from "./teacher_note.js";
 import { timePanel } from "./time_bar.js";
 import { trayPanel } from "./tray.js";
 import { viewsPanel } from "./views.js";
@@ -15,6 +16,7 @@ export const STAGE = [
   viewsPanel,
   arrivalPanel,
   bannerPanel,
+  teacherNotePanel,
   noticesPanel,
   fallenPanel,
   moveHintPanel,

@@ -141,6 +141,8 @@ export const PARAMETERS = /** @type {const} */ ({
   source: "/aseba_runtime.script.source",
   behavior: "/aseba_runtime.behaviour",
   programName: "/aseba_runtime.script.name",
+  notice: "/web_ui.notice",
+  noticeLink: "/web_ui.notice_link",
 });
 
 /**

@@ -50,6 +50,7 @@ const DRAWINGS = /** @type {const} */ ({
     '<path d="M4 20.5h16M7.5 16.5v-3.2A3.3 3.3 0 0 1 10.8 10h2.4a3.3 3.3 0 0 1 3.3 3.3v3.2Z"/><path d="M12 7V2.5M12 2.5 9.5 5M12 2.5 14.5 5"/>',
   list:
     '<path d="M9 6h11M9 12h11M9 18h11"/><circle class="f" cx="4.8" cy="6" r="1.4"/><circle class="f" cx="4.8" cy="12" r="1.4"/><circle class="f" cx="4.8" cy="18" r="1.4"/>',
+  message: '<path d="M4 5.5h16v11H10.5l-4 3.500v-3.500H4Z"/>',
   microphone: '<rect x="9" y="3.5" width="6" height="10.5" rx="3"/><path d="M5.5 11.5a6.5 6.5 0 0 0 13 0M12 18v3"/>',
   moon: '<path d="M19.5 14.5A8 8 0 0 1 9.5 4.5a8 8 0 1 0 10 10Z"/>',
   more:
@@ -89,6 +90,7 @@ const DRAWINGS = /** @type {const} */ ({
     '<path d="M5 20V10.5C5 6.4 8 4 12 4s7 2.4 7 6.5V20a1 1 0 0 1-1 1H6a1 1 0 0 1-1-1Z"/><path class="f" d="M12 6.2l1.7 2.3h-3.4zM12 15.8l1.7-2.3h-3.4zM7.8 11l2.1-1.6v3.2zM16.2 11l-2.1-1.6v3.2z"/><path d="M9.5 18h5"/>',
   run: '<path class="f" d="M8 5.6v12.8a1 1 0 0 0 1.54.84l9.8-6.4a1 1 0 0 0 0-1.68l-9.8-6.4A1 1 0 0 0 8 5.6Z"/>',
   save: '<path d="M12 4v11M7.5 11l4.5 4.5 4.5-4.5M4.5 19.5h15"/>',
+  screen: '<rect x="3" y="4.5" width="18" height="12" rx="1.5"/><path d="M12 16.5v3.500M8 20h8"/>',
   search: '<circle cx="10.5" cy="10.5" r="6.5"/><path d="m15.5 15.5 5 5"/>',
   select: '<path d="m5 4 5.5 15 2.3-6.2L19 10.5Z"/>',
   sliders:

@@ -98,6 +98,7 @@ class Simulator:
         self.runner.run_due_ticks(now_ns)
         if now_ns - self._last_heartbeat_ns >= HEARTBEAT_NS:
             self._publish_heartbeat(now_ns)
+        self.endpoints.world.publish_overview_if_due(self.runner.world, now_ns)
         self.runner.spin(executor)
 
     def stop(self) -> None:

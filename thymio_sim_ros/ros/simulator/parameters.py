@@ -90,6 +90,13 @@ class SimulatorParams:
     real_time_factor: float = param(1.0, "Simulated seconds per second; 0 is as fast as possible", low=0.0, high=1000.0)
     start_paused: bool = param(False, "Whether the world starts paused, until ~/pause or ~/step", fixed=True)
     step_ticks: int = param(1, "Ticks of 10 ms per ~/step", low=1, high=100_000)
+    batch_ticks: int = param(
+        1,
+        "Ticks executed together although subscribers see each: less load, messages up to 10 ms later per tick",
+        low=1,
+        high=10,
+        fixed=True,
+    )
     publish_clock: bool = param(True, "Whether /clock is published", fixed=True)
     clock_rate: float = param(50.0, "Maximum rate of /clock in Hz of wall time", low=1.0, high=100.0, fixed=True)
     log: str = param("", "File for the run log, for thymio-sim replay; empty: none", fixed=True)

@@ -25,8 +25,14 @@ class TickScheduler:
     Times named `wall_ns` are of `time.monotonic_ns`, times named `now_ns` are simulated.
     """
 
-    def __init__(self, real_time_factor: float, demand: SubscriberDemand, clock: ClockPublisher) -> None:
-        """`demand` and `clock` know when the next periodic message is due."""
+    def __init__(
+        self, real_time_factor: float, demand: SubscriberDemand, clock: ClockPublisher, *, batch_ticks: int = 1
+    ) -> None:
+        """`demand` and `clock` know when the next periodic message is due.
+
+        With `batch_ticks` above 1, so many ticks are deferred also if a subscriber would see their results.
+        """
+        self._batch_ticks = batch_ticks
         self._demand, self._clock = demand, clock
         self._prompt_until_ns = 0
         """Simulated time until which no tick is deferred, since a message has arrived."""
@@ -84,6 +90,8 @@ class TickScheduler:
         """Return the number of ticks until the next one with a result for a subscriber or a command."""
         if now_ns < self._prompt_until_ns:
             return 1
+        if self._batch_ticks > 1:
+            return min(self._batch_ticks, self._max_deferred_ticks)
         ticks = min(self._max_deferred_ticks, (self._demand.due_ns(now_ns) - now_ns) // TICK_NS)
         if ticks <= 1:
             return ticks

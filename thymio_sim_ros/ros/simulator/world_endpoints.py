@@ -20,6 +20,7 @@ from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
 from thymio_sim_ros.ros.simulator.visualization.markers import playground_markers
 from thymio_sim_ros.ros.simulator.visualization.occupancy_grid import occupancy
 from thymio_sim_ros.ros.simulator.world_topics import TOPICS
+from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 from thymio_sim_ros.sim.playground.scene import ObjectSnapshot
@@ -30,7 +31,10 @@ __all__ = ["SceneMessages", "WorldEndpoints", "WorldState", "shipped_playgrounds
 OBJECTS_GAP_NS = 50_000_000
 """Shortest wall time between two messages about moving objects."""
 
-_WORDS = ("~/_state", "~/_raw", "~/_playgrounds", "~/_sensors", "_markers", "_markers/objects")
+OVERVIEW_GAP_NS = 400_000_000
+"""Shortest wall time between two overviews."""
+
+_WORDS = ("~/_state", "~/_raw", "~/_overview", "~/_playgrounds", "~/_sensors", "_markers", "_markers/objects")
 """Topics that are always published here; the clock and the diagnostics have publishers of their own."""
 
 
@@ -94,7 +98,7 @@ class WorldEndpoints:
         self._map_frame = map_frame
         self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._publishers["~/_sensors"].publish(String(data=json.dumps(displayed_sensors())))
-        self._last_objects_ns = 0
+        self._last_objects_ns = self._last_overview_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 
     @property
@@ -128,6 +132,33 @@ class WorldEndpoints:
         solids = {solid.name: solid for solid in world.playground.solids if not solid.is_fixed}
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
         self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
+
+    def publish_overview_if_due(self, world: World, wall_ns: int) -> None:
+        """Publish where everything is, if there is a subscriber and the last overview is long enough ago.
+
+        `wall_ns` is of `time.monotonic_ns`.
+        """
+        if wall_ns - self._last_overview_ns < OVERVIEW_GAP_NS:
+            return
+        self._last_overview_ns = wall_ns
+        publisher = self._publishers["~/_overview"]
+        if publisher.get_subscription_count():
+            publisher.publish(String(data=overview(world)))
+
+
+def overview(world: World) -> str:
+    """Return the message text of `~/_overview`: [x, y, yaw, red, green, blue] of each robot, in m, rad and 0…32;
+    [x, y, yaw] of each object and door by name, null for one that has fallen off an edge."""
+    shown = world.snapshot()
+    robots = {
+        robot.name: [*_rounded(robot.pose), *dict(robot.leds).get("top", (0, 0, 0))[:3]] for robot in shown.robots
+    }
+    objects = {thing.name: None if thing.is_fallen else _rounded(thing.pose) for thing in shown.objects}
+    return json.dumps({"robots": robots, "objects": objects}, separators=(",", ":"))
+
+
+def _rounded(pose: Pose) -> list[float]:
+    return [round(value, 3) for value in (pose.x_m, pose.y_m, pose.yaw_rad)]
 
 
 def shipped_playgrounds() -> list[dict[str, object]]:

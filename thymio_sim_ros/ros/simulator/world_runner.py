@@ -48,7 +48,12 @@ class WorldRunner:
         """The playground of the world."""
         self.world = world
         self.paused = params.values.start_paused
-        self.scheduler = TickScheduler(params.values.real_time_factor, endpoints.demand, endpoints.clock)
+        self.scheduler = TickScheduler(
+            params.values.real_time_factor,
+            endpoints.demand,
+            endpoints.clock,
+            batch_ticks=params.values.batch_ticks,
+        )
         self._is_spinning = False
         """Whether callbacks may execute deferred ticks: not within a tick, nor without a thread that runs the node."""
         self._published_fallen: frozenset[str] = frozenset()

@@ -43,6 +43,13 @@ TOPICS: Mapping[str, WorldTopic] = {
         "integer readings of all robots: one dimension `robot/sensor` per reading",
         qos.EVENTS,
     ),
+    "~/_overview": WorldTopic(
+        String,
+        "≤ 2.5",
+        "JSON: poses of robots with the color of the top LED, poses of objects and doors; for small pictures, by wall "
+        "time",
+        qos.EVENTS,
+    ),
     "~/_playgrounds": WorldTopic(
         String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.TRANSIENT_LOCAL
     ),

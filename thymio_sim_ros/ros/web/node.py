@@ -42,6 +42,8 @@ class WebParams:
     allowed_hosts: list[str] = param(
         [""], "Additional host names under which a page on loopback may be opened", fixed=True
     )
+    notice: str = param("", "Text that the page shows to its readers until it is empty, as from a teacher")
+    notice_link: str = param("", "Address that the page offers with the notice; only http and https")
 
 
 class WebPage:

@@ -1,0 +1,69 @@
+"""A class as a process, and its teacher."""
+
+from __future__ import annotations
+
+import json
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from tests.processes import START_S, Process, wait_for_port
+
+_POLL_S = 0.2
+
+
+class RunningClass:
+    """A class with a folder. Its ports are `port` and those that follow, its domains those from `domain` on."""
+
+    def __init__(
+        self, path: Path, names: list[str], *, port: int, domain: int, arguments: tuple[str, ...] = ()
+    ) -> None:
+        self.folder, self.port = path / "class", port
+        pupils = path / "names.csv"
+        pupils.write_text("\n".join(names))
+        given = ["--pupils", str(pupils), "--folder", str(self.folder), "--first-port", str(port)]
+        command = ["class", *given, "--first-domain", str(domain), *arguments]
+        self.process = Process(path, "thymio_sim_ros.cli.main", *command)
+        wait_for_port(port)
+
+    @property
+    def known(self) -> Any:
+        """Tokens of the teacher and of the pupils."""
+        return json.loads((self.folder / "class.json").read_text())
+
+    @property
+    def address(self) -> str:
+        """The teacher's page with the token."""
+        return f"http://127.0.0.1:{self.port}/#token={self.known['teacher_token']}"
+
+    def request(self, name: str, fields: Any = None, *, token: str | None = None) -> bytes:
+        """The answer to a request of the teacher. Raises HTTPError."""
+        given = self.known["teacher_token"] if token is None else token
+        request = urllib.request.Request(
+            f"http://127.0.0.1:{self.port}/class/{name}",
+            None if fields is None else json.dumps(fields).encode(),
+            {"Authorization": f"Bearer {given}"},
+        )
+        with urllib.request.urlopen(request, timeout=START_S) as answer:
+            body: bytes = answer.read()
+            return body
+
+    def state(self) -> list[Any]:
+        """What the teacher's page knows about all pupils."""
+        pupils: list[Any] = json.loads(self.request("state"))["pupils"]
+        return pupils
+
+    def pupil(self, pupil: str) -> Any:
+        """What it knows about one of them."""
+        return next(one for one in self.state() if one["id"] == pupil)
+
+    def until(self, pupil: str, condition: Callable[[Any], bool]) -> Any:
+        """Wait for a state of a pupil and return it."""
+        deadline = time.monotonic() + START_S
+        while not condition(found := self.pupil(pupil)):
+            assert time.monotonic() < deadline, f"{found}\n{self.process.output}"
+            time.sleep(_POLL_S)
+        return found

@@ -1,0 +1,158 @@
+"""A class of two real pupils, started once."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import urllib.error
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from websockets.asyncio.client import connect
+from websockets.exceptions import WebSocketException
+
+from tests.bridge.peers import Client, run
+from tests.classroom.class_support import RunningClass
+from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS
+from thymio_sim_ros.cli import main as commands
+
+pytestmark = pytest.mark.process
+
+PORT, DOMAIN = 21_310, 111
+ADA, BEN = PORT + 2, PORT + 4
+PROGRAM = "onevent button.forward\nmotor.left.target = 100\n"
+
+
+@pytest.fixture(scope="module")
+def group(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningClass]:
+    """The class of Ada and Ben."""
+    running = RunningClass(tmp_path_factory.mktemp("class"), ["Ada", "Ben"], port=PORT, domain=DOMAIN)
+    try:
+        for pupil in ("ada", "ben"):
+            running.until(pupil, lambda one: one["phase"] == "running" and one["programs"])
+        yield running
+    finally:
+        running.process.end()
+
+
+def token_of(group: RunningClass, name: str) -> str:
+    return str(next(pupil["token"] for pupil in group.known["pupils"] if pupil["name"] == name))
+
+
+def asked(port: int, token: str, request: ms.ClientMessage, names: tuple[str, ...]) -> dict[str, Any]:
+    """The values of parameters of a suite after a request of its pupil."""
+
+    async def talk() -> dict[str, Any]:
+        url = f"ws://127.0.0.1:{port}/?token={token}"
+        async with connect(url, subprotocols=SUBPROTOCOLS, max_size=None) as connection:
+            client = Client(connection)
+            await client.send(request, ms.GetParameters(names, "asked"))
+            while (values := await client.next(ms.ParameterValues)).id != "asked":
+                pass
+            return {one.name: one.value for one in values.parameters}
+
+    return run(talk())
+
+
+def notice(group: RunningClass, port: int, name: str) -> Any:
+    wanted = ("/web_ui.notice", "/web_ui.notice_link")
+    values = asked(port, token_of(group, name), ms.GetParameters(wanted), wanted)
+    return values.get(wanted[0]), values.get(wanted[1])
+
+
+def suite_pid(port: int) -> int:
+    """The process of the suite with this port of the bridge."""
+    wanted = f"--foxglove-port\0{port}\0".encode()
+    found = [path.parent.name for path in Path("/proc").glob("[0-9]*/cmdline") if wanted in path.read_bytes()]
+    return int(found[0])
+
+
+def test_a_bridge_needs_the_token_of_its_pupil(group: RunningClass) -> None:
+    for token in ("", token_of(group, "Ben")):
+        with pytest.raises((WebSocketException, TimeoutError)):
+            asked(ADA, token, ms.GetParameters(()), ())
+    with pytest.raises(urllib.error.HTTPError, match="401"):
+        group.request("state", token=token_of(group, "Ada"))
+
+
+def test_poses_come_while_the_page_of_the_teacher_is_open(group: RunningClass) -> None:
+    found = group.until("ben", lambda one: one["overview"])
+    assert len(found["overview"]["robots"]["thymio"]) == 6
+
+
+def test_one_is_paused_and_the_other_runs(group: RunningClass) -> None:
+    group.request("pause", {"pupils": ["ada"], "paused": True})
+    group.until("ada", lambda one: one["paused"])
+    assert not group.pupil("ben")["paused"]
+    group.request("pause", {"pupils": None, "paused": False})
+    group.until("ada", lambda one: not one["paused"])
+
+
+def test_a_message_and_a_robot_that_is_shown_arrive_on_the_page(group: RunningClass) -> None:
+    group.request("message", {"pupils": ["ada"], "text": "Bitte schön"})
+    group.request("show", {"pupil": "ben"})
+    text, link = notice(group, ADA, "Ada")
+    assert text == "Bitte schön"
+    assert link == group.pupil("ben")["watch"]
+    group.request("show", {"pupil": None})
+    assert notice(group, ADA, "Ada") == ("Bitte schön", "")
+    assert notice(group, BEN, "Ben") == ("", "")
+
+
+def test_a_suite_that_is_killed_starts_again_with_its_program_and_message(group: RunningClass) -> None:
+    changes = (
+        ms.Parameter("/aseba_runtime.script.name", "mine.aesl"),
+        ms.Parameter("/aseba_runtime.script.source", PROGRAM),
+    )
+    asked(ADA, token_of(group, "Ada"), ms.SetParameters(changes, "set"), ())
+    group.request("message", {"pupils": ["ada"], "text": "still there"})
+    group.until("ada", lambda one: zipped(group) == {"ada/program.aesl": PROGRAM})
+    before = group.pupil("ada")
+    os.killpg(suite_pid(ADA), signal.SIGKILL)
+    after = group.until("ada", lambda one: one["restarts"] == 1 and one["phase"] == "running" and one["programs"])
+    assert after["reason"] == "ended by SIGKILL"
+    assert after["link"] == before["link"]
+    assert after["programs"][0]["program"] == "program.aesl"
+    assert group.pupil("ben")["restarts"] == 0
+    source = "/aseba_runtime.script.path"
+    kept = asked(ADA, token_of(group, "Ada"), ms.GetParameters((source,)), (source,))[source]
+    assert Path(str(kept)).read_text() == PROGRAM
+    group.until("ada", lambda _one: notice(group, ADA, "Ada")[0] == "still there")
+
+
+def test_the_teacher_restarts_a_suite(group: RunningClass) -> None:
+    before = suite_pid(BEN)
+    group.request("restart", {"pupils": ["ben"]})
+    group.until("ben", lambda one: one["phase"] == "running" and one["programs"] and suite_pid(BEN) != before)
+    assert group.pupil("ben")["restarts"] == 0
+
+
+def zipped(group: RunningClass) -> dict[str, str]:
+    with zipfile.ZipFile(io.BytesIO(group.request("programs.zip"))) as archive:
+        return {name: archive.read(name).decode() for name in archive.namelist()}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["--pupils", "missing.csv"], "missing.csv: No such file"),
+        (["--pupils", "{names}", "--playground", "nowhere"], "nowhere"),
+        (["--pupils", "{names}", "--first-domain", "232"], "the last domain would be 233"),
+        (["--pupils", "{names}", "--first-port", "65532"], "the last port would be 65536"),
+    ],
+)
+def test_wrong_options_are_refused_before_anything_starts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], reason: str
+) -> None:
+    names = tmp_path / "names.csv"
+    names.write_text("Ada\nBen\n")
+    assert commands.main(["class", *(one.format(names=names) for one in arguments)]) == 2
+    assert reason in capsys.readouterr().err

@@ -1,0 +1,97 @@
+"""The interface of the teacher's page, with a class whose suites are not started."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thymio_sim_ros.classroom.classroom import Classroom
+from thymio_sim_ros.classroom.folder import ClassFolder
+from thymio_sim_ros.classroom.requests import Answer, RefusalError, answer
+from thymio_sim_ros.classroom.suite_process import SuiteOptions
+
+OPTIONS = SuiteOptions("localhost", 21_300, 101, "desk", "welcome")
+
+
+class Teacher:
+    """A class of two, and requests to it."""
+
+    def __init__(self, path: Path) -> None:
+        self.folder = ClassFolder(path)
+        self.places = self.folder.places(["Ada", "Ben"])
+
+    def ask(self, *requests: tuple[str, str, Any]) -> list[Answer]:
+        """The answers to requests: method, name, fields."""
+
+        async def talk() -> list[Answer]:
+            classroom = Classroom(self.places, OPTIONS, self.folder)
+            return [
+                await answer(classroom, method, name, b"" if fields is None else json.dumps(fields).encode())
+                for method, name, fields in requests
+            ]
+
+        return asyncio.run(talk())
+
+
+@pytest.fixture
+def teacher(tmp_path: Path) -> Teacher:
+    return Teacher(tmp_path)
+
+
+def test_a_message_is_for_one_or_for_all(teacher: Teacher) -> None:
+    *_, state = teacher.ask(
+        ("POST", "message", {"pupils": None, "text": "Look up"}),
+        ("POST", "message", {"pupils": ["ben"], "text": " Well done "}),
+        ("GET", "state", None),
+    )
+    pupils = json.loads(state.body)["pupils"]
+    assert [(pupil["id"], pupil["notice"]) for pupil in pupils] == [("ada", "Look up"), ("ben", "Well done")]
+
+
+def test_programs_are_collected_by_pupil(teacher: Teacher) -> None:
+    teacher.folder.keep_program(teacher.places[1], "onevent prox\n")
+    [packed] = teacher.ask(("GET", "programs.zip", None))
+    with zipfile.ZipFile(io.BytesIO(packed.body)) as archive:
+        assert archive.namelist() == ["ben/program.aesl"]
+        assert archive.read("ben/program.aesl") == b"onevent prox\n"
+
+
+def test_the_sheet_has_a_link_for_each_pupil(teacher: Teacher) -> None:
+    [sheet] = teacher.ask(("GET", "sheet", None))
+    links = json.loads(sheet.body)
+    assert [link["name"] for link in links] == ["Ada", "Ben"]
+    assert links[0]["url"] == f"http://localhost:21301/#token={teacher.places[0].token}"
+
+
+def test_plans_are_those_of_pupils(teacher: Teacher) -> None:
+    [state] = teacher.ask(("GET", "state", None))
+    [plan] = teacher.ask(("GET", f"plans/{json.loads(state.body)['pupils'][0]['plan']}", None))
+    assert json.loads(plan.body)["solids"]
+
+
+@pytest.mark.parametrize(
+    ("method", "name", "fields", "status"),
+    [
+        ("GET", "plans/../class.json", None, 404),
+        ("GET", "nothing", None, 404),
+        ("POST", "nothing", {}, 404),
+        ("PUT", "message", {}, 405),
+        ("POST", "message", [], 400),
+        ("POST", "message", {"text": 3}, 400),
+        ("POST", "message", {"text": "x" * 501}, 400),
+        ("POST", "pause", {"pupils": ["eve"], "paused": True}, 400),
+        ("POST", "pause", {"pupils": "ada", "paused": True}, 400),
+        ("POST", "pause", {"paused": 1}, 400),
+        ("POST", "show", {"pupil": ["ada"]}, 400),
+    ],
+)
+def test_wrong_requests_are_refused(teacher: Teacher, method: str, name: str, fields: Any, status: int) -> None:
+    with pytest.raises(RefusalError) as raised:
+        teacher.ask((method, name, fields))
+    assert raised.value.status == status

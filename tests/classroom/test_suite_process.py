@@ -1,0 +1,58 @@
+"""Command line, environment and end of a pupil's suite, without starting one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.classroom.folder import Place
+from thymio_sim_ros.classroom.seat import FIRST_WAIT_S, MAX_WAIT_S, STEADY_S, next_wait_s
+from thymio_sim_ros.classroom.suite_process import SuiteOptions, command, environment, reason_of_end
+
+OPTIONS = SuiteOptions("localhost", 8100, 1, "desk", "welcome")
+PLACE = Place("ada", "Ada", 2, "secret-token", "other-token")
+
+
+def test_a_pupil_has_two_ports_a_domain_and_no_servers_for_other_programs() -> None:
+    line = " ".join(command(OPTIONS, PLACE, "welcome"))
+    assert "--port 8105 --foxglove-port 8106" in line
+    assert "--no-aseba --no-tdm" in line
+    assert line.endswith("--ros-args -p simulator:batch_ticks:=3 -p simulator:clock_rate:=20.0")
+    assert environment(OPTIONS, PLACE, {})["ROS_DOMAIN_ID"] == "3"
+
+
+def test_tokens_are_in_the_environment_only() -> None:
+    assert "token" not in " ".join(command(OPTIONS, PLACE, "welcome"))
+    assert environment(OPTIONS, PLACE, {"PATH": "/bin"})["THYMIO_SIM_TOKEN"] == "secret-token"
+
+
+def test_discovery_stays_on_this_computer_unless_the_environment_says_more() -> None:
+    name = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+    assert environment(OPTIONS, PLACE, {})[name] == "LOCALHOST"
+    assert environment(OPTIONS, PLACE, {name: "SUBNET"})[name] == "SUBNET"
+
+
+@pytest.mark.parametrize(
+    ("code", "output", "reason"),
+    [
+        (2, "line\nthymio-sim: port 8105 is used\n", "thymio-sim: port 8105 is used"),
+        (1, "  File x\nMemoryError: none left\n", "MemoryError: none left"),
+        (-9, "", "ended by SIGKILL"),
+        (3, "", "ended with exit code 3"),
+    ],
+)
+def test_the_reason_of_an_end_is_its_last_error(tmp_path: Path, code: int, output: str, reason: str) -> None:
+    log = tmp_path / "suite.log"
+    log.write_text(output)
+    assert reason_of_end(code, log) == reason
+
+
+def test_a_suite_that_ends_again_and_again_is_started_less_often() -> None:
+    waits = [0.0]
+    for _ in range(9):
+        waits.append(next_wait_s(waits[-1], 1.0))
+    assert waits[1] == FIRST_WAIT_S
+    assert waits == sorted(waits)
+    assert waits[-1] == MAX_WAIT_S
+    assert next_wait_s(MAX_WAIT_S, STEADY_S) == FIRST_WAIT_S

@@ -1,0 +1,76 @@
+"""The teacher's page of a class, and what it does on the page of a pupil."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterator
+
+import pytest
+
+from tests.classroom.class_support import RunningClass
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+PORT, DOMAIN = 21_340, 115
+
+
+@pytest.fixture(scope="module")
+def group(browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningClass]:
+    """The class of Ada and Jürg."""
+    running = RunningClass(tmp_path_factory.mktemp("class"), ["Ada", "Jürg"], port=PORT, domain=DOMAIN)
+    yield running
+    running.process.end()
+
+
+def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
+    group: RunningClass, page, other_page, tmp_path
+) -> None:
+    page.goto(group.address)
+    ada = page.locator("[data-pupil=ada]")
+    ada.locator(".chip", has_text="not started").wait_for()
+    page.locator("#count", has_text="2 / 2").wait_for()
+    page.wait_for_function("""() => {
+        const canvas = document.querySelector("[data-pupil=jurg] canvas");
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return data.some((value) => value > 0);
+    }""")
+    assert "token" not in page.url
+
+    page.click("[data-verb=pauseAll]")
+    ada.locator(".chip", has_text="paused").wait_for()
+    ada.locator("[data-verb=run]").click()
+    ada.locator("[data-verb=pause]").wait_for()
+
+    ada.locator("[data-verb=message]").click()
+    page.fill("#message", "Look at the <b>board</b>")
+    page.click("[data-verb=send]")
+    open_page(other_page, group.pupil("ada")["link"].replace("/#", "/?tour=off#").replace("localhost", "127.0.0.1"))
+    note = other_page.locator(".teacher-note")
+    note.get_by_text("Look at the <b>board</b>").wait_for()
+    assert not note.locator("a").is_visible()
+
+    page.click("[data-pupil=jurg] [data-verb=present]")
+    page.click("[data-verb=offer]")
+    note.locator("a").wait_for()
+    assert note.locator("a").get_attribute("href") == group.pupil("jurg")["watch"]
+    page.click("[data-verb=close]")
+    note.locator("a").wait_for(state="hidden")
+    note.locator("button").click()
+    note.wait_for(state="hidden")
+
+    with page.expect_download() as download:
+        page.click("[data-verb=collect]")
+    download.value.save_as(tmp_path / "programs.zip")
+    assert zipfile.is_zipfile(tmp_path / "programs.zip")
+
+    page.click("[data-verb=sheet]")
+    assert page.locator(".class-link img").count() == 2
+    page.click("[data-verb=back]")
+    ada.wait_for()
+
+
+def test_without_the_token_the_page_says_what_is_missing(group: RunningClass, page) -> None:
+    page.goto(f"http://127.0.0.1:{PORT}/")
+    page.get_by_text("This page needs the link of the teacher").wait_for()
+    assert page.locator(".pupil").count() == 0

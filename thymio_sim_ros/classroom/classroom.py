@@ -1,0 +1,114 @@
+"""All seats of a class, and what the teacher does to them."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import os
+import zipfile
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from thymio_sim_ros.classroom.folder import ClassFolder, Place
+from thymio_sim_ros.classroom.plan import plan_of
+from thymio_sim_ros.classroom.seat import Notice, Seat
+from thymio_sim_ros.classroom.suite_process import SuiteOptions
+from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.loading import load_playground
+
+__all__ = ["MAX_MESSAGE", "WATCHED_S", "Classroom"]
+
+WATCHED_S = 5.0
+"""The teacher's page counts as open for this time after its last request."""
+MAX_MESSAGE = 500
+"""Characters of a message."""
+_PLANS = 64
+"""Plans of playgrounds that are kept."""
+
+
+class Classroom:
+    """The class while it runs. Only for the thread of the event loop."""
+
+    def __init__(self, places: Sequence[Place], options: SuiteOptions, folder: ClassFolder) -> None:
+        starting = asyncio.Semaphore(max(1, os.cpu_count() or 1))
+        self._folder = folder
+        self.seats = {place.id: Seat(place, options, folder, starting) for place in places}
+        self._messages: dict[str, str] = {}
+        self._shown: str | None = None
+        self._plans: dict[str, dict[str, Any]] = {}
+        self._asked_s = float("-inf")
+
+    async def run(self) -> None:
+        """Keep all suites running until this task is cancelled, which ends them."""
+        tasks = [asyncio.create_task(seat.run()) for seat in self.seats.values()]
+        tasks.append(asyncio.create_task(self._follow_watching()))
+        try:
+            await asyncio.gather(*tasks)
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    def state(self) -> Mapping[str, Any]:
+        """Return what the teacher's page shows; poses are received from now on for a while."""
+        self._asked_s = asyncio.get_running_loop().time()
+        pupils = [{**seat.summary(), "notice": self._messages.get(one, "")} for one, seat in self.seats.items()]
+        return {"pupils": pupils, "shown": self._shown}
+
+    async def plan(self, number: str) -> Mapping[str, Any] | None:
+        """Return a playground seen from above by the `plan` of a pupil; None if there is none that can be read."""
+        seat = next((seat for seat in self.seats.values() if seat.plan == number), None)
+        if number not in self._plans and seat is not None:
+            try:
+                plan = await asyncio.to_thread(lambda: plan_of(load_playground(seat.playground)[1]))
+            except (ThymioSimError, OSError):
+                return None
+            if len(self._plans) >= _PLANS:
+                del self._plans[next(iter(self._plans))]
+            self._plans[number] = plan
+        return self._plans.get(number)
+
+    async def pause(self, ids: Iterable[str], *, paused: bool) -> None:
+        """Pause the worlds of these pupils, or let them run."""
+        await asyncio.gather(*(self.seats[one].pause(paused=paused) for one in ids))
+
+    async def restart(self, ids: Iterable[str]) -> None:
+        """Start the suites of these pupils anew, with their programs."""
+        await asyncio.gather(*(self.seats[one].restart() for one in ids))
+
+    async def message(self, ids: Iterable[str], text: str) -> None:
+        """Show a message on the pages of these pupils; an empty one removes it."""
+        chosen = list(ids)
+        self._messages |= dict.fromkeys(chosen, text)
+        await self._show_notices(chosen)
+
+    async def show(self, shown: str | None) -> None:
+        """Offer a look at one pupil's robot on the pages of all others; None ends that."""
+        self._shown = shown
+        await self._show_notices(self.seats)
+
+    def programs(self) -> bytes:
+        """Return a zip with the last own program of each pupil who has one, named after the pupil."""
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+            for seat in self.seats.values():
+                if (text := self._folder.program(seat.place)) is not None:
+                    archive.writestr(f"{seat.place.id}/program.aesl", text)
+        return packed.getvalue()
+
+    async def _show_notices(self, ids: Iterable[str]) -> None:
+        await asyncio.gather(*(self.seats[one].show(self._notice(one)) for one in ids))
+
+    def _notice(self, pupil: str) -> Notice:
+        text = self._messages.get(pupil, "")
+        if self._shown is None or self._shown == pupil:
+            return Notice(text)
+        shown = self.seats[self._shown]
+        return Notice(text or shown.place.name, shown.link(read_only=True))
+
+    async def _follow_watching(self) -> None:
+        """Receive poses while the teacher's page is open."""
+        while True:
+            is_watched = asyncio.get_running_loop().time() - self._asked_s < WATCHED_S
+            await asyncio.gather(*(seat.watch_overview(wanted=is_watched) for seat in self.seats.values()))
+            await asyncio.sleep(0.5)

@@ -1,0 +1,134 @@
+"""The HTTP interface of the teacher's page: request → action of the class → answer. Without sockets.
+
+GET  class/state            pupils with what their robots do, see `Seat.summary`
+GET  class/plans/<plan>     a playground seen from above, see `plan_of`
+GET  class/sheet            names with links and their QR codes
+GET  class/programs.zip     the programs of all pupils
+POST class/<action>         {"pupils": [ids] or null for all, …}; actions: see `_ACTIONS`
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from thymio_sim_ros.classroom.classroom import MAX_MESSAGE, Classroom
+
+__all__ = ["MAX_BODY", "Answer", "RefusalError", "answer"]
+
+MAX_BODY = 100_000
+"""Bytes of a request's body."""
+_JSON = "application/json"
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Body and media type of an answer with status 200; `file` is the name under which a browser saves it."""
+
+    body: bytes
+    media_type: str = _JSON
+    file: str = ""
+
+
+class RefusalError(Exception):
+    """A request that is not answered: HTTP status and a text that says why."""
+
+    def __init__(self, status: int, text: str) -> None:
+        super().__init__(text)
+        self.status = status
+
+
+async def answer(classroom: Classroom, method: str, name: str, body: bytes) -> Answer:
+    """Carry out a request; `name` is its path after `class/`. Raises RefusalError."""
+    if method == "GET":
+        return await _read(classroom, name)
+    if method != "POST":
+        raise RefusalError(405, f"found {method[:20]}, expected GET or POST")
+    act = _ACTIONS.get(name)
+    if act is None:
+        raise RefusalError(404, f"found no such action; expected {', '.join(_ACTIONS)}")
+    try:
+        fields = json.loads(body or b"{}")
+    except ValueError as error:
+        raise RefusalError(400, f"not JSON: {error}") from error
+    if not isinstance(fields, dict):
+        raise RefusalError(400, "expected a JSON object")
+    await act(classroom, fields)
+    return _json({})
+
+
+async def _read(classroom: Classroom, name: str) -> Answer:
+    if name == "state":
+        return _json(classroom.state())
+    if name == "sheet":
+        return _json([_links(seat.place.name, seat.link()) for seat in classroom.seats.values()])
+    if name == "programs.zip":
+        return Answer(classroom.programs(), "application/zip", "programs.zip")
+    if name.startswith("plans/") and (plan := await classroom.plan(name.removeprefix("plans/"))) is not None:
+        return _json(plan)
+    raise RefusalError(404, "there is no such document")
+
+
+async def _pause(classroom: Classroom, fields: Mapping[str, Any]) -> None:
+    paused = fields.get("paused")
+    if not isinstance(paused, bool):
+        raise RefusalError(400, "paused: expected true or false")
+    await classroom.pause(_pupils(classroom, fields), paused=paused)
+
+
+async def _restart(classroom: Classroom, fields: Mapping[str, Any]) -> None:
+    await classroom.restart(_pupils(classroom, fields))
+
+
+async def _message(classroom: Classroom, fields: Mapping[str, Any]) -> None:
+    text = fields.get("text")
+    if not isinstance(text, str) or len(text) > MAX_MESSAGE:
+        raise RefusalError(400, f"text: expected a text of at most {MAX_MESSAGE} characters")
+    await classroom.message(_pupils(classroom, fields), text.strip())
+
+
+async def _show(classroom: Classroom, fields: Mapping[str, Any]) -> None:
+    shown = fields.get("pupil")
+    if shown is not None and not (isinstance(shown, str) and shown in classroom.seats):
+        raise RefusalError(400, "pupil: expected the id of a pupil, or null")
+    await classroom.show(shown)
+
+
+_ACTIONS: Mapping[str, Callable[[Classroom, Mapping[str, Any]], Awaitable[None]]] = {
+    "pause": _pause,
+    "restart": _restart,
+    "message": _message,
+    "show": _show,
+}
+
+
+def _pupils(classroom: Classroom, fields: Mapping[str, Any]) -> list[str]:
+    """The ids of the pupils that a request is for."""
+    found = fields.get("pupils")
+    if found is None:
+        return list(classroom.seats)
+    if not isinstance(found, list) or not all(isinstance(one, str) and one in classroom.seats for one in found):
+        raise RefusalError(400, "pupils: expected ids of pupils, or null for all")
+    return found
+
+
+def _links(name: str, url: str) -> dict[str, str]:
+    return {"name": name, "url": url, "qr": _qr_code(url)}
+
+
+def _qr_code(url: str) -> str:
+    """An SVG image, "" where the library is not installed."""
+    try:
+        import segno
+    except ImportError:
+        return ""
+    drawn = io.BytesIO()
+    segno.make_qr(url, error="m").save(drawn, kind="svg", border=2, xmldecl=False, svgns=True)
+    return drawn.getvalue().decode()
+
+
+def _json(value: Any) -> Answer:
+    return Answer(json.dumps(value, separators=(",", ":")).encode())

@@ -1,0 +1,256 @@
+"""A pupil's place: keeps the suite running, and the program.
+
+A suite that ends, or that does not answer, is started again with its program. Each end within `STEADY_S` doubles the
+wait, so that a suite that cannot run takes little time from the others.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hashlib
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from websockets.exceptions import WebSocketException
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.addresses import urls
+from thymio_sim_ros.bridge.access import is_loopback
+from thymio_sim_ros.classroom.bridge_client import PLAYGROUND, SOURCE, BridgeClient, SuiteStatus
+from thymio_sim_ros.classroom.folder import ClassFolder, Place
+from thymio_sim_ros.classroom.suite_process import SuiteOptions, SuiteProcess, command, environment
+from thymio_sim_ros.loading import is_playground_text
+
+__all__ = ["FIRST_WAIT_S", "MAX_WAIT_S", "START_S", "STEADY_S", "Notice", "Seat", "next_wait_s"]
+
+FIRST_WAIT_S, MAX_WAIT_S = 1.0, 60.0
+"""Time before the first restart, and the longest one."""
+STEADY_S = 60.0
+"""A suite that has run for this time counts as working: its next restart comes soon."""
+START_S = 90.0
+"""Time until a suite that has started must answer; long, for twenty that start together."""
+RECONNECT_S = 10.0
+"""Time until a suite whose connection was lost must answer again."""
+_CONNECT_S = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """What a page shows: a text, and an address that it offers."""
+
+    text: str = ""
+    link: str = ""
+
+
+def next_wait_s(wait_s: float, ran_s: float) -> float:
+    """Return the time before the next restart of a suite that ran for `ran_s`, after one of `wait_s` (0: none yet)."""
+    return FIRST_WAIT_S if ran_s >= STEADY_S or wait_s == 0.0 else min(MAX_WAIT_S, 2 * wait_s)
+
+
+class Seat:
+    """Supervises one suite. `run` keeps it running until it is cancelled. Only for the thread of the event loop."""
+
+    def __init__(
+        self, place: Place, options: SuiteOptions, folder: ClassFolder, starting: asyncio.Semaphore | None = None
+    ) -> None:
+        """`starting` limits how many suites start at the same time."""
+        self.place = place
+        self._options, self._folder = options, folder
+        self._starting = starting or asyncio.Semaphore(1)
+        self._client: BridgeClient | None = None
+        self._process: SuiteProcess | None = None
+        self._asked = asyncio.Event()
+        self._wants_overview = False
+        self._notice = Notice()
+        self._wants_pause = False
+        self._given_program = ""
+        self._set_playground(options.playground)
+        self.phase = "waiting"
+        """waiting (for its turn to start), starting, running, or broken: waits before the next restart."""
+        self.restarts = 0
+        self.reason = ""
+        """Why the suite has ended last."""
+
+    @property
+    def status(self) -> SuiteStatus:
+        """What the suite reports, empty while it does not run."""
+        return SuiteStatus() if self._client is None else self._client.status
+
+    @property
+    def pid(self) -> int | None:
+        """Process id of the suite, None while there is none."""
+        return None if self._process is None else self._process.pid
+
+    def link(self, *, read_only: bool = False) -> str:
+        """Address of the pupil's page with the token, as other computers reach it."""
+        token = self.place.read_only_token if read_only else self.place.token
+        return urls("http", self._options.address, self._options.port(self.place), "/", token)[-1]
+
+    async def run(self) -> None:
+        """Keep the suite running until this task is cancelled, which ends the suite."""
+        clock_s = asyncio.get_running_loop().time
+        wait_s = 0.0
+        try:
+            while True:
+                async with self._starting:
+                    began_s = clock_s()
+                    self.phase = "starting"
+                    await self._start()
+                    serving = asyncio.create_task(self._serve())
+                    await self._until_ready(serving)
+                reason = await self._until_end(serving)
+                if self._asked.is_set():
+                    self._asked.clear()
+                    wait_s, self.phase = 0.0, "waiting"
+                    continue
+                self.restarts += 1
+                self.reason, self.phase = reason, "broken"
+                wait_s = next_wait_s(wait_s, clock_s() - began_s)
+                with contextlib.suppress(TimeoutError):  # asked to restart: at once
+                    await asyncio.wait_for(self._asked.wait(), wait_s)
+                self._asked.clear()
+        finally:
+            if self._process is not None:
+                await self._process.end()
+
+    async def restart(self) -> None:
+        """Start the suite anew, also before the wait after a crash is over."""
+        self.reason = ""
+        self._asked.set()
+
+    async def pause(self, *, paused: bool) -> None:
+        """Pause the world or let it run; a suite that is restarted keeps this."""
+        self._wants_pause = paused
+        if self._client is not None:
+            await self._attempt(self._client.pause(paused=paused))
+
+    async def show(self, notice: Notice) -> None:
+        """Show a notice on the page; a suite that is restarted shows it too."""
+        self._notice = notice
+        if self._client is not None:
+            await self._attempt(self._client.set_notice(notice.text, notice.link))
+
+    async def watch_overview(self, *, wanted: bool) -> None:
+        """Receive poses, or no longer."""
+        self._wants_overview = wanted
+        if self._client is not None:
+            await self._attempt(self._client.watch_overview(wanted=wanted))
+
+    async def _start(self) -> None:
+        kept = self._folder.program(self.place)
+        program = self._options.program if kept is None else str(self._folder.program_file(self.place))
+        self._given_program = kept or ""
+        self._set_playground(self._options.playground)
+        self._process = await SuiteProcess.start(
+            command(self._options, self.place, program),
+            environment(self._options, self.place, os.environ),
+            self._folder.pupil(self.place) / "suite.log",
+        )
+
+    async def _serve(self) -> None:
+        """Follow the suite by its bridge; returns when it does not answer any more."""
+        host = "127.0.0.1" if is_loopback(self._options.address) else self._options.address
+        host = "127.0.0.1" if host == "0.0.0.0" else host
+        url = f"ws://{host}:{self._options.foxglove_port(self.place)}/"
+        clock_s = asyncio.get_running_loop().time
+        end_s = clock_s() + START_S
+        try:
+            while clock_s() < end_s:
+                client = self._client = BridgeClient(url, self.place.token, self._on_parameter)
+                greeting = asyncio.create_task(self._greet(client))
+                try:
+                    await client.run()
+                except (OSError, WebSocketException):
+                    if client.status.state:  # a connection that worked is lost: perhaps only that
+                        end_s = clock_s() + RECONNECT_S
+                    await asyncio.sleep(_CONNECT_S)
+                finally:
+                    greeting.cancel()
+        finally:
+            self._client = None
+
+    async def _greet(self, client: BridgeClient) -> None:
+        """Bring a suite that has started to the state that the teacher wants."""
+        await client.is_ready.wait()
+        self.phase = "running"
+        await client.watch_overview(wanted=self._wants_overview)
+        if self._notice != Notice():
+            await client.set_notice(self._notice.text, self._notice.link)
+        while self._wants_pause and not client.status.state.get("paused"):
+            await client.pause(paused=True)
+            await asyncio.sleep(_CONNECT_S)
+
+    async def _until_ready(self, serving: asyncio.Task[None]) -> None:
+        assert self._process is not None
+        ended = asyncio.create_task(self._process.wait())
+        asked = asyncio.create_task(self._asked.wait())
+        while self.phase == "starting" and not (ended.done() or serving.done() or asked.done()):
+            await asyncio.wait({ended, serving, asked}, timeout=_CONNECT_S, return_when=asyncio.FIRST_COMPLETED)
+        ended.cancel()
+        asked.cancel()
+
+    async def _until_end(self, serving: asyncio.Task[None]) -> str:
+        """Wait until the suite ends, does not answer, or is to be restarted; end it and return the reason."""
+        assert self._process is not None
+        process = self._process
+        ended = asyncio.create_task(process.wait())
+        asked = asyncio.create_task(self._asked.wait())
+        try:
+            await asyncio.wait({ended, serving, asked}, return_when=asyncio.FIRST_COMPLETED)
+            if asked.done():
+                await process.end()
+            elif not ended.done():
+                # A bridge that ends first says nothing: the reason is that of the process, if it ends, too.
+                await asyncio.wait({ended}, timeout=_CONNECT_S * 10)
+                if not ended.done():
+                    process.kill()
+                    return "did not answer"
+            return await ended
+        finally:
+            for task in (ended, asked, serving):
+                task.cancel()
+            self._process = None
+
+    def _on_parameter(self, name: str, value: str) -> None:
+        # A path that a node of the pupil has set is not opened here.
+        if name == PLAYGROUND and (is_playground_text(value) or value in resources.playgrounds()):
+            self._set_playground(value)
+        if name == SOURCE and value and value != self._given_program:
+            self._given_program = value
+            self._folder.keep_program(self.place, value)
+
+    def _set_playground(self, value: str) -> None:
+        self.playground = value
+        """The playground of the suite, as `load_playground` takes it."""
+        self.plan = hashlib.sha256(value.encode()).hexdigest()[:16]
+        """Names it; the same for the same playground."""
+
+    async def _attempt(self, request: Any) -> None:
+        with contextlib.suppress(OSError, WebSocketException):  # the suite has just ended, and is restarted
+            await request
+
+    def summary(self) -> Mapping[str, Any]:
+        """What the teacher's page shows of this pupil, as JSON values."""
+        state, client = self.status.state, self.status
+        programs = [
+            {key: values.get(key, "") for key in ("state", "program", "line", "fault")}
+            for values in client.programs.values()
+        ]
+        return {
+            "id": self.place.id,
+            "name": self.place.name,
+            "phase": self.phase,
+            "reason": self.reason,
+            "restarts": self.restarts,
+            "paused": bool(state.get("paused", False)),
+            "achieved": state.get("achieved", 0.0),
+            "fallen": [robot.get("robot", "") for robot in state.get("robots", []) if robot.get("fallen")],
+            "programs": programs,
+            "overview": client.overview,
+            "plan": self.plan,
+            "link": self.link(),
+            "watch": self.link(read_only=True),
+        }

@@ -1,0 +1,184 @@
+"""The command `thymio-sim class`: a suite for each pupil of a list, and a page for the teacher, until Ctrl-C."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import contextlib
+import os
+import signal
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.addresses import describe_urls
+from thymio_sim_ros.bridge.access import is_loopback
+from thymio_sim_ros.bridge.server_thread import check_free, listen
+from thymio_sim_ros.classroom.classroom import Classroom
+from thymio_sim_ros.classroom.errors import ClassError
+from thymio_sim_ros.classroom.folder import ClassFolder, Place
+from thymio_sim_ros.classroom.pupils import read_pupils
+from thymio_sim_ros.classroom.suite_process import SuiteOptions, discovery
+from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.cli.options import check_files, check_ros, path_argument
+from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.cli.servers import address_argument, port_argument
+from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.domain import describe_range
+from thymio_sim_ros.suite_config import SuiteConfig
+
+__all__ = ["run"]
+
+FIRST_PORT = 8100
+FIRST_DOMAIN = 1
+LAST_DOMAIN = 232
+"""The highest ROS domain whose ports exist (docs.ros.org, "The ROS_DOMAIN_ID")."""
+LAST_PORT = 65_535
+
+
+def run(argv: Sequence[str]) -> int:
+    """Run the class until Ctrl-C; return the exit code. Raises UsageError before anything starts."""
+    given = _parser().parse_args(argv)
+    try:
+        names = read_pupils(given.pupils.read_bytes(), str(given.pupils))
+    except OSError as error:
+        raise UsageError(f"{given.pupils}: {error.strerror}; expected a CSV file with a name in each line") from error
+    except ClassError as error:
+        raise UsageError(str(error)) from error
+    check_files(given.playground, given.program, "", THYMIO)
+    check_ros()
+    options = SuiteOptions(given.address, given.first_port, given.first_domain, given.playground, given.program)
+    with contextlib.ExitStack() as stack:
+        path = given.folder or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="thymio-class-")))
+        try:
+            folder = ClassFolder(path)
+            places = folder.places(names)
+        except ClassError as error:
+            raise UsageError(str(error)) from error
+        _check_ports(options, places)
+        asyncio.run(_serve(options, folder, places, is_kept=given.folder is not None))
+    return 0
+
+
+async def _serve(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place], *, is_kept: bool) -> None:
+    from thymio_sim_ros.classroom.server import serve_class  # aiohttp: not for the check of the command line
+
+    classroom = Classroom(places, options, folder)
+    listeners = listen(options.address, options.first_port)
+    page = resources.page()
+    loopback = is_loopback(options.address)
+    tasks = [
+        asyncio.create_task(classroom.run()),
+        asyncio.create_task(serve_class(listeners, classroom, page, folder.teacher_token, is_loopback=loopback)),
+    ]
+    stop = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, stop.set)
+    print_text(_banner(options, folder, places, is_kept=is_kept))
+    if page is None:
+        print_text(resources.PAGE_BUILD_HINT)
+    ended = asyncio.create_task(stop.wait())
+    try:
+        await asyncio.wait({ended, *tasks}, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        results = await asyncio.gather(*tasks, return_exceptions=True)
+        for listener in listeners:
+            listener.close()
+    for result in results:
+        if isinstance(result, Exception):
+            raise result
+
+
+def _banner(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place], *, is_kept: bool) -> str:
+    first, last = (options.domain(place) for place in (places[0], places[-1]))
+    access = "this computer only" if is_loopback(options.address) else "everyone in your network with a link"
+    kept = "kept" if is_kept else "lost at the end: keep them with --folder"
+    found = describe_range(discovery(os.environ))
+    return "\n".join(
+        [
+            f"Teacher   {describe_urls('http', options.address, options.first_port, '/', folder.teacher_token)}",
+            f"Pupils    {len(places)}; their links are on the teacher's page, as a sheet to print",
+            f"Access    {access}",
+            f"Domains   ROS_DOMAIN_ID {min(first, last)} to {max(first, last)}, {found}",
+            f"Programs  {kept}",
+            "Stop      Ctrl-C",
+        ]
+    )
+
+
+def _check_ports(options: SuiteOptions, places: Sequence[Place]) -> None:
+    """Raise UsageError for ports or domains that cannot be used."""
+    last = max(places, key=lambda place: place.number)
+    if options.foxglove_port(last) > LAST_PORT:
+        raise UsageError(f"--first-port {options.first_port}: the last port would be {options.foxglove_port(last)}")
+    if options.domain(last) > LAST_DOMAIN:
+        raise UsageError(
+            f"--first-domain {options.first_domain}: the last domain would be {options.domain(last)}, expected at most "
+            f"{LAST_DOMAIN}"
+        )
+    ports = [port for place in places for port in (options.port(place), options.foxglove_port(place))]
+    for port in (options.first_port, *ports):
+        try:
+            check_free(options.address, port)
+        except OSError as error:
+            raise UsageError(f"port {port}: {error.strerror}; choose others with --first-port") from error
+
+
+def _domain_argument(text: str) -> int:
+    number = int(text) if text.isascii() and text.isdigit() else -1
+    if not 0 <= number <= LAST_DOMAIN:
+        raise argparse.ArgumentTypeError(f"'{text}' found, expected a number from 0 to {LAST_DOMAIN}")
+    return number
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim class",
+        description="A class on one machine: a world, a page and a link for each pupil, and a page for the teacher "
+        "(docs/classroom.md). Ctrl-C ends everything.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "--pupils", type=path_argument, required=True, metavar="FILE.csv", help="names, one per line, or a column"
+    )
+    parser.add_argument(
+        "--folder",
+        type=path_argument,
+        metavar="DIR",
+        help="folder in which links and programs are kept from lesson to lesson (default: a temporary one)",
+    )
+    parser.add_argument(
+        "--playground", default=SuiteConfig.playground, metavar="NAME|FILE", help="of all pupils (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--program",
+        default=SuiteConfig.program,
+        metavar="NAME|FILE",
+        help="of pupils without a program of their own (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--address",
+        type=address_argument,
+        default=SuiteConfig.address,
+        metavar="IPV4",
+        help="address on which all pages listen; 0.0.0.0 is the whole network (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--first-port",
+        type=port_argument,
+        default=FIRST_PORT,
+        metavar="PORT",
+        help="port of the teacher's page; each pupil needs the next two (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--first-domain",
+        type=_domain_argument,
+        default=FIRST_DOMAIN,
+        metavar="ID",
+        help="ROS domain of the first pupil, the others have the next ones (default: %(default)s)",
+    )
+    return parser

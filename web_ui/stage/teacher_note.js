@@ -1,0 +1,43 @@
+// What the teacher of a class says to the reader of this page, or shows (docs/classroom.md): parameters of the page's node.
+
+import { PARAMETERS } from "../state/names.js";
+import { h, setAttribute, setText } from "../ui/dom.js";
+import { icon } from "../ui/icons.js";
+
+/** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
+export function teacherNotePanel({ text, announce, scene }) {
+  const pageText = text("page");
+  let hiddenNote = "";
+  let announced = "";
+  const words = h("p", { class: "teacher-words" });
+  const link = h("a", { class: "btn soft", target: "_blank", rel: "noreferrer", hidden: true }, icon("eye"), pageText("notice.look"));
+  const hide = h("button", {
+    type: "button",
+    class: "btn icon",
+    "aria-label": pageText("notice.dismiss"),
+    onclick: () => {
+      hiddenNote = key;
+      scene.invalidate();
+    },
+  }, icon("close"));
+  const element = h("div", { class: "message note-box teacher-note", hidden: true }, h("div", { class: "grow" }, h("p", { class: "cap" }, pageText("notice.teacher")), words), link, hide);
+  let key = "";
+  return {
+    slot: "messages",
+    element,
+    render({ parameters }) {
+      const note = String(parameters[PARAMETERS.notice] ?? "");
+      const address = String(parameters[PARAMETERS.noticeLink] ?? "");
+      key = `${note}\n${address}`;
+      if (note === "") hiddenNote = "";
+      element.hidden = note === "" || key === hiddenNote;
+      setText(words, note);
+      link.hidden = !/^https?:\/\//.test(address);
+      if (!link.hidden) setAttribute(link, "href", address);
+      if (note !== announced) {
+        announced = note;
+        if (note !== "") announce(`${pageText("notice.teacher")}: ${note}`);
+      }
+    },
+  };
+}
