@@ -14,6 +14,8 @@ HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765
 ADDRESS = "localhost"
 """Loopback only, unless the network is requested."""
+REPLAY_FROM_S = -3.0
+"""A replay starts shortly before its end, which is the failure of a test."""
 
 
 NO_SERVERS = NetworkSettings()
@@ -30,6 +32,8 @@ class SuiteConfig:
         robot: address of a real robot, in place of the simulator; empty for none.
         address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
         log: file of a run log, empty for none.
+        replay: run log whose last run is shown in place of a playground, empty for none.
+        replay_from_s: time at which it is paused at first; negative: before its end.
         cmd_vel_timeout_s: time after which a velocity ends; short, because teleoperation in the browser sends nothing
             on release (docs/spec/ros-interface.md section 13).
         tokens: tokens that clients of page and bridge need; None lets the bridge choose.
@@ -50,6 +54,8 @@ class SuiteConfig:
     foxglove: bool = True
     seed: int = 0
     log: str = ""
+    replay: str = ""
+    replay_from_s: float = REPLAY_FROM_S
     real_time_factor: float = 1.0
     cmd_vel_timeout_s: float = 0.5
     tokens: Tokens | None = None

@@ -426,6 +426,14 @@ def test_what_lies_on_this_computer_for_other_purposes_is_not_quoted(capsys, tmp
     assert "hunter2" not in line.replace("hunter2_file", "")
 
 
+def test_a_replay_takes_its_world_from_the_log(capsys, tmp_path):
+    log = tmp_path / "run.jsonl"
+    log.write_text("nothing")
+    assert "found --seed, --program" in refused(capsys, "--replay", str(log), "--seed", "3", "--program", "explorer")
+    assert f"{log}: line 1" in refused(capsys, "--replay", str(log))
+    assert "expected a run log" in refused(capsys, "--replay", str(tmp_path / "absent.jsonl"))
+
+
 @pytest.mark.parametrize(
     ("arguments", "found"),
     [

@@ -96,7 +96,7 @@ def test_a_failure_has_a_page_with_a_picture_and_a_run_log(small: Path) -> None:
     assert "data:image/svg+xml;base64," in page
     logs = sorted(small.glob("pupils/*-Straight/*.jsonl"))
     assert [log.name for log in logs] == ["test-2.jsonl", "test-3.jsonl", "test-4.jsonl"]
-    assert f"thymio-sim replay {logs[0].name}" in page
+    assert f"thymio-sim --replay {logs[0].name}" in page
     result = replay(logs[0])
     assert (result.differs, result.is_complete, result.seconds) == (None, True, 6.0)
 

@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import thymio_sim_ros
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens, is_loopback
@@ -22,6 +23,7 @@ from thymio_sim_ros.cli.options import (
     check_ros,
     device_options,
     number_argument,
+    path_argument,
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
@@ -29,16 +31,16 @@ from thymio_sim_ros.cli.servers import Servers, add_server_options, address_argu
 from thymio_sim_ros.loading import NO_PROGRAM
 from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
 from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.runlog.replay import LoggedRun, last_run
+from thymio_sim_ros.runlog.run_log import RunLogError
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
 __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
 
-_SIMULATOR_ONLY = (
-    *("playground", "behaviour", "seed", "log", "card", "settings", "layout", "events", "motors", "proximity"),
-    "real_time_factor",
-)
+_OF_WORLD = ("playground", "behaviour", "seed", "motors", "proximity")
+_SIMULATOR_ONLY = (*_OF_WORLD, "log", "card", "settings", "layout", "events", "real_time_factor", "replay")
 """Options that a real robot does not have."""
 
 
@@ -78,8 +80,19 @@ def _check_robots(suite: SuiteConfig) -> list[str]:
     if suite.robot:
         check_robot_program(suite.robot, suite.program)
         return ["thymio"]
+    if suite.replay:
+        return [robot.name for robot in _run_of(suite.replay).start.playground.robots]
     playground, _ = check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
     return [robot.name for robot in playground.robots]
+
+
+def _run_of(file: str) -> LoggedRun:
+    try:
+        return last_run(Path(file))
+    except OSError as error:
+        raise UsageError(f"{file}: {error.strerror}; expected a run log") from error
+    except RunLogError as error:
+        raise UsageError(str(error)) from error
 
 
 def _without_port_of_robot(servers: Servers, options: argparse.Namespace, robot: str) -> Servers:
@@ -104,15 +117,14 @@ def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
 
 def _suite_config(options: argparse.Namespace) -> SuiteConfig:
     """Return the configuration. Raises UsageError for options that exclude each other."""
-    if options.robot:
-        defaults = _parser().parse_args([])
-        of_simulator = [name for name in _SIMULATOR_ONLY if getattr(options, name) != getattr(defaults, name)]
-        if of_simulator:
-            found = ", ".join(f"--{name.replace('_', '-')}" for name in of_simulator)
-            raise UsageError(f"--robot: found {found}; a real robot has no simulator, expected none of its options")
+    if options.robot and (found := _chosen(options, _SIMULATOR_ONLY)):
+        raise UsageError(f"--robot: found {found}; a real robot has no simulator, expected none of its options")
+    if options.replay is not None and (found := _chosen(options, (*_OF_WORLD, "program"))):
+        raise UsageError(f"--replay: found {found}; these come from the run log, expected none of them")
+    has_none = options.robot or options.replay is not None
     return SuiteConfig(
         playground=options.playground,
-        program=NO_PROGRAM if options.robot and options.program is None else program_option(options),
+        program=NO_PROGRAM if has_none and options.program is None else program_option(options),
         behaviour=options.behaviour,
         device=device_options(options),
         motor_model=options.motors,
@@ -126,8 +138,17 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         seed=options.seed,
         real_time_factor=options.real_time_factor,
         log="" if options.log is None else str(options.log),
+        replay="" if options.replay is None else str(options.replay),
+        replay_from_s=options.replay_from,
         tokens=_tokens(options),
     )
+
+
+def _chosen(options: argparse.Namespace, names: Sequence[str]) -> str:
+    """Return the options of a list that differ from their defaults, for the user; empty: none."""
+    defaults = _parser().parse_args([])
+    chosen = [name for name in names if getattr(options, name) != getattr(defaults, name)]
+    return ", ".join(f"--{name.replace('_', '-')}" for name in chosen)
 
 
 def _print_banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str]) -> None:
@@ -155,6 +176,20 @@ def _parser() -> argparse.ArgumentParser:
         "is plugged in (default program: none)",
     )
     _add_network_options(parser)
+    parser.add_argument(
+        "--replay",
+        type=path_argument,
+        metavar="FILE",
+        help="show the last run of a run log in place of a playground, paused shortly before its end; Reset on the "
+        "page goes to its start",
+    )
+    parser.add_argument(
+        "--replay-from",
+        type=float,
+        default=SuiteConfig.replay_from_s,
+        metavar="S",
+        help="time at which the replay is paused at first; negative: before its end (default: %(default)g)",
+    )
     parser.add_argument(
         "--real-time-factor",
         type=_factor_argument,

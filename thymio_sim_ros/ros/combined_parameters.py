@@ -60,6 +60,8 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
             motor_model=suite.motor_model,
             proximity_model=suite.proximity_model,
             log=suite.log,
+            replay=suite.replay,
+            replay_from=suite.replay_from_s,
             real_time_factor=suite.real_time_factor,
             cmd_vel_timeout=suite.cmd_vel_timeout_s,
         ),

@@ -75,6 +75,6 @@ def _details(name: str, verdict: Verdict, log: str) -> list[str]:
         source = f"data:image/svg+xml;base64,{base64.b64encode(picture).decode()}"
         parts.append(f'<p><img alt="paths of the robots, seen from above" src="{source}"></p>\n')
     if log:
-        command = f"thymio-sim replay {log}"
-        parts.append(f"<p>Repeat the run: <code>{html.escape(command)}</code></p>\n")
+        command = f"thymio-sim --replay {log}"
+        parts.append(f"<p>Watch the run, from shortly before its end: <code>{html.escape(command)}</code></p>\n")
     return parts

@@ -11,6 +11,7 @@ import os
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from rclpy.context import Context
 from rclpy.executors import Executor
@@ -37,6 +38,8 @@ from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
 from thymio_sim_ros.ros.simulator.simulation_interfaces import services
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.ros.simulator.world_services import WorldServices
+from thymio_sim_ros.runlog.replay import last_run
+from thymio_sim_ros.runlog.run_log import RunLogError
 
 __all__ = ["Simulator", "SimulatorParams", "main"]
 
@@ -63,9 +66,13 @@ class Simulator:
             self._loader = DeferredLoad(
                 self.node, "playground", lambda value: PreparedPlayground.load(value, self.params.values)
             )
-            prepared = self._loader.load(values.playground)
+            logged = last_run(Path(values.replay)) if values.replay else None
+            if logged is None:
+                prepared = self._loader.load(values.playground)
+            else:
+                prepared = PreparedPlayground.of(logged.start.name, logged.start.playground, values)
             self._recording = Recording(self.node, values.log)
-        except LOAD_ERRORS as error:
+        except (*LOAD_ERRORS, RunLogError) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
         self._last_heartbeat_ns = 0
@@ -74,9 +81,14 @@ class Simulator:
         self.local_commands = LocalCommands(self.node, self.endpoints.robots.receive)
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
         self._robot_options = replace(values.endpoint_options, extra=extra)
-        world = new_world(prepared.playground, values, prepared.ground)
-        self.runner = WorldRunner(self.node, self.params, self.endpoints, self._recording, prepared, world)
+        if logged is None:
+            world = new_world(prepared.playground, values, prepared.ground)
+        else:
+            world = logged.new_world(prepared.ground)
+        self.runner = WorldRunner(self.node, self.params, self.endpoints, self._recording, prepared, world, logged)
         self.runner.start()
+        if logged is not None:
+            self.runner.step(logged.tick_at(values.replay_from))
         self._services = WorldServices(self.node, self.runner, self.endpoints.robots, self._counters)
         self._diagnostics = Diagnostics(self.node, self._counters, self.endpoints.clock.conflict)
         self.parameter_callbacks = ParameterCallbacks(self.node, self.params, self._loader, self.runner)

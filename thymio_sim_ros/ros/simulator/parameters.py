@@ -27,6 +27,7 @@ from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
 from thymio_sim_ros.sim.sensors.proximity import SENSOR as SCANNER
+from thymio_sim_ros.suite_config import REPLAY_FROM_S
 
 __all__ = ["CurrentParams", "SimulatorParams"]
 
@@ -100,6 +101,10 @@ class SimulatorParams:
     publish_clock: bool = param(True, "Whether /clock is published", fixed=True)
     clock_rate: float = param(50.0, "Maximum rate of /clock in Hz of wall time", low=1.0, high=100.0, fixed=True)
     log: str = param("", "File for the run log, for thymio-sim replay; empty: none", fixed=True)
+    replay: str = param("", "Run log whose last run is shown, in place of a playground; empty: none", fixed=True)
+    replay_from: float = param(
+        REPLAY_FROM_S, "Time in s at which a replay is paused at first; negative: before its end", fixed=True
+    )
 
     robot_names: list[str] = param(
         [""],

@@ -32,7 +32,11 @@ class PreparedPlayground:
     def load(cls, value: str, chosen: SimulatorParams) -> PreparedPlayground:
         """Load a playground by name, path or text. Raises one of `LOAD_ERRORS`."""
         name, loaded = load_playground(value)
-        playground = chosen.renamed(loaded)
+        return cls.of(name, chosen.renamed(loaded), chosen)
+
+    @classmethod
+    def of(cls, name: str, playground: Playground, chosen: SimulatorParams) -> PreparedPlayground:
+        """Prepare a playground."""
         scene = SceneMessages.of(playground, chosen.map_frame, with_map=chosen.publish_map)
         return cls(name, playground, Ground(playground.floors, playground.paints), scene)
 

@@ -21,6 +21,8 @@ from thymio_sim_ros.ros.simulator.prepared_playground import PreparedPlayground
 from thymio_sim_ros.ros.simulator.recording import Recording
 from thymio_sim_ros.ros.simulator.tick_scheduler import TickScheduler
 from thymio_sim_ros.ros.simulator.world_endpoints import WorldState
+from thymio_sim_ros.runlog.replay import LoggedRun
+from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
@@ -41,13 +43,15 @@ class WorldRunner:
         recording: Recording,
         prepared: PreparedPlayground,
         world: World,
+        logged: LoggedRun | None = None,
     ) -> None:
-        """`start` publishes the world; endpoints may use this object only then."""
+        """`start` publishes the world; endpoints may use this object only then. `logged`: what happens in the world."""
         self._node, self._params, self._endpoints, self._recording = node, params, endpoints, recording
         self.prepared = prepared
         """The playground of the world."""
         self.world = world
-        self.paused = params.values.start_paused
+        self._logged = logged
+        self.paused = params.values.start_paused or logged is not None
         self.scheduler = TickScheduler(
             params.values.real_time_factor,
             endpoints.demand,
@@ -66,7 +70,8 @@ class WorldRunner:
         self._publish_start()
 
     def replace(self, prepared: PreparedPlayground, world: World) -> None:
-        """Run another world from its start."""
+        """Run another world from its start; a replay ends."""
+        self._logged = None
         self.prepared, self.world = prepared, world
         self.start()
 
@@ -155,6 +160,8 @@ class WorldRunner:
         endpoints = self._endpoints
         self.update_robots()
         for _ in range(ticks):
+            if self._logged is not None:
+                self._logged.repeat_inputs(self.world)
             result = self.world.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
             if self.paused:
@@ -164,6 +171,8 @@ class WorldRunner:
         endpoints.world.publish_objects(self.world, last=self.paused)
         if self._fallen() != self._published_fallen:
             self.publish_state()
+        if self._logged is not None and not self.paused and self.world.now_ns >= self._logged.ticks * TICK_NS:
+            self.pause(True)
 
     def _fallen(self) -> frozenset[str]:
         """Return the names (in the world) of the robots that fell off an edge."""
