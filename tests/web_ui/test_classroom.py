@@ -65,6 +65,7 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     assert zipfile.is_zipfile(tmp_path / "programs.zip")
 
     page.click("[data-verb=sheet]")
+    page.locator(".class-link img").nth(1).wait_for()
     assert page.locator(".class-link img").count() == 2
     page.click("[data-verb=back]")
     ada.wait_for()

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from thymio_sim_ros.classroom.classroom import MAX_MESSAGE, Classroom
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["MAX_BODY", "Answer", "RefusalError", "answer"]
 
@@ -33,7 +34,7 @@ class Answer:
     file: str = ""
 
 
-class RefusalError(Exception):
+class RefusalError(ThymioSimError):
     """A request that is not answered: HTTP status and a text that says why."""
 
     def __init__(self, status: int, text: str) -> None:

@@ -52,7 +52,7 @@ DEPTH = 1000
 NOTICE = 2
 """Deliveries until a publisher knows a subscription: the event, then the task that the event creates."""
 
-THREADS_S = 20.0
+THREADS_S = 2.0
 """Last resort: time for threads of nodes under test to notice that ROS is shut down and to end, in s of real time."""
 
 TEST_NODE = "test"
