@@ -431,6 +431,9 @@ def test_a_replay_takes_its_world_from_the_log(capsys, tmp_path):
     log.write_text("nothing")
     assert "found --seed, --program" in refused(capsys, "--replay", str(log), "--seed", "3", "--program", "explorer")
     assert f"{log}: line 1" in refused(capsys, "--replay", str(log))
+    with pytest.raises(SystemExit):
+        main.main(["--replay", str(log), "--replay-from", "nan"])
+    assert "--replay-from" in capsys.readouterr().err
     assert "expected a run log" in refused(capsys, "--replay", str(tmp_path / "absent.jsonl"))
 
 

@@ -185,7 +185,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--replay-from",
-        type=float,
+        type=_time_argument,
         default=SuiteConfig.replay_from_s,
         metavar="S",
         help="time at which the replay is paused at first; negative: before its end (default: %(default)g)",
@@ -242,6 +242,10 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
 
 def _factor_argument(text: str) -> float:
     return number_argument(text, 0.0, 1000.0)
+
+
+def _time_argument(text: str) -> float:
+    return number_argument(text, -1e6, 1e6)
 
 
 def _token_argument(text: str) -> str:
