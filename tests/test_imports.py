@@ -99,7 +99,7 @@ RULES = {
     ),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.lockstep": Rule(_names("errors", "lockstep"), ROS),
-    f"{OURS}.grading": Rule(_names("grading", "runlog.test_files"), frozenset({"pytest"})),
+    f"{OURS}.grading": Rule(_names("grading", "runlog.test_files", "batch_runs"), frozenset({"pytest"})),
     f"{OURS}.grading.test_process": Rule(_names("grading", "runlog.test_files", "testing"), frozenset({"pytest"})),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),

@@ -21,6 +21,7 @@ from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
+from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground
@@ -57,13 +58,22 @@ class Runner:
         seed: int = 0,
         noise: bool = True,
         log: RunLog | None = None,
+        ground: Ground | None = None,
     ) -> None:
         """Create the world and a device for each robot with a program: one program for all, or one by robot name.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
         SdCardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
+        A `ground` of the playground that exists already, from a run that has ended, need not be painted again.
         """
-        self.world = World(playground, seed=seed, noise=noise, motor_model=motor_model, proximity_model=proximity_model)
+        self.world = World(
+            playground,
+            seed=seed,
+            noise=noise,
+            motor_model=motor_model,
+            proximity_model=proximity_model,
+            ground=ground,
+        )
         if log is not None:
             log.begin(playground.name, self.world)
         if isinstance(programs, ThymioProgram):

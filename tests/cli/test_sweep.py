@@ -5,37 +5,20 @@ from __future__ import annotations
 import csv
 import json
 import signal
-from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from thymio_sim_ros.batch_runs.failure import Failure
+from tests.batch_runs.loop import Loop
+from thymio_sim_ros.cli import batch
 from thymio_sim_ros.cli import sweep as command
+from thymio_sim_ros.cli.batch import duration_text, progress_text
 from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.cli.main import main
-from thymio_sim_ros.cli.sweep_progress import duration_text, progress_text
 
 engine = pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
 
 SHORT = ("--program", "none", "--playground", "base", "--seconds", "0.1", "--measure", "x_m,variable.acc[2]")
-
-
-class Loop:
-    """Stands for the engine: a plain loop in this process. `calls` has the tasks of each call."""
-
-    def __init__(self) -> None:
-        self.calls: list[list[int]] = []
-        self.failing: set[int] = set()
-        self.after_each: Callable[[], None] = lambda: None
-
-    def run_all(self, function: Callable[[int], Any], tasks: Sequence[int], **_: object) -> Iterator[list[Any]]:
-        self.calls.append(list(tasks))
-        for index, task in reversed(list(enumerate(tasks))):  # any order
-            yield []
-            yield [(index, Failure("broken") if task in self.failing else function(task))]
-            self.after_each()
 
 
 @pytest.fixture
@@ -148,7 +131,7 @@ def test_wrong_options_are_rejected(options: tuple[str, ...], capsys: pytest.Cap
 def test_without_dask_the_command_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(command, "find_spec", lambda _: None)
+    monkeypatch.setattr(batch, "find_spec", lambda _: None)
     assert main(["sweep"]) == USAGE_ERROR
     assert capsys.readouterr().err == "thymio-sim: Dask is not installed; run `pip install 'thymio_sim_ros[sweep]'`\n"
 
@@ -162,7 +145,7 @@ def test_without_dask_the_command_says_what_to_install(
     ],
 )
 def test_progress_names_the_time_left(state: tuple[int, int, int, float], text: str) -> None:
-    assert progress_text(*state) == text
+    assert progress_text("runs", *state) == text
 
 
 def test_durations_have_their_two_largest_units() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import socket
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -17,6 +18,8 @@ from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.sandbox.levels import best_level
 from thymio_sim_ros.runlog.replay import replay
+
+engine = pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
 
 pytestmark = [
     pytest.mark.process,
@@ -36,7 +39,7 @@ def level() -> str:
     return found
 
 
-def grade(folder: Path, names: tuple[str, ...], workers: int) -> Path:
+def grade(folder: Path, names: tuple[str, ...], *where: object) -> Path:
     """Grade a part of the class; return the folder of the reports."""
     listener = socket.create_server(("127.0.0.1", 0))
     precious = folder / "precious"
@@ -46,7 +49,7 @@ def grade(folder: Path, names: tuple[str, ...], workers: int) -> Path:
     class_ = moodle_zip(folder / "class.zip", names, host_folder=precious, host_port=port)
     assignment, output = write_assignment(folder / "assignment"), folder / "grades"
     with listener:
-        words = ["grade", class_, "--assignment", assignment, "-o", output, "--workers", workers]
+        words = ["grade", class_, "--assignment", assignment, "-o", output, *where]
         assert main.main(list(map(str, words))) == 0
         listener.setblocking(False)
         with pytest.raises(BlockingIOError):
@@ -72,7 +75,7 @@ def assert_marks(output: Path, names: tuple[str, ...]) -> None:
 @pytest.fixture(scope="module")
 def small(level: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The reports of a part of the class, graded by one worker."""
-    return grade(tmp_path_factory.mktemp("small"), HARMLESS, 1)
+    return grade(tmp_path_factory.mktemp("small"), HARMLESS, "--workers", 1)
 
 
 def test_a_small_class_gets_its_marks(small: Path) -> None:
@@ -80,14 +83,29 @@ def test_a_small_class_gets_its_marks(small: Path) -> None:
     assert rows(small)["Good"]["id"] == "1000"
 
 
+def test_the_lines_of_the_documentation_are_true(small: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "grading-a-class.md").read_text(encoding="utf-8")
+    shown = re.findall(r"^ +(\d+)/6  ([^:\n]+?)(?:: (.+))?$", page, re.MULTILINE)
+    assert len(shown) > 5
+    found = rows(small)
+    assert [(found[name]["points"], name, found[name]["remark"]) for _, name, _ in shown] == shown
+
+
 @pytest.mark.slow
 def test_the_class_of_thirty_gets_its_marks_and_harms_nothing(level: str, small: Path, tmp_path: Path) -> None:
     assert len(PUPILS) == 30
-    output = grade(tmp_path, tuple(PUPILS), 2)
+    output = grade(tmp_path, tuple(PUPILS), "--workers", 2)
     assert_marks(output, tuple(PUPILS))
     one, two = rows(small), rows(output)
     for name in HARMLESS:
         assert {**one[name], "id": ""} == {**two[name], "id": ""}  # one worker or two
+
+
+def test_a_cluster_with_an_address_gives_the_same_marks(small: Path, tmp_path: Path) -> None:
+    with engine._quiet(), engine._local(2, "") as client:
+        output = grade(tmp_path, ("Good", "Straight"), "--scheduler", client.scheduler.address)
+    one, other = rows(small), rows(output)
+    assert {name: {**one[name], "id": ""} for name in other} == {name: {**other[name], "id": ""} for name in other}
 
 
 def test_a_failure_has_a_page_with_a_picture_and_a_run_log(small: Path) -> None:

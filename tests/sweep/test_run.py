@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from thymio_sim_ros.sweep import parameters
 from thymio_sim_ros.sweep.description import Description
 from thymio_sim_ros.sweep.run import LimitError, Row, failed_row, run_robots
 
@@ -42,6 +43,13 @@ def test_a_row_says_what_ran_and_what_was_measured(describe: Describe) -> None:
 def test_the_same_run_has_the_same_row(describe: Describe) -> None:
     sweep = describe(seeds=(3,), programs=("explorer",)).sweep()
     assert run_robots(sweep, 0) == run_robots(sweep, 0)
+
+
+def test_a_run_does_not_depend_on_the_one_before(describe: Describe) -> None:
+    sweep = describe(seeds=(3, 4, 5), programs=("explorer",)).sweep()
+    after_another = [run_robots(sweep, number) for number in (0, 2, 1)]
+    parameters._ground.cache_clear()  # as in a new process
+    assert run_robots(sweep, 1) == after_another[-1]
 
 
 def test_a_contact_is_counted_once(describe: Describe) -> None:

@@ -96,10 +96,13 @@ def _quiet() -> Iterator[None]:
 
 
 class _IgnoreInterrupt(WorkerPlugin):
-    """Ctrl-C in a terminal reaches all processes of the group; this process decides what happens to the workers."""
+    """Ctrl-C in a terminal reaches all processes of the group; this process decides what happens to the workers.
+
+    SIG_IGN would not do: programs that a task starts would inherit it.
+    """
 
     def setup(self, worker: Worker) -> None:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGINT, lambda number, frame: None)
 
 
 @contextlib.contextmanager

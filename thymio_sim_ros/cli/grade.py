@@ -3,30 +3,41 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
+from contextlib import closing
+from fractions import Fraction
 from pathlib import Path
 
-from aseba_vm.cli.output import STANDARD_OUTPUT, standard_output
+from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal, standard_output
+from thymio_sim_ros.batch_runs.errors import EngineError
+from thymio_sim_ros.batch_runs.failure import Failure
+from thymio_sim_ros.cli.batch import CLUSTER, Progress, add_cluster_options, check_dask
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.options import number_argument
+from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.grading import assignment as assignments
 from thymio_sim_ros.grading import grader, submissions
+from thymio_sim_ros.grading.assignment import Assignment
 from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.finished import FinishedReports
 from thymio_sim_ros.grading.reports.folder import write_reports, write_submission
 from thymio_sim_ros.grading.reports.texts import number, shown_remark
-from thymio_sim_ros.grading.results import Graded
+from thymio_sim_ros.grading.results import Graded, GradedTest
+from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.sandbox.levels import LEVELS, best_level, why_unavailable
+from thymio_sim_ros.grading.submissions import Submission
 
 __all__ = ["run"]
+
+FAILED = 1
 
 EXAMPLE = """\
 SUBMISSIONS is a folder or zip with a folder, file or zip for each pupil, also as exported by Moodle or Canvas.
 FILE is a pytest file, or a TOML file that names tests, hidden tests, expected files and limits
-(docs/grading-a-class.md).
+(docs/grading-a-class.md). The same command continues an interrupted grading, and grades only what is new or changed.
 
-exit code: 0 all submissions have been graded, whatever their marks; 2 rejected input
+exit code: 0 all submissions have been graded, whatever their marks; 1 a machine could not grade some of them (column
+`remark`); 2 rejected input, or a cluster that cannot be used
 
 example:
   thymio-sim grade submissions/ --assignment test_follower.py --output grades
@@ -36,29 +47,98 @@ example:
 def run(argv: Sequence[str]) -> int:
     """Grade a class; return the exit code. Raises UsageError for input that cannot be used."""
     options = _parser().parse_args(argv)
+    check_dask("grade")
     try:
         assignment = assignments.load(options.assignment)
-        found = submissions.find(options.submissions)
+        found = [submissions.prepared(one, assignment.expected) for one in submissions.find(options.submissions)]
         level = _level(options.isolation)
         tests = grader.collect(assignment, level)
-        options.output.mkdir(parents=True, exist_ok=True)
         _print(f"isolation: {level} ({LEVELS[level]})")
-        total = number(sum((test.points for test in tests), start=type(tests[0].points)(0)))
+        total = number(sum((test.points for test in tests), start=Fraction(0)))
         _print(f"{len(found)} submissions, {len(tests)} tests, {total} points")
-        class_: list[Graded] = []
-        for graded in grader.grade(found, assignment, tests, level, grader.local_map(options.workers)):
-            class_.append(graded)
-            write_submission(options.output, graded, len(class_))
-            _print(_line(graded))
-        write_reports(options.output, assignment.name, f"{level} ({LEVELS[level]})", tests, class_)
-    except GradingError as error:
+        return _Execution(options, assignment, found, tests, level).run()
+    except (GradingError, EngineError) as error:
         raise UsageError(str(error)) from error
     except OSError as error:
         if error.filename == STANDARD_OUTPUT or isinstance(error, BrokenPipeError):
             raise
         raise UsageError(f"{error.filename}: {error.strerror}; expected a folder that can be written") from error
-    _print(f"written: {options.output / 'marks.csv'}, {options.output / 'index.html'}, {options.output / 'junit.xml'}")
-    return 0
+
+
+class _Execution:
+    """The grading of a class. Invariant: the reports of each graded submission have been written."""
+
+    def __init__(
+        self,
+        options: argparse.Namespace,
+        assignment: Assignment,
+        found: Sequence[Submission],
+        tests: Sequence[GradedTest],
+        level: str,
+    ) -> None:
+        self._options, self._assignment, self._found, self._tests = options, assignment, found, tests
+        self._level, self._output = level, options.output
+        self._finished = FinishedReports(options.output / "finished", assignment)
+        self._class: dict[int, Graded] = {}
+        """Graded submissions by position from 1."""
+        self._printed = 0
+        self._not_graded = 0
+
+    def run(self) -> int:
+        """Grade what has not been graded before; return the exit code."""
+        missing = self._add_finished()
+        if resumed := len(self._class):
+            _print(f"{resumed} need no run: graded before ({self._output / 'finished'}), or nothing to grade")
+        progress = Progress("submissions", len(self._found), resumed)
+        with StopSignal() as stop:
+            try:
+                if missing:
+                    self._run(missing, stop, progress)
+            finally:
+                self._write()
+                progress.end(len(self._class), self._not_graded)
+        if stop.number is not None and len(self._class) < len(self._found):
+            print("thymio-sim: stopped; the same command continues the grading", file=sys.stderr)
+            exit_by_signal(stop.number)
+        _print("written: " + ", ".join(str(self._output / name) for name in ("marks.csv", "index.html", "junit.xml")))
+        return FAILED if self._not_graded else 0
+
+    def _run(self, missing: Sequence[int], stop: StopSignal, progress: Progress) -> None:
+        cluster = {key: getattr(self._options, key) for key in CLUSTER}
+        waiting = [self._found[position - 1] for position in missing]
+        runs = grader.run_submissions(waiting, self._assignment, self._tests, self._level, **cluster)
+        with closing(runs) as reports:
+            for some in stop.until_signal(reports):
+                for index, report in some:
+                    self._add(missing[index], report)
+                progress.show(len(self._class), self._not_graded)
+
+    def _add_finished(self) -> list[int]:
+        """Add what needs no run; return the positions of the other submissions."""
+        missing = []
+        for position, submission in enumerate(self._found, start=1):
+            report = None if self._options.again or submission.problem else self._finished.find(submission)
+            if report or submission.problem:
+                self._add(position, report)
+            else:
+                missing.append(position)
+        return missing
+
+    def _add(self, position: int, report: Report | Failure | None) -> None:
+        submission = self._found[position - 1]
+        graded = self._class[position] = grader.graded(submission, self._tests, report)
+        write_submission(self._output, graded, position)
+        if isinstance(report, Failure):
+            self._not_graded += 1
+        elif report is not None:
+            self._finished.add(submission, report)
+        while self._printed + 1 in self._class:  # in the order of the class
+            self._printed += 1
+            _print(_line(self._class[self._printed]))
+
+    def _write(self) -> None:
+        isolation = f"{self._level} ({LEVELS[self._level]})"
+        write_reports(self._output, self._assignment.name, isolation, self._tests, self._class)
 
 
 def _level(wanted: str) -> str:
@@ -96,13 +176,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "-o", "--output", type=Path, default=Path("grades"), metavar="DIR", help="folder to write (default: grades)"
     )
-    parser.add_argument(
-        "--workers",
-        type=_workers_argument,
-        default=os.cpu_count() or 1,
-        metavar="N",
-        help="submissions at the same time (default: the number of cores); the marks do not depend on it",
-    )
     levels = "; ".join(f"{name}: {about}" for name, about in LEVELS.items())
     parser.add_argument(
         "--isolation",
@@ -110,8 +183,6 @@ def _parser() -> argparse.ArgumentParser:
         default="auto",
         help=f"auto: the strongest that this machine gives, but never `limits`. {levels}",
     )
+    parser.add_argument("--again", action="store_true", help="grade everything, also what was graded before")
+    add_cluster_options(parser)
     return parser
-
-
-def _workers_argument(text: str) -> int:
-    return int(number_argument(text, 1, 1000))

@@ -9,18 +9,17 @@ from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from aseba_vm.cli.output import exit_by_signal
 from thymio_sim_ros.batch_runs.errors import EngineError
 from thymio_sim_ros.batch_runs.failure import Failure
+from thymio_sim_ros.cli.batch import CLUSTER, Progress, add_cluster_options, check_dask
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import path_argument
 from thymio_sim_ros.cli.output import print_json
 from thymio_sim_ros.cli.signal_handling import StopSignal
-from thymio_sim_ros.cli.sweep_progress import SweepProgress
 from thymio_sim_ros.sweep import table
 from thymio_sim_ros.sweep.description import Description, described, read_description
 from thymio_sim_ros.sweep.errors import SweepError
@@ -53,7 +52,7 @@ example:
 def run(argv: Sequence[str]) -> int:
     """Run the sweep that the options describe; return the exit code. Raises UsageError for rejected input."""
     options = _parser().parse_args(argv)
-    _check_engine()
+    check_dask("sweep")
     try:
         sweep = _description(options).sweep()
         path = options.output or _default_output(options.file)
@@ -68,11 +67,6 @@ def run(argv: Sequence[str]) -> int:
         raise UsageError(f"{error.filename or path}: {error.strerror}; expected a file that can be written") from error
 
 
-def _check_engine() -> None:
-    if find_spec("distributed") is None:
-        raise UsageError("Dask is not installed; run `pip install 'thymio_sim_ros[sweep]'`")
-
-
 def _has_error(rows: Sequence[Row]) -> bool:
     return any(row["error"] is not None for row in rows)
 
@@ -83,7 +77,7 @@ class _Execution:
     def __init__(self, sweep: Sweep, path: Path, finished: dict[int, list[Row]]) -> None:
         self._sweep, self._path, self._rows = sweep, path, finished
         self._failed = sum(map(_has_error, finished.values()))
-        self._progress = SweepProgress(len(sweep), len(finished))
+        self._progress = Progress("runs", len(sweep), len(finished))
         self._written_s, self._write_took_s = time.monotonic(), 0.0
 
     def run(self, options: argparse.Namespace) -> int:
@@ -92,7 +86,7 @@ class _Execution:
 
         missing = [number for number in range(len(self._sweep)) if number not in self._rows]
         resumed = len(self._rows)
-        cluster = {key: getattr(options, key) for key in ("workers", "scheduler", "dashboard")}
+        cluster = {key: getattr(options, key) for key in CLUSTER}
         self._write()
         with StopSignal() as stop:
             try:
@@ -198,23 +192,8 @@ def _parser() -> argparse.ArgumentParser:
         help="table, in .csv or .parquet (default: that of FILE in .csv)",
     )
     add("--repeat-errors", action="store_true", help="execute runs again that have an error in the table")
-    cluster = parser.add_argument_group("where it runs")
-    cluster.add_argument(
-        "--workers", type=_workers_argument, metavar="N", help="processes on this machine (default: one per core)"
-    )
-    cluster.add_argument(
-        "--scheduler", default="", metavar="ADDRESS", help="Dask scheduler of a cluster, such as tcp://10.0.0.1:8786"
-    )
-    cluster.add_argument(
-        "--dashboard", default="", metavar="ADDRESS", help="Dask's dashboard for this machine, such as 127.0.0.1:8787"
-    )
+    add_cluster_options(parser)
     return parser
-
-
-def _workers_argument(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"'{text}' found, expected a number of processes above 0")
-    return int(text)
 
 
 def _list_argument(text: str) -> list[str]:

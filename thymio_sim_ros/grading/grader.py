@@ -1,23 +1,22 @@
-"""Grades the submissions of a class in sandboxes, several at a time; results are in the order of the submissions."""
+"""Grades the submissions of a class in sandboxes, on all cores of this machine or on a Dask cluster."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+import socket
+from collections.abc import Generator, Sequence
+from contextlib import closing
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 
+from thymio_sim_ros.batch_runs.failure import Failure
 from thymio_sim_ros.grading.assignment import Assignment
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
-from thymio_sim_ros.grading.sandbox.job import Job, Outcome
-from thymio_sim_ros.grading.sandbox.levels import run_job
-from thymio_sim_ros.grading.submissions import Submission, prepared
+from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
+from thymio_sim_ros.grading.sandbox.levels import run_job, why_unavailable
+from thymio_sim_ros.grading.submissions import Submission
 
-__all__ = ["Map", "collect", "grade", "grade_one", "local_map"]
-
-Map = Callable[[Callable[[Submission], Graded], Iterable[Submission]], Iterable[Graded]]
-"""Applies a function to all submissions, as `map` does. An engine for several machines is another such function."""
+__all__ = ["collect", "graded", "run_submission", "run_submissions"]
 
 _NO_VERDICT = "not run"
 
@@ -34,45 +33,56 @@ def collect(assignment: Assignment, level: str) -> tuple[GradedTest, ...]:
     return tuple(GradedTest(name, Fraction(points), assignment.is_hidden(name)) for name, points in report.collected)
 
 
-def grade(
+def run_submissions(
     submissions: Sequence[Submission],
     assignment: Assignment,
     tests: Sequence[GradedTest],
     level: str,
-    apply: Map = map,
-) -> Iterator[Graded]:
-    """Grade submissions in sandboxes of a level; yield the results in the same order."""
-    yield from apply(partial(grade_one, assignment=assignment, tests=tuple(tests), level=level), submissions)
+    *,
+    workers: int | None = None,
+    scheduler: str = "",
+    dashboard: str = "",
+) -> Generator[list[tuple[int, Report | Failure]], None, None]:
+    """Run the tests on submissions, each in a sandbox of its own; yield the reports as they come.
 
+    Each comes once, with the index of its submission, in any order; an empty list comes twice a second. A `Failure` is
+    no verdict: the machine could not grade. `workers`, `scheduler`, `dashboard`: see `batch_runs.engine.run_all`.
+    Raises EngineError.
+    """
+    from thymio_sim_ros.batch_runs.engine import run_all
 
-def local_map(workers: int) -> Map:
-    """A `Map` that uses this machine, with so many sandboxes at a time."""
-
-    def apply(function: Callable[[Submission], Graded], submissions: Iterable[Submission]) -> Iterator[Graded]:
-        pool = ThreadPoolExecutor(workers)  # its threads only wait: each starts a process
-        try:
-            yield from pool.map(function, submissions)
-        finally:
-            pool.shutdown(cancel_futures=True)  # Ctrl-C has reached the sandboxes, too
-
-    return apply
-
-
-def grade_one(submission: Submission, *, assignment: Assignment, tests: tuple[GradedTest, ...], level: str) -> Graded:
-    """Grade a submission. A submission that destroys its sandbox gets no points."""
-    submission = prepared(submission, assignment.expected)
-    if submission.problem:
-        return _without_points(submission, tests, submission.problem)
     names = tuple(test.name for test in tests)
-    job = Job(level, assignment.tests, assignment.content, submission.files, names, assignment.limits)
+    function = partial(run_submission, assignment=assignment, tests=names, level=level)
+    cluster = {"workers": workers, "scheduler": scheduler, "dashboard": dashboard}
+    with closing(run_all(function, submissions, group_s=0.0, **cluster)) as outcomes:  # type: ignore[arg-type]
+        yield from outcomes
+
+
+def run_submission(submission: Submission, *, assignment: Assignment, tests: tuple[str, ...], level: str) -> Report:
+    """Run the tests on a submission. One that destroys its sandbox has a report with a remark and no verdicts.
+
+    Raises GradingError if this machine does not have the level of isolation.
+    """
+    if reason := _why_unavailable(level):
+        raise GradingError(f"isolation {level} is not available on {socket.gethostname()}: {reason}")
     try:
-        report = run_job(job)
+        return run_job(Job(level, assignment.tests, assignment.content, submission.files, tests, assignment.limits))
     except GradingError as error:
-        return _without_points(submission, tests, str(error))
+        return Report({}, remark=str(error))
+
+
+_why_unavailable = cache(why_unavailable)
+
+
+def graded(submission: Submission, tests: Sequence[GradedTest], report: Report | Failure | None) -> Graded:
+    """Return the verdicts of a report; None: the submission has a problem and was not run."""
+    if report is None:
+        return _without_points(submission, tests, submission.problem)
+    if isinstance(report, Failure):
+        return _without_points(submission, tests, f"could not be graded: {report.reason}")
     if report.remark:
         return _without_points(submission, tests, report.remark)
-    verdicts = [_verdict(test, report.outcomes.get(test.name)) for test in tests]
-    return Graded(submission, verdicts)
+    return Graded(submission, [_verdict(test, report.outcomes.get(test.name)) for test in tests])
 
 
 def _verdict(test: GradedTest, outcome: Outcome | None) -> Verdict:

@@ -20,6 +20,7 @@ from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, 
 from thymio_sim_ros.loading import assignments_of
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
+from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground import reader
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
@@ -47,7 +48,10 @@ def check(run: Run) -> None:
 
 
 def start(run: Run) -> Runner:
-    """Return a run at time 0. Raises SweepError for a parameter that does not fit its program or playground."""
+    """Return a run at time 0. Raises SweepError for a parameter that does not fit its program or playground.
+
+    At most one run of a process may be under way: the next one with the same playground takes its ground over.
+    """
     playground, programs, variables, models = _prepared(run)
     runner = Runner(
         playground,
@@ -56,6 +60,7 @@ def start(run: Run) -> Runner:
         proximity_model=str(models.get("proximity", PROXIMITY_MODELS[0])),
         noise=bool(models.get("noise", True)),
         seed=run.seed,
+        ground=_ground(run.playground, _fields(run)),
     )
     for device in runner.devices.values():
         for name, word in variables:
@@ -69,11 +74,10 @@ def _prepared(run: Run) -> tuple[Playground, dict[str, ThymioProgram], Words, di
     models = {name: value for name, value in run.values if name in MODELS}
     for name, value in models.items():
         _expect(name, value, value in MODELS[name], f"one of {', '.join(map(json.dumps, MODELS[name]))}")
-    fields = {name: value for name, value in run.values if name.startswith(_PLAYGROUND)}
-    playground = _playground(run.playground, json.dumps(fields))
+    playground = _playground(run.playground, _fields(run))
     words = []
     for name, value in run.values:
-        if name not in models and name not in fields:
+        if name not in models and not name.startswith(_PLAYGROUND):
             is_word = isinstance(value, int) and not isinstance(value, bool) and value in _INT16
             _expect(name, value, is_word, f"an integer from {_INT16[0]} to {_INT16[-1]} for the program")
             words.append((name, int(value)))
@@ -87,9 +91,21 @@ def _expect(name: str, found: object, holds: bool, expected: str) -> None:
         raise SweepError(f"parameter {name}: found {json.dumps(found)}, expected {expected}")
 
 
+def _fields(run: Run) -> str:
+    """Fields of the playground that are changed, name → value, as JSON, in which 1, 1.0 and true differ."""
+    return json.dumps({name: value for name, value in run.values if name.startswith(_PLAYGROUND)})
+
+
+@lru_cache(maxsize=4)
+def _ground(source: Source, fields: str) -> Ground:
+    """Return the ground of a playground, which takes a third of a short run to paint; a world restores it."""
+    playground = _playground(source, fields)
+    return Ground(playground.floors, playground.paints)
+
+
 @lru_cache(maxsize=16)
 def _playground(source: Source, fields: str) -> Playground:
-    """Return a playground with changed fields: name → value, as JSON, in which 1, 1.0 and true differ."""
+    """Return a playground with changed fields, as `_fields` returns them."""
     data = json.loads(source.text)
     for name, value in json.loads(fields).items():
         _set_field(data, name, value, source.name)

@@ -9,7 +9,7 @@ teacher/001-Anna.txt messages and output of all tests, hidden ones included
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from thymio_sim_ros.grading.reports.csv_table import csv_table
@@ -23,12 +23,14 @@ __all__ = ["write_reports", "write_submission"]
 
 
 def write_reports(
-    folder: Path, title: str, isolation: str, tests: Sequence[GradedTest], class_: Sequence[Graded]
+    folder: Path, title: str, isolation: str, tests: Sequence[GradedTest], class_: Mapping[int, Graded]
 ) -> None:
-    """Write the reports of the class as a whole. Raises OSError."""
-    _write(folder / "marks.csv", csv_table(class_, tests))
-    _write(folder / "junit.xml", junit_xml(class_))
-    rows = {f"pupils/{file_name(graded, n)}/index.html": graded for n, graded in enumerate(class_, start=1)}
+    """Write the reports of the class, or of those graded so far, by position from 1. Raises OSError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    ordered = [class_[position] for position in sorted(class_)]
+    _write(folder / "marks.csv", csv_table(ordered, tests))
+    _write(folder / "junit.xml", junit_xml(ordered))
+    rows = {f"pupils/{file_name(class_[n], n)}/index.html": class_[n] for n in sorted(class_)}
     _write(folder / "index.html", index_page(title, isolation, rows))
 
 
