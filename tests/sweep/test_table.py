@@ -52,6 +52,16 @@ def test_a_table_is_read_back_exactly_and_written_the_same(
     assert path.read_bytes() == first
 
 
+def test_a_large_table_digests_its_sweep_once(
+    path: Path, sweep: Sweep, rows: dict[int, list[Row]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    digested: list[Sweep] = []
+    monkeypatch.setattr(Sweep, "fingerprint", property(lambda one: digested.append(one) or "0" * 12))
+    write_table(path, sweep, rows)
+    read_table(path, sweep)
+    assert len(digested) == 2
+
+
 def test_columns_have_types(sweep: Sweep) -> None:
     types = {name: kind.__name__ for name, kind in columns(sweep).items()}
     assert types == {

@@ -45,7 +45,8 @@ def columns(sweep: Sweep) -> Columns:
 def write_table(path: Path, sweep: Sweep, rows: Mapping[int, Iterable[Row]]) -> None:
     """Write the rows of runs, given by number of the run, in their order. Raises OSError."""
     types = columns(sweep)
-    ordered = [{"sweep": sweep.fingerprint, **row} for number in sorted(rows) for row in rows[number]]
+    fingerprint = sweep.fingerprint  # of all texts and seeds: once, not for each row
+    ordered = [{"sweep": fingerprint, **row} for number in sorted(rows) for row in rows[number]]
     encode = _parquet if path.suffix == PARQUET else _csv
     rewrite_file(str(path), encode(types, ordered))
 
@@ -60,10 +61,11 @@ def read_table(path: Path, sweep: Sweep) -> dict[int, list[Row]]:
     types = columns(sweep)
     rows = (_from_parquet if path.suffix == PARQUET else _from_csv)(path, types)
     finished: dict[int, list[Row]] = {}
+    fingerprint = sweep.fingerprint
     for row in rows:
         found, number = row.pop("sweep"), row["run"]
-        if found != sweep.fingerprint:
-            raise _foreign(path, f"it has the results of another sweep ({found}, this one is {sweep.fingerprint})")
+        if found != fingerprint:
+            raise _foreign(path, f"it has the results of another sweep ({found}, this one is {fingerprint})")
         if not isinstance(number, int) or number not in range(len(sweep)):
             raise _foreign(path, f"found run {number}, expected 0 to {len(sweep) - 1}")
         finished.setdefault(number, []).append(row)
