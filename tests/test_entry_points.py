@@ -22,6 +22,7 @@ NODES = {
     "thymio": "combined",
     "web_ui": "web.node",
 }
+EXAMPLES = sorted(path.stem for path in (ROOT / "thymio_sim_ros" / "examples").glob("[a-z]*.py"))
 END_S = 60.0
 IN_A_SHELL = (
     f"import sys; sys.path.insert(0, '{ROOT}'); "
@@ -52,6 +53,8 @@ def test_each_script_runs_its_program(monkeypatch):
     assert (entry_points.thymio_sim(), program.asked) == (2, "thymio_sim_ros.cli.main")
     for name, module in NODES.items():
         assert (getattr(entry_points, name)(), program.asked) == (2, f"thymio_sim_ros.ros.{module}")
+    for name in EXAMPLES:
+        assert (getattr(entry_points, name)(), program.asked) == (0, f"thymio_sim_ros.examples.{name}")
 
 
 def test_an_ignored_interrupt_stays_ignored(monkeypatch):

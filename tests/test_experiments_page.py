@@ -12,14 +12,15 @@ from pathlib import Path
 
 import pytest
 
+from tests import pages
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MotorTargets
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "experiments.md").read_text(encoding="utf-8")
-((SHELL,), (SWEEP,)) = (re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL) for language in ("sh", "python"))
+PAGE = pages.read("experiments.md")
+((SHELL,), (SWEEP,)) = (pages.blocks(PAGE, language) for language in ("sh", "python"))
 COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main())"
 SEEDS = 3
 

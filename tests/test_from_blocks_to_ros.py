@@ -11,14 +11,15 @@ from xml.sax.saxutils import escape
 
 import pytest
 
+from tests import pages
 from tests.tracks import assert_avoids
 from tests.web_ui.test_skeletons import skeleton
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from web_ui import build
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "from-blocks-to-ros.md").read_text(encoding="utf-8")
-FILES = dict(re.findall(r"`([\w.]+)`[^`]*:\n\n```\w*\n(.*?)```", PAGE, re.DOTALL))
+PAGE = pages.read("from-blocks-to-ros.md")
+FILES = pages.files(PAGE)
 BLOCKS = ROOT / "tests" / "data" / "web" / "blockly_samples"
 PRINT_VPL = ROOT / "tests" / "web_ui" / "print_samples.js"
 PROGRAMS = sorted(name for name in FILES if name.endswith(".aseba"))

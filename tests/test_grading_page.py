@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from tests import pages
+
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "grading.md").read_text(encoding="utf-8")
-FILE = re.compile(r"`([\w./]+)`[^`]*:\n\n```\w+\n(.*?)```", re.DOTALL)
+PAGE = pages.read("grading.md")
 FAILURE = re.compile(r"`(test_\w+\.py)`[^`]*:\n\n```python\n[^`]*```\n[^`]*:\n\n```text\n(.*?)```", re.DOTALL)
-FILES = dict(FILE.findall(PAGE))
+FILES = pages.files(PAGE)
 WORKFLOW = ".github/workflows/grade.yml"
 FAILING = dict(FAILURE.findall(PAGE))
 NEED_ROS = {name for name, text in FILES.items() if name.startswith("test_") and re.search(r"\(.*\bros\b.*\):", text)}

@@ -15,12 +15,13 @@ import pytest
 gymnasium = pytest.importorskip("gymnasium", reason="needs gymnasium (pip install gymnasium)")
 pytest.importorskip("pettingzoo", reason="needs pettingzoo (pip install pettingzoo)")
 
+from tests import pages
 from thymio_sim_ros.rl import TASKS, Rewards, Task
 from thymio_sim_ros.rl.observations import SENSORS
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "reinforcement-learning.md").read_text(encoding="utf-8")
-*SHORT, LEARN, PICTURE = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+PAGE = pages.read("reinforcement-learning.md")
+*SHORT, LEARN, PICTURE = pages.blocks(PAGE, "python")
 
 
 def _run(folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, text: str, *arguments: str) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from tests import pages
 from thymio_sim_ros.cli import sweep as command
 from thymio_sim_ros.cli.main import main
 from thymio_sim_ros.sweep.description import Description, read_description
@@ -19,18 +20,13 @@ from thymio_sim_ros.sweep.run import run_robots
 from thymio_sim_ros.sweep.table import columns
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+PAGE = pages.read("sweeps.md")
 NOTEBOOK = json.loads((ROOT / "docs" / "sweep.ipynb").read_text(encoding="utf-8"))
 CELLS = ["".join(cell["source"]) for cell in NOTEBOOK["cells"] if cell["cell_type"] == "code"]
 
 
-def blocks(language: str) -> list[str]:
-    """The blocks of code in a language."""
-    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
-
-
 def test_the_description_of_the_page_has_the_runs_and_columns_that_it_shows(tmp_path: Path) -> None:
-    (text,) = blocks("toml")
+    (text,) = pages.blocks(PAGE, "toml")
     (tmp_path / "cruise.toml").write_text(text)
     sweep = read_description(tmp_path / "cruise.toml").sweep()
     assert f"= {len(sweep)} runs" in PAGE
@@ -42,7 +38,7 @@ def test_the_description_of_the_page_has_the_runs_and_columns_that_it_shows(tmp_
 
 
 def test_the_command_of_the_page_describes_the_runs_that_it_says() -> None:
-    (line,) = blocks("sh")
+    (line,) = pages.blocks(PAGE, "sh")
     program, name, *options = shlex.split(line)
     assert (program, name) == ("thymio-sim", "sweep")
     sweep = command._description(command._parser().parse_args(options)).sweep()
@@ -61,7 +57,7 @@ def test_the_tables_name_all_measures_keys_and_options(capsys: pytest.CaptureFix
 
 
 def test_the_first_script_prints_a_line_for_each_run(capsys: pytest.CaptureFixture[str]) -> None:
-    exec(blocks("python")[0].replace("seconds=5.0", "seconds=0.5"), {"__name__": "script"})
+    exec(pages.blocks(PAGE, "python")[0].replace("seconds=5.0", "seconds=0.5"), {"__name__": "script"})
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[:2] for line in lines] == [["100", "1"], ["100", "2"], ["200", "1"], ["200", "2"]]
 

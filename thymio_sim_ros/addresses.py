@@ -7,7 +7,7 @@ import socket
 
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 
-__all__ = ["describe_access", "describe_urls", "own_address", "urls"]
+__all__ = ["describe_access", "describe_urls", "loopback_problem", "own_address", "urls"]
 
 _UNUSED_ADDRESS = ("192.0.2.1", 9)
 """An address of a network reserved for documentation (RFC 5737). A UDP socket that is connected to it sends nothing."""
@@ -22,6 +22,16 @@ def own_address() -> str:
         except OSError:
             return socket.gethostname()
         return str(probe.getsockname()[0])
+
+
+def loopback_problem() -> str:
+    """Why programs of this computer cannot reach each other, as the system says it; empty if they can."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((_LOCALHOST[0], 9))  # sends nothing
+        except OSError as error:
+            return error.strerror or str(error)
+    return ""
 
 
 def urls(scheme: str, address: str, port: int, path: str = "", token: str = "") -> list[str]:

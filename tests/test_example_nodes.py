@@ -1,0 +1,84 @@
+"""The nodes that pages show, as programs: Ctrl-C ends each of them without a traceback."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests import pages
+from thymio_sim_ros import examples
+
+pytest.importorskip("rclpy")
+
+PAGES = [Path("../README.md"), *(path.relative_to(pages.DOCS) for path in sorted(pages.DOCS.rglob("*.md")))]
+NODES = [
+    pytest.param(block.text, id=f"{page}:{block.line}")
+    for page in PAGES
+    for block in pages.all_blocks(pages.read(page))
+    if "rclpy.spin(" in block.text and block.language == "python"
+]
+EXAMPLES = [
+    pytest.param(path.read_text(encoding="utf-8"), id=path.stem)
+    for path in sorted(Path(examples.__file__).parent.glob("*.py"))
+    if path.stem != "__init__"
+]
+START_S = 60.0
+END_S = 20.0
+REPEAT_S = 1.0
+
+
+def test_the_pages_show_nodes() -> None:
+    assert len(NODES) >= 5
+    assert len(EXAMPLES) >= 6
+
+
+@pytest.mark.parametrize("source", NODES + EXAMPLES)
+def test_a_node_leaves_the_end_to_rclpy(source: str) -> None:
+    """On Ctrl-C rclpy's own thread shuts down; a `try_shutdown` beside it raises RCLError now and then."""
+    assert "try_shutdown" not in source
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("source", NODES)
+def test_a_node_of_a_page_ends_cleanly_on_ctrl_c(ros: Any, tmp_path: Path, source: str) -> None:
+    (name,) = re.findall(r'super\(\).__init__\("(\w+)"\)', source)
+    (tmp_path / "node.py").write_text(source, encoding="utf-8")
+    command = [sys.executable, "node.py"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as node:
+        try:
+            ros.until(is_spinning(ros, name), START_S, what=f"the node {name}")
+            node.send_signal(signal.SIGINT)
+            output, _ = node.communicate(timeout=END_S)
+        finally:
+            node.kill()
+    assert "Traceback" not in output, output
+    assert node.returncode == 0, output
+
+
+def is_spinning(ros: Any, name: str) -> Callable[[], bool]:
+    """Whether a node answers a request for its parameters, which only one that spins does.
+
+    The request is repeated: a service that has not yet found its new client drops the answer.
+    """
+    from rcl_interfaces.srv import ListParameters
+
+    client = ros.node.create_client(ListParameters, f"/{name}/list_parameters")
+    requests: list[Any] = []
+    next_s = 0.0
+
+    def has_answered() -> bool:
+        nonlocal next_s
+        if client.service_is_ready() and time.monotonic() >= next_s:
+            next_s = time.monotonic() + REPEAT_S
+            requests.append(client.call_async(ListParameters.Request()))
+        return any(request.done() for request in requests)
+
+    return has_answered
