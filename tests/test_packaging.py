@@ -20,7 +20,9 @@ ROOT = Path(__file__).parent.parent
 NAME = "thymio_sim_ros"
 OPTIONAL = {"tf2_geometry_msgs", "thymio_msgs"}
 """ROS packages that are used where they are installed."""
-EXECUTABLES = {"simulator", "aseba_runtime", "foxglove_bridge", "web_ui", "thymio"}
+NODES = {"simulator", "aseba_runtime", "foxglove_bridge", "web_ui", "thymio"}
+EXAMPLES = {path.stem for path in (ROOT / NAME / "examples").glob("*.py")} - {"__init__"}
+EXECUTABLES = NODES | EXAMPLES
 
 pytestmark = pytest.mark.skipif(not (ROOT / "pyproject.toml").is_file(), reason="the tests lie outside a source tree")
 
@@ -56,6 +58,16 @@ def test_version_is_written_in_the_package_and_repeated_for_ros_alone() -> None:
     assert _manifest().findtext("version") == thymio_sim_ros.__version__
     assert _setup()["metadata"]["version"] == f"attr: {NAME}.__version__"
     assert _pyproject()["project"]["dynamic"] == ["version"]
+
+
+def test_the_citation_is_that_of_this_version() -> None:
+    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    fields = dict(line.split(": ", 1) for line in lines if re.match(r"[a-z-]+: ", line))
+    project = _pyproject()["project"]
+    assert fields["version"] == thymio_sim_ros.__version__
+    assert fields["license"] == project["license"]["text"]
+    assert [fields["url"], fields["repository-code"]] == [project["urls"]["Homepage"], project["urls"]["Source"]]
+    assert [line.removeprefix("  - ") for line in lines[lines.index("keywords:") + 1 :]] == project["keywords"]
 
 
 def test_the_maintainers_are_the_same_everywhere() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import sys
 
 import pytest
 
@@ -10,13 +11,16 @@ from thymio_sim_ros.cli import main
 
 dds_profile = pytest.importorskip("thymio_sim_ros.ros.compat.dds_profile")
 
+PREFIXES = "AMENT_PREFIX_PATH"
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 
 
 @pytest.fixture(autouse=True)
 def _unset(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    for name in (RANGE, dds_profile.VARIABLE, "FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML"):
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    others = ("FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML")
+    for name in (PREFIXES, RANGE, dds_profile.VARIABLE, *others):
         monkeypatch.delenv(name, raising=False)
 
 
@@ -32,8 +36,14 @@ def test_it_prints_discovery_range_and_profile(capsys):
     assert printed(capsys) == {RANGE: "LOCALHOST", dds_profile.VARIABLE: str(dds_profile.ANNOUNCING)}
 
 
-@pytest.mark.parametrize("name", [RANGE, dds_profile.VARIABLE])
-def test_a_variable_that_is_set_is_left_alone(capsys, monkeypatch, name):
+def test_the_packages_of_the_wheels_are_found(capsys, tmp_path):
+    (tmp_path / "share" / "ament_index").mkdir(parents=True)
+    assert printed(capsys)[PREFIXES] == str(tmp_path)
+
+
+@pytest.mark.parametrize("name", [RANGE, PREFIXES, dds_profile.VARIABLE])
+def test_a_variable_that_is_set_is_left_alone(capsys, monkeypatch, tmp_path, name):
+    (tmp_path / "share" / "ament_index").mkdir(parents=True)
     monkeypatch.setenv(name, "theirs")
     assert name not in printed(capsys)
 

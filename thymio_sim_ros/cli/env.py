@@ -7,6 +7,7 @@ import os
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from aseba_vm.cli.output import standard_output
 from thymio_sim_ros.cli.options import check_ros
@@ -18,7 +19,8 @@ In each terminal, before `ros2` or a node of your own is started:
   eval "$(thymio-sim env)"
 
 Discovery is limited to this computer, as that of `thymio-sim`, and every process announces itself to new ones four
-times a second, so that they find it at once. Variables that are set already are not printed.
+times a second, so that they find it at once. Where ROS comes from Python wheels, `ros2 run` and `ros2 interface` find
+its packages. Variables that are set already are not printed.
 """
 
 
@@ -44,4 +46,6 @@ def _variables() -> Mapping[str, str]:
     values = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     if not dds_profile.has_own_profile():
         values[dds_profile.VARIABLE] = str(dds_profile.ANNOUNCING)
+    if Path(sys.prefix, "share", "ament_index").is_dir():  # the wheels leave this variable unset
+        values["AMENT_PREFIX_PATH"] = sys.prefix
     return {name: value for name, value in values.items() if name not in os.environ}
