@@ -1,7 +1,7 @@
 """Aseba ports: an event from a client to a program and back in ms, and sixteen robots whose clients poll at 10 Hz.
 
 Each robot has a client of its own in another process, which reads all variables ten times per second, as Studio and
-thymiodirect do. In the row with a flood, another client sends requests to the first robot without pause, and the second
+thymiodirect do. In the rows with a flood, other clients send requests to the first robot without pause, and the second
 robot is polled. "Simulated time" is the time that a timer of the first robot's program counts, per wall time. Needs
 ROS.
 """
@@ -42,6 +42,8 @@ TICK_S = 0.1
 PERIOD_S = 0.1
 """Period of the polls of a client."""
 PAUSE_S = (0.01, 0.05)
+MANY = 30
+"""Clients that flood a robot together; a port accepts 32."""
 ALLOWED_MS = 15.0
 """An event takes at most this in 99 of 100."""
 
@@ -132,11 +134,14 @@ def measure(options: argparse.Namespace) -> Report:
         polls, late, factor = poll(clients, options.seconds)
     with served(2) as clients, flooded(clients[0].port):
         beside = flood_waits(clients[1], options.seconds)
+    with served(2) as clients, flooded(clients[0].port, MANY):
+        beside_many = flood_waits(clients[1], options.seconds)
     polls.sort()
     rows = [
         ["an event and its answer, one robot", *_quantiles(waits)],
         [f"{options.robots} robots, 512 words each, 10 Hz", *_quantiles(polls)],
         ["a robot beside one that is flooded", *_quantiles(beside)],
+        [f"a robot beside one that {MANY} clients flood", *_quantiles(beside_many)],
     ]
     p99 = waits[int(0.99 * len(waits))]
     return Report(

@@ -1,4 +1,4 @@
-"""A client that sends requests to an Aseba port without pause and reads the answers, as a process of its own."""
+"""Clients that send requests to an Aseba port without pause and read the answers, as a process of their own."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ REQUESTS = encode(GetVariables(0, 1, 0, 256)) * 100
 
 
 @contextlib.contextmanager
-def flooded(port: int) -> Iterator[None]:
+def flooded(port: int, clients: int = 1) -> Iterator[None]:
     """Flood a port of this computer."""
-    process = subprocess.Popen([sys.executable, "-m", __name__, str(port)], stdout=subprocess.PIPE)
+    process = subprocess.Popen([sys.executable, "-m", __name__, str(port), str(clients)], stdout=subprocess.PIPE)
     try:
         assert process.stdout is not None
         process.stdout.readline()  # the first answer has arrived
@@ -29,18 +29,22 @@ def flooded(port: int) -> Iterator[None]:
 
 def main() -> None:
     """Flood a port until the process is ended."""
-    with socket.create_connection(("127.0.0.1", int(sys.argv[1]))) as stream:
+    waiting = {}
+    for _ in range(int(sys.argv[2])):
+        stream = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
         stream.setblocking(False)
-        waiting, is_answered = memoryview(REQUESTS), False
-        while True:
-            readable, writable, _ = select.select([stream], [stream], [])
-            if readable and not stream.recv(1 << 20):
+        waiting[stream] = memoryview(REQUESTS)
+    is_answered = False
+    while True:
+        readable, writable, _ = select.select(waiting, waiting, [])
+        for stream in readable:
+            if not stream.recv(1 << 20):
                 return
-            if readable and not is_answered:
+            if not is_answered:
                 is_answered = True
                 print("answered", flush=True)
-            if writable:
-                waiting = waiting[stream.send(waiting) :] or memoryview(REQUESTS)
+        for stream in writable:
+            waiting[stream] = waiting[stream][stream.send(waiting[stream]) :] or memoryview(REQUESTS)
 
 
 if __name__ == "__main__":
