@@ -13,6 +13,9 @@ _UNMARKED = ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
 """First bytes of XML in UTF-16 without a byte order mark."""
 _DECLARED = re.compile(rb"\s*<\?xml\s[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']")
 
+_NOT_OF_FILES = frozenset({"idna", "punycode", "raw-unicode-escape", "undefined", "unicode-escape"})
+"""Codecs of Python that are no encodings of files; some of them cannot report the position of an error."""
+
 
 @dataclass(frozen=True, slots=True)
 class TextFile:
@@ -35,6 +38,8 @@ def decode(data: bytes) -> TextFile:
         if encoding.lower().startswith("utf-16"):  # impossible: the declaration was readable as ASCII
             encoding = "utf-8"
     try:
+        if codecs.lookup(encoding).name in _NOT_OF_FILES:
+            raise LookupError(encoding)
         return TextFile(data.decode(encoding), encoding)
     except UnicodeDecodeError as error:
         before = data[: error.start].decode(encoding, "replace")

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from aseba_vm import aesl
 from aseba_vm.aesl.text_decoding import TextFile
 from aseba_vm.cli.inputs import Source, network_of, read_text, sources_of
-from aseba_vm.cli.output import print_bytes, rewrite_file
+from aseba_vm.cli.output import print_bytes, write_file
 from aseba_vm.cli.report import (
     ERROR,
     NOTE,
@@ -178,7 +178,7 @@ def _format_file(run: _Run, name: str, file: TextFile, changed: list[str]) -> No
     elif options.write and name != "-":
         if is_different:
             try:
-                rewrite_file(name, file.encoded(result))
+                write_file(name, file.encoded(result))
             except OSError as error:
                 run.fail(error)
     else:

@@ -207,7 +207,7 @@ def _target(options: argparse.Namespace) -> TargetDescription:
         return TargetDescription.from_data(json.loads(read_text(options.target).text))
     except TextError as error:
         raise TargetError(error.located(options.target)) from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise TargetError(f"{options.target}: not JSON: {error}") from error
     except TargetError as error:
         raise TargetError(f"{options.target}: {error}") from error

@@ -4,44 +4,60 @@ from __future__ import annotations
 
 import io
 import os
-import shutil
+import secrets
 import signal
+import stat
 import sys
-import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
 STANDARD_OUTPUT = "standard output"
 
 
-def write_file(name: str, data: bytes) -> None:
-    """Write a file. Raises OSError."""
-    with named_errors(name):
-        Path(name).write_bytes(data)
+def write_file(name: str, data: bytes, *, mode: int = 0o666) -> None:
+    """Write a file as a whole; see `replacing`. Raises OSError."""
+    with replacing(name, mode=mode) as file:
+        file.write(data)
 
 
-def rewrite_file(name: str, data: bytes) -> None:
-    """Replace the content of a file atomically. Raises OSError.
+@contextmanager
+def replacing(name: str, *, mode: int = 0o666) -> Iterator[BinaryIO]:
+    """A file that becomes `name` at the end of the block, at once and with its content on the disk.
 
-    On failure the file keeps its content, or still does not exist.
+    On failure the file of this name keeps its content, or still does not exist. A device or a pipe is written directly.
+    `mode` is that of a new file, less the umask. Raises OSError with the name.
     """
-    with named_errors(name):
-        path = Path(name).resolve()  # the target of a link
-        is_new = not path.exists()
-        handle, new = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    path = Path(name).resolve()  # the target of a link
+    new = path.with_name(f".{path.name[:100]}.{secrets.token_hex(4)}")
+    with named_errors(name, str(path), str(new)):
+        if path.exists() and not path.is_file():
+            with path.open("wb") as device:
+                yield device
+            return
+        old_mode = _mode_of_writable(path)
         try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            with path.open("ab"):
-                pass  # a read-only file must not be replaced
-            shutil.copymode(path, new)
+            with open(new, "xb", opener=lambda file, flags: os.open(file, flags, mode)) as file:
+                yield file
+                file.flush()
+                os.fsync(file.fileno())
+            if old_mode is not None:
+                os.chmod(new, old_mode)
             os.replace(new, path)
         except BaseException:
-            os.unlink(new)
-            if is_new:
-                path.unlink(missing_ok=True)
+            with suppress(OSError):
+                os.unlink(new)
             raise
+
+
+def _mode_of_writable(path: Path) -> int | None:
+    """The permissions of a file, None if it does not exist. Raises OSError for one that must not be changed."""
+    try:
+        with path.open("r+b") as file:
+            return stat.S_IMODE(os.fstat(file.fileno()).st_mode)
+    except FileNotFoundError:
+        return None
 
 
 def print_bytes(data: bytes) -> None:
@@ -88,9 +104,11 @@ def exit_by_signal(number: int) -> None:
 
 
 @contextmanager
-def named_errors(name: str) -> Iterator[None]:
-    """Give OSErrors raised in the block the name of a file. Raises OSError."""
+def named_errors(name: str, *others: str) -> Iterator[None]:
+    """Give OSErrors raised in the block the name of a file if they have none, or one of `others`. Raises OSError."""
     try:
         yield
     except OSError as error:
+        if error.filename is not None and str(error.filename) not in (name, *others):
+            raise
         raise OSError(error.errno, error.strerror, name) from error

@@ -141,7 +141,7 @@ def test_without_dask_the_command_says_what_to_install(
     [
         ((0, 10, 0, 0.0), "0 of 10 runs"),
         ((10, 5000, 2, 41.53), "10 of 5000 runs, 2 with errors, 41.5 per second, 2 min 0 s left"),
-        ((1, 10_001, 0, 0.5), "1 of 10001 runs, 0.5 per second, 5 h 33 min left"),
+        ((1, 10_001, 0, 0.5), "1 of 10001 runs, 30 per minute, 5 h 33 min left"),
     ],
 )
 def test_progress_names_the_time_left(state: tuple[int, int, int, float], text: str) -> None:

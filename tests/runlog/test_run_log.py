@@ -197,3 +197,12 @@ def test_bytes_that_are_no_text_are_refused(written: Path) -> None:
     written.write_bytes(written.read_bytes() + b"\xff\n")
     with pytest.raises(RunLogError, match="found bytes that are not UTF-8"):
         list(read(written))
+
+
+def test_a_name_whose_bytes_are_no_text_is_kept(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = RunLog(path.open("w", encoding="utf-8"))
+    log.begin("gr\udcfcn – ü", World(make([FLOOR])))
+    log.close()
+    path.read_bytes().decode("utf-8")
+    assert [entry.name for _, entry in read(path) if isinstance(entry, WorldStarted)] == ["gr\udcfcn – ü"]

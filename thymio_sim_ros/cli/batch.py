@@ -22,12 +22,15 @@ TERMINAL_S, PLAIN_S = 0.2, 30.0
 
 
 def progress_text(noun: str, finished: int, total: int, failed: int, rate: float) -> str:
-    """Return finished and failed tasks, tasks per second, and the time left if the rate is known (above 0)."""
+    """Return finished and failed tasks, the rate, and the time left if the rate is known (above 0)."""
     parts = [f"{finished} of {total} {noun}"]
     if failed:
         parts.append(f"{failed} with errors")
     if rate > 0:
-        parts += [f"{rate:.3g} per second", f"{duration_text((total - finished) / rate)} left"]
+        parts += [
+            f"{rate:.3g} per second" if rate >= 1 else f"{60 * rate:.3g} per minute",
+            f"{duration_text((total - finished) / rate)} left",
+        ]
     return ", ".join(parts)
 
 
@@ -62,9 +65,14 @@ class Progress:
         """Show the final state."""
         self._print(progress_text(self._noun, finished, self._total, failed, 0.0), end="\n")
 
+    def clear(self) -> None:
+        """Make room for other output: take the line off the terminal until it is shown again."""
+        if self._is_terminal:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
     def _print(self, text: str, *, end: str) -> None:
-        before = "\r\x1b[K" if self._is_terminal else ""
-        print(f"{before}thymio-sim: {text}", end=end, file=sys.stderr, flush=True)
+        self.clear()
+        print(f"thymio-sim: {text}", end=end, file=sys.stderr, flush=True)
 
 
 def check_dask(extra: str) -> None:

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from aseba_vm.cli.output import write_file
 from thymio_sim_ros import resources
 from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.loading import load_playground
@@ -51,7 +52,7 @@ def _write(text: str, output: Path | None) -> int:
             sys.stdout.buffer.write(text.encode("utf-8"))  # whatever the encoding of the terminal
             sys.stdout.buffer.flush()
         else:
-            output.write_text(text, encoding="utf-8")
+            write_file(str(output), text.encode("utf-8"))
     except BrokenPipeError:
         raise
     except OSError as error:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from aseba_vm.cli.output import standard_output
+from aseba_vm.cli.output import standard_output, write_file
 from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.studio_layout import APPS, SHIPPED, render
 
@@ -36,7 +36,7 @@ def run(argv: Sequence[str]) -> int:
             sys.stdout.write(text)
         return 0
     try:
-        options.output.write_text(text, encoding="utf-8")
+        write_file(str(options.output), text.encode("utf-8"))
     except OSError as error:
         wrong = f"{options.output}: {error.strerror}; expected a file that can be written"
         print(f"thymio-sim foxglove-layout: {wrong}", file=sys.stderr)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from aseba_vm.cli.output import replacing
 from thymio_sim_ros.device.firmware import wav
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.audio.mixer import SoundStream, mixed
@@ -19,13 +20,12 @@ SOUND_SENSOR = "loudspeaker"
 
 
 def run_with_sound(runner: Runner, steps: Iterable[StepResult], file: Path) -> None:
-    """Run these steps and write the sound of all loudspeakers to a file. Raises OSError."""
-    with file.open("ab"):
-        pass  # fails before the run, not after it
-    first = runner.now_ns // SAMPLE_NS
-    streams: dict[str, SoundStream] = {}
-    for step in steps:
-        for robot, _sensor, reading in step.readings:
-            if isinstance(reading, LoudspeakerReading):
-                streams.setdefault(robot, SoundStream()).hear(reading)
-    wav.write(file, mixed(list(streams.values()), first, runner.now_ns // SAMPLE_NS))
+    """Run these steps and write the sound of all loudspeakers to a file. Raises OSError, if possible before the run."""
+    with replacing(str(file)) as whole:
+        first = runner.now_ns // SAMPLE_NS
+        streams: dict[str, SoundStream] = {}
+        for step in steps:
+            for robot, _sensor, reading in step.readings:
+                if isinstance(reading, LoudspeakerReading):
+                    streams.setdefault(robot, SoundStream()).hear(reading)
+        wav.write(whole, mixed(list(streams.values()), first, runner.now_ns // SAMPLE_NS))

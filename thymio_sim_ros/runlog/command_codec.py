@@ -48,7 +48,7 @@ def decode(name: object, values: object) -> Command:
         raise CommandJsonError(f"{name}: found {', '.join(values) or 'nothing'}, expected {', '.join(members)}")
     try:
         command: Command = kind(**{member: _read(hints[member], values[member]) for member in members})
-    except ValueError as error:
+    except (ValueError, OverflowError) as error:
         raise CommandJsonError(f"{name}: {error}") from error
     return command
 

@@ -43,7 +43,7 @@ __all__ = ["LogEnded", "LogEntry", "RunLog", "RunLogError", "TicksChecked", "Wor
 FORMAT = "thymio-sim run log"
 VERSION = 1
 _TICKS_PER_LINE = 100
-_WRONG = (ValueError, KeyError, TypeError, RecursionError, FieldError, PlaygroundError, CommandJsonError)
+_WRONG = (ValueError, KeyError, TypeError, OverflowError, RecursionError, FieldError, PlaygroundError, CommandJsonError)
 """Exceptions caused by an invalid line."""
 _DIGITS = 8
 
@@ -89,7 +89,8 @@ def digest(result: object) -> str:
 class RunLog:
     """Writes a log; the input recorder of one world at a time. Invariant: the file always ends with a whole line.
 
-    If the file can no longer be written, `on_error` is called once and the log ends; without it OSError is raised.
+    If the file can no longer be written, `on_error` is called once and the log ends; without it OSError is raised, with
+    the name of the file.
     """
 
     def __init__(self, file: TextIO, *, on_error: Callable[[OSError], None] | None = None) -> None:
@@ -145,7 +146,7 @@ class RunLog:
     def _write(self, line: Mapping[str, Any]) -> None:
         if self._file is not None:
             with self._guarded(self._file):
-                self._file.write(json.dumps(line, ensure_ascii=False) + "\n")
+                self._file.write(_json(line) + "\n")
 
     @contextmanager
     def _guarded(self, file: TextIO) -> Iterator[None]:
@@ -157,8 +158,13 @@ class RunLog:
             with suppress(OSError):
                 file.close()
             if self._on_error is None:
-                raise
+                raise OSError(error.errno, error.strerror, getattr(file, "name", None)) from error
             self._on_error(error)
+
+
+def _json(line: Mapping[str, Any]) -> str:
+    """A line that UTF-8 can encode: bytes of file names that are no text, lone surrogates in Python, are escaped."""
+    return json.dumps(line, ensure_ascii=False).encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def read(path: Path) -> Iterator[tuple[int, LogEntry]]:
@@ -182,7 +188,7 @@ def read(path: Path) -> Iterator[tuple[int, LogEntry]]:
 
 def made_by(path: Path) -> str:
     """Version of the program that wrote a log. The log must be valid for `read`."""
-    with path.open(encoding="utf-8") as file:
+    with path.open("rb") as file:  # text would be decoded ahead, to where the log may be cut off
         return str(json.loads(file.readline()).get("made_by"))
 
 

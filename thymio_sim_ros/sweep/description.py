@@ -85,7 +85,7 @@ def read_description(path: Path) -> Description:
         data = tomllib.loads(text) if path.suffix == ".toml" else json.loads(text)
     except OSError as error:
         raise SweepError(f"{path}: {error.strerror}; expected a sweep in JSON or TOML") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise SweepError(f"{path}: {error}; expected a sweep in JSON, or in TOML with a name in .toml") from error
     try:
         if not isinstance(data, dict):
@@ -93,6 +93,10 @@ def read_description(path: Path) -> Description:
         return Description(**described(data), folder=path.parent)
     except SweepError as error:
         raise SweepError(f"{path}: {error}") from error
+    except RecursionError as error:
+        raise SweepError(
+            f"{path}: parameters: found tables nested without measure, expected names with dots"
+        ) from error
 
 
 def described(data: Mapping[str, object]) -> dict[str, Any]:
@@ -119,7 +123,7 @@ def described(data: Mapping[str, object]) -> dict[str, Any]:
 
 def _parameters(found: object) -> dict[str, tuple[Value, ...]]:
     if not isinstance(found, dict):
-        raise SweepError(f"parameters: found {json.dumps(found)}, expected names, each with a list of values")
+        raise SweepError(f"parameters: found {_shown(found)}, expected names, each with a list of values")
     return {
         name: tuple(_list_of(f"parameters.{name}", values, (bool, int, float, str), "numbers, texts, true and false"))
         for name, values in _flat(found).items()
@@ -155,17 +159,25 @@ def _check_list(name: str, values: Collection[Value]) -> None:
     seen = set()
     for value in values:
         if repr(value) in seen:
-            raise SweepError(f"{name}: found {json.dumps(value)} twice, expected each value once")
+            raise SweepError(f"{name}: found {_shown(value)} twice, expected each value once")
         seen.add(repr(value))
 
 
 def _expect(name: str, found: object, holds: bool, expected: str) -> None:
     if not holds:
-        raise SweepError(f"{name}: found {json.dumps(found)}, expected {expected}")
+        raise SweepError(f"{name}: found {_shown(found)}, expected {expected}")
+
+
+def _shown(found: object) -> str:
+    """A value of JSON or TOML, which also has dates."""
+    return json.dumps(found, default=str)
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    try:
+        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    except OverflowError:  # an integer above all floats
+        return False
 
 
 def _check(sweep: Sweep) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
-from aseba_vm.cli.output import rewrite_file
+from aseba_vm.cli.output import write_file
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Sweep, Value
 from thymio_sim_ros.sweep.measures import measure_of
@@ -48,7 +48,7 @@ def write_table(path: Path, sweep: Sweep, rows: Mapping[int, Iterable[Row]]) -> 
     fingerprint = sweep.fingerprint  # of all texts and seeds: once, not for each row
     ordered = [{"sweep": fingerprint, **row} for number in sorted(rows) for row in rows[number]]
     encode = _parquet if path.suffix == PARQUET else _csv
-    rewrite_file(str(path), encode(types, ordered))
+    write_file(str(path), encode(types, ordered))
 
 
 def read_table(path: Path, sweep: Sweep) -> dict[int, list[Row]]:
@@ -154,7 +154,9 @@ def _from_parquet(path: Path, types: Columns) -> list[Row]:
 
     try:
         table = parquet.read_table(path)
-    except pyarrow.ArrowInvalid as error:
+        _check_names(path, table.column_names, types)
+        return list(table.to_pylist())
+    except SweepError:
+        raise
+    except (pyarrow.ArrowException, ValueError) as error:  # ValueError: names and texts that are not UTF-8
         raise _foreign(path, f"it is not a Parquet file ({error})") from error
-    _check_names(path, table.column_names, types)
-    return list(table.to_pylist())

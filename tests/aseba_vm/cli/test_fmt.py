@@ -11,6 +11,7 @@ import pytest
 
 from aseba_vm.cli.main import main
 from tests.aseba_vm.cli.samples import AESL, ASCII, ASEBA
+from tests.disk import FailingDisk
 
 
 def test_a_file_is_formatted_in_place(file):
@@ -47,15 +48,11 @@ def test_formatted_text_keeps_its_encoding_on_the_output(tmp_path, encoding):
     assert "\tn = 1 # grün\n" in formatted.decode(encoding)
 
 
-def test_a_file_is_unchanged_if_its_new_text_cannot_be_written(file, capsys, monkeypatch):
-    def is_full(handle, mode):
-        os.close(handle)
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
+def test_a_file_is_unchanged_if_its_new_text_cannot_be_written(file, capsys):
     name = file(AESL.format(code="1"), "robot.aesl")
     before = pathlib.Path(name).read_bytes()
-    monkeypatch.setattr(os, "fdopen", is_full)
-    assert main(["fmt", "--write", name]) == 2
+    with FailingDisk(pathlib.Path(name).parent, 3, errno.ENOSPC).failing():
+        assert main(["fmt", "--write", name]) == 2
     assert capsys.readouterr().err == f"aseba: {name}: No space left on device\n"
     assert pathlib.Path(name).read_bytes() == before
     assert os.listdir(pathlib.Path(name).parent) == ["robot.aesl"]

@@ -18,6 +18,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from aseba_vm.cli.output import replacing
 from thymio_sim_ros.device.firmware import wav
 from thymio_sim_ros.errors import ThymioSimError
 
@@ -49,7 +50,7 @@ class SdCard:
         except OSError as error:
             raise SdCardError(f"card {folder}: {error.strerror}; expected a folder, or a place for one") from error
         self.refusal = ""
-        """Message if the last `open`, `write` or `write_sound` failed because the card was full, else empty."""
+        """Message if the last `open`, `write` or `write_sound` failed because of the card or its disk, else empty."""
         self._file: Path | None = None
         self._at = 0
         self._names: dict[str, str] = {}
@@ -68,7 +69,8 @@ class SdCard:
         try:
             with path.open("ab"):
                 self._file = path
-        except OSError:
+        except OSError as error:
+            self._refuse(path, error)
             return False
         self._register(path)
         return True
@@ -90,7 +92,8 @@ class SdCard:
                     self.refusal = f"the card is full: it holds {MAX_BYTES} bytes"
                 file.seek(self._at)
                 written = file.write(_as_bytes(words[:room]))
-        except OSError:
+        except OSError as error:  # some of the words may have been written
+            self._refuse(self._file, error)
             return 0
         self._at += written
         self._bytes += max(0, self._at - size) if written else 0
@@ -146,13 +149,18 @@ class SdCard:
             self.refusal = f"the card is full: it holds {MAX_BYTES} bytes"
             return False
         try:
-            wav.write(path, [samples])
-        except OSError:
-            self._listed_ns = None
+            with replacing(str(path)) as file:
+                wav.write(file, [samples])
+        except OSError as error:
+            self._refuse(path, error)
             return False
         self._bytes += grown
         self._register(path)
         return True
+
+    def _refuse(self, path: Path, error: OSError) -> None:
+        self.refusal = f"{path}: {error.strerror}"
+        self._listed_ns = None  # the sizes of the files are not known any more
 
     def _has_room(self, path: Path) -> bool:
         """Whether a file exists or may be created."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from aseba_vm.cli.output import rewrite_file
+from aseba_vm.cli.output import write_file
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF
 from thymio_sim_ros.sim.commands import MotorTargets
@@ -77,7 +77,7 @@ class Settings:
         text = json.dumps(parts, indent=1) + "\n"
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            rewrite_file(str(self._file), text.encode())
+            write_file(str(self._file), text.encode())
         except OSError as error:
             return f"settings are not stored: {self._file}: {error.strerror}"
         return ""
@@ -112,7 +112,7 @@ def _read(file: Path) -> list[int]:
         ) from error
     except OSError as error:
         raise SettingsError(f"settings {file}: {error.strerror}; expected a file that can be read") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise SettingsError(f"settings {file}: {error}") from error
     words: list[int] = []
     for name, size, _ in PARTS:

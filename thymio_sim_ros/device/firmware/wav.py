@@ -8,6 +8,7 @@ from __future__ import annotations
 import wave
 from collections.abc import Iterable
 from pathlib import Path
+from typing import BinaryIO
 
 __all__ = ["HEADER_BYTES", "format_problem", "write"]
 
@@ -19,9 +20,9 @@ WRITTEN_RATE_HZ = 7812
 _EXPECTED = "expected 8 bit, 1 channel, 7800 to 8000 Hz"
 
 
-def write(path: Path, parts: Iterable[bytes]) -> None:
-    """Write a file with unsigned 8-bit samples, part after part. Raises OSError."""
-    with wave.open(str(path), "wb") as file:
+def write(output: BinaryIO, parts: Iterable[bytes]) -> None:
+    """Write unsigned 8-bit samples, part after part, to a file that was opened for it. Raises OSError."""
+    with wave.open(output, "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(1)
         file.setframerate(WRITTEN_RATE_HZ)
@@ -34,7 +35,7 @@ def format_problem(path: Path) -> str:
     try:
         with wave.open(str(path), "rb") as file:
             bits, channels, rate = 8 * file.getsampwidth(), file.getnchannels(), file.getframerate()
-    except (wave.Error, EOFError, OSError):
+    except (wave.Error, EOFError, OSError, RuntimeError):  # RuntimeError: a chunk that ends behind the file
         return f"{path.name}: no WAV file found, {_EXPECTED}"
     low, high = RATES_HZ
     if (bits, channels) == (8, 1) and low <= rate <= high:

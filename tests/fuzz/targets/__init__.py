@@ -1,0 +1,1 @@
+"""The targets, by the part of the project that reads."""

@@ -1,0 +1,98 @@
+"""Servers and links of the network: Thymio Device Manager, HTTP interface, addresses, tokens."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+from aseba_vm.targets import THYMIO_II
+from tests.fuzz.target import Target, lines, text
+from tests.fuzz.targets.aseba import WORDS, _files
+from tests.network.tdm.machine_node import MachineNode
+from tests.network.tdm.talk import Talk
+from thymio_sim_ros.bridge.access import Tokens, given_token
+from thymio_sim_ros.bridge.origin_policy import is_allowed
+from thymio_sim_ros.network.http.programs import NodeToLoad, compile_file
+from thymio_sim_ros.network.http.requests import RequestError, parse_request
+from thymio_sim_ros.network.robot_target import TargetError, parse_target
+from thymio_sim_ros.network.tdm.protocol.codec import StreamReader, decode, encode, framed
+from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError, ValueTypeError
+from thymio_sim_ros.network.tdm.protocol.values import decode_value, encode_value
+from thymio_sim_ros.web.hosts import host_name, is_loopback_name
+
+REQUESTS = Path(__file__).parents[2] / "data" / "network" / "tdm_requests.json"
+
+
+def _buffer(data: bytes) -> None:
+    message = decode(data)
+    assert repr(decode(encode(message))) == repr(message)  # NaN differs from itself
+
+
+def _stream(data: bytes) -> None:
+    """A client of the device manager: everything that it sends by TCP, after a handshake."""
+    talk = Talk(MachineNode())
+    talk.join(1)
+    reader = StreamReader()
+    for buffer in [*reader.feed(data[:7]), *reader.feed(data[7:])]:
+        talk.send(1, decode(buffer))
+
+
+def _value(data: bytes) -> None:
+    words = decode_value(data)
+    assert decode_value(encode_value(words)) == words
+
+
+def _http_request(data: bytes) -> None:
+    method, path, body = lines(data, 3)
+    parse_request(method.decode("latin-1"), path.decode("latin-1"), body)
+
+
+def _http_program(data: bytes) -> None:
+    compile_file(data, [NodeToLoad((0, 1), 1, THYMIO_II, "")])
+
+
+def _address(data: bytes) -> None:
+    found = parse_target(text(data))
+    assert parse_target(str(found)) == found
+
+
+def _headers(data: bytes) -> None:
+    """The headers of a web page that a browser has opened."""
+    path, bearer, origin, host = (part.decode("latin-1") for part in lines(data, 4))
+    Tokens("secret-token", "reader-token").role(given_token(path, [bearer]))
+    is_allowed(origin, host)
+    is_loopback_name(host_name(host))
+
+
+def _recorded() -> Iterator[bytes]:
+    for buffers in json.loads(REQUESTS.read_text(encoding="utf-8")).values():
+        yield from map(bytes.fromhex, buffers)
+
+
+def _streams() -> Iterator[bytes]:
+    for buffers in json.loads(REQUESTS.read_text(encoding="utf-8")).values():
+        yield b"".join(framed(bytes.fromhex(buffer)) for buffer in buffers)[:4096]
+
+
+def _values() -> Iterator[bytes]:
+    yield from (encode_value(words) for words in ((), (1,), (-32768, 32767, 300), tuple(range(100))))
+    yield b"\x05\x04\x01"
+
+
+def _requests() -> Iterator[bytes]:
+    yield b"GET\n/nodes/thymio-II/prox.horizontal?todo=3"
+    yield b'POST\n/nodes/1/list\n[7, 8.5, "9"]'
+    yield b"PUT\n/nodes/1\nfile=<!DOCTYPE aesl-source><network/>"
+    yield b"GET\n/events/pong?todo=1"
+
+
+TARGETS = (
+    Target("tdm-message", _buffer, (TdmFrameError,), _recorded),
+    Target("tdm-stream", _stream, (TdmFrameError,), _streams),
+    Target("tdm-value", _value, (ValueTypeError,), _values),
+    Target("http-request", _http_request, (RequestError,), _requests, ("/nodes", "/events", "reset", "?todo=", "%2F")),
+    Target("http-program", _http_program, (RequestError,), _files, WORDS),
+    Target("robot-address", _address, (TargetError,), lambda: [b"tcp:host=a;port=33333", b"ser:/dev/ttyACM0"]),
+    Target("http-headers", _headers, (), lambda: [b"/?token=abcd\nBearer abcd\nhttp://[::1]:80\nlocalhost:80"]),
+)
