@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 START_S = 60.0
@@ -29,15 +30,31 @@ SERVERS = {"--aseba-port": "--no-aseba", "--tdm-port": "--no-tdm"}
 class Process:
     """`main()` of a module in a process group of its own, with signals reset and its output kept."""
 
-    def __init__(self, folder: Path, module: str, *arguments: str) -> None:
-        """Start it. A suite has the servers for other programs only if the arguments ask for them."""
+    def __init__(
+        self,
+        folder: Path,
+        module: str,
+        *arguments: str,
+        prefix: Sequence[str] = (),
+        variables: Mapping[str, str] | None = None,
+    ) -> None:
+        """Start it, with a command in front such as `unshare -n`, and further environment variables.
+
+        A suite has the servers for other programs only if the arguments ask for them.
+        """
         if module == SUITE and (not arguments or arguments[0].startswith("--")):
             arguments = (*(off for on, off in SERVERS.items() if on not in arguments), *arguments)
         self._log = folder / f"{module}.txt"
-        command = [sys.executable, "-c", f"import sys; from {module} import main; sys.exit(main())", *arguments]
+        main = f"import sys; from {module} import main; sys.exit(main())"
+        command = [*prefix, sys.executable, "-c", main, *arguments]
         with self._log.open("w") as output:
             self._popen = subprocess.Popen(
-                command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True, restore_signals=True
+                command,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                restore_signals=True,
+                env={**os.environ, **(variables or {})},
             )
 
     @property

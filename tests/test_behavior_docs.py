@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-
+from tests import pages
 from tests.device.handheld import HandheldRobot
 from thymio_sim_ros.device.programs.program import load_program
 
-GUIDE = (Path(__file__).parent.parent / "docs" / "behaviors.md").read_text(encoding="utf-8")
+GUIDE = pages.read("behaviors.md")
 
 
 def test_the_example_turns_away_and_goes_back_to_the_menu() -> None:
-    (example,) = re.findall(r"```xml\n(.*?)```", GUIDE, re.DOTALL)
+    (example,) = pages.blocks(GUIDE, "xml")
     robot = HandheldRobot()
     robot.host.load(load_program(example, "shy.aesl"))
     robot.tick(2)

@@ -22,6 +22,8 @@ SECTIONS = re.compile(
 #: `docs/architecture.md, "Threads"`
 TITLES = re.compile(rf"(?P<page>[\w./-]+\.md),{GAP}\"(?P<title>[^\"\n]+)\"")
 PAGES = re.compile(r"(?<![\w/])docs/[\w./-]+\.md")
+#: `tests/sim/physics`, `tests/sim/*.py`, `tests/test_readme.py`
+TESTS = re.compile(r"`(tests/[\w./*-]+)`")
 #: Documents without a file name cannot be opened.
 NAMELESS = re.compile(rf"(?i)\b(?:spec|paper|language|vm|protocol|architecture|performance),?{GAP}section{GAP}\d")
 
@@ -78,6 +80,12 @@ def test_every_relative_link_leads_somewhere(page: Path) -> None:
         if not target.exists() or (anchor and anchor not in anchors(target)):
             broken.append(link)
     assert broken == []
+
+
+@pytest.mark.parametrize("page", PAGES_OF_OURS, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_test_that_a_page_names_is_there(page: Path) -> None:
+    names = TESTS.findall(page.read_text(encoding="utf-8"))
+    assert [name for name in names if not list(ROOT.glob(name))] == []
 
 
 def test_every_cited_document_and_section_is_there() -> None:

@@ -74,7 +74,8 @@ RULES = {
         _names("aseba_vm", "device.programs", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK
     ),
     f"{OURS}.classroom": Rule(
-        _names("addresses", "bridge", "classroom", "loading", "resources", "sim"), frozenset({"segno", "websockets"})
+        _names("addresses", "aseba_vm", "bridge", "classroom", "loading", "resources", "sim"),
+        frozenset({"segno", "websockets"}),
     ),
     f"{OURS}.classroom.server": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
@@ -85,6 +86,8 @@ RULES = {
     ),
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
+    # students copy them: rclpy, messages, and tf2 for those who have the wheels only
+    f"{OURS}.examples": Rule(_names("tf"), ROS),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
     f"{OURS}.batch_runs": Rule(_names("batch_runs"), frozenset({"dask", "distributed"})),
     f"{OURS}.sweep": Rule(
@@ -98,8 +101,9 @@ RULES = {
         _names("device", "loading", "runlog.run_log", "runner", "sim", "testing"), frozenset({"pytest"})
     ),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
-    f"{OURS}.lockstep": Rule(_names("errors", "lockstep"), ROS),
-    f"{OURS}.grading": Rule(_names("grading", "runlog.test_files", "batch_runs"), frozenset({"pytest"})),
+    f"{OURS}.lockstep": Rule(_names("errors", "lockstep", "type_names"), ROS),
+    f"{OURS}.grading": Rule(_names("aseba_vm", "grading", "runlog.test_files", "batch_runs"), frozenset({"pytest"})),
+    f"{OURS}.grading.gradescope": Rule(frozenset(), frozenset({"yaml"})),
     f"{OURS}.grading.test_process": Rule(_names("grading", "runlog.test_files", "testing"), frozenset({"pytest"})),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
@@ -168,7 +172,14 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 
 
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
-    with_ros = (f"{OURS}.ros", f"{OURS}.testing.ros", f"{OURS}.lockstep", f"{OURS}.launch", f"{OURS}.tf")
+    with_ros = (
+        f"{OURS}.ros",
+        f"{OURS}.testing.ros",
+        f"{OURS}.lockstep",
+        f"{OURS}.launch",
+        f"{OURS}.tf",
+        f"{OURS}.examples",
+    )
     pure = [module for module in SOURCES if not any(_below(module, name) for name in with_ros)]
     pure = [module for module in pure if not module.endswith("__main__")]
     program = (

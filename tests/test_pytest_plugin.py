@@ -107,6 +107,16 @@ def test_an_invalid_mark_is_explained(pytester: pytest.Pytester, run: Run, mark:
     result.stdout.fnmatch_lines([f"*{reported}*"])
 
 
+def test_an_error_in_a_program_is_shown_without_the_frames_of_the_compiler(pytester: pytest.Pytester, run: Run) -> None:
+    (pytester.path / "f.aesl").write_text("motor.left.target = ")
+    pytester.makepyfile("import pytest\n@pytest.mark.thymio(program='f.aesl')\ndef test_it(thymio): pass")
+    result = run()
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["f.aesl: line 1, column 20: expected one of *found the end of the program"])
+    assert "Traceback" not in result.stdout.str()
+    result.stdout.no_fnmatch_line("*direct cause*")
+
+
 def test_the_nearest_mark_wins_keyword_by_keyword(pytester: pytest.Pytester, run: Run) -> None:
     pytester.makepyfile(
         """

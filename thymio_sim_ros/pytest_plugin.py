@@ -67,6 +67,7 @@ def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
 @pytest.fixture
 def classroom(request: pytest.FixtureRequest) -> Iterator[Classroom]:
     """A simulated world with its robots, without ROS; the mark `thymio` has its options."""
+    from thymio_sim_ros.errors import ThymioSimError
     from thymio_sim_ros.testing import Classroom
 
     wanted = _wanted(request)
@@ -74,7 +75,10 @@ def classroom(request: pytest.FixtureRequest) -> Iterator[Classroom]:
     program = wanted.pop("program", "none")
     if programs is None:
         programs = program
-    classroom = Classroom(programs=programs, folder=request.path.parent, run_log=_run_log(request), **wanted)
+    try:
+        classroom = Classroom(programs=programs, folder=request.path.parent, run_log=_run_log(request), **wanted)
+    except ThymioSimError as error:  # of a program or playground: the traceback would be that of the reader
+        raise pytest.fail.Exception(str(error), pytrace=False) from None
     yield classroom
     classroom.close()
 

@@ -64,6 +64,7 @@ from aseba_vm.protocol.messages import (
     Variables,
     WriteBytecode,
     decode,
+    device_name,
     encode,
 )
 from aseba_vm.protocol.node_client import NodeClient
@@ -126,6 +127,7 @@ __all__ = [
     "Variables",
     "WriteBytecode",
     "decode",
+    "device_name",
     "encode",
     "reports",
 ]

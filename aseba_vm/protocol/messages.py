@@ -254,6 +254,15 @@ class DeviceInfo(Message):
     data: fields.Bytes8
 
 
+def device_name(name: str) -> bytes:
+    """A name as data of a device, of an even size.
+
+    The asebaswitch of Aseba 1.6 takes these messages for user messages, which have words, and aborts otherwise.
+    """
+    data = name.encode()
+    return data + b" " * (len(data) % 2)
+
+
 @dataclass(frozen=True, slots=True)
 class ChangedVariables(Message):
     """Ranges of variables (start, values) that changed since the last request."""

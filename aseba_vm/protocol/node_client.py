@@ -167,7 +167,7 @@ class NodeClient:
         address, size = known.addresses[name]
         if len(values) > size:
             raise ValueError(f"{name}: found {len(values)} words, expected at most {size}")
-        known.store(address, values)
+        known.write(address, values)
         self.send(*requests.set_variables(node, address, values, source=self.source))
 
     def advance(self, now_ns: int) -> list[Report]:
@@ -234,8 +234,8 @@ class NodeClient:
         number = node.number
         match message:
             case Variables(start=start, values=values):
-                node.finish_read(start, len(values))
-                return [reports.VariablesRead(number, start, values, node.store(start, values))]
+                written = node.finish_read(start, len(values))
+                return [reports.VariablesRead(number, start, values, node.store(start, values, written))]
             case ExecutionStateChanged(pc=pc, flags=flags):
                 return self._receive_state(node, ExecutionState(pc, flags))
             case EventExecutionKilled():

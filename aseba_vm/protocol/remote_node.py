@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from aseba_vm.frontend.pipeline import Program
 from aseba_vm.protocol.messages import GetVariables
@@ -10,6 +11,17 @@ from aseba_vm.protocol.reports import ExecutionState
 from aseba_vm.target import TargetDescription
 
 __all__ = ["RemoteNode"]
+
+
+@dataclass(slots=True)
+class _Read:
+    """A request for variables that is not answered yet."""
+
+    start: int
+    count: int
+    sent_ns: int
+    written: set[int] = field(default_factory=set)
+    """Addresses that were written after the request: the answer has older values."""
 
 
 class RemoteNode:
@@ -28,8 +40,7 @@ class RemoteNode:
         self.addresses: Mapping[str, tuple[int, int]] = {}
         """Address and size in words of each variable by name, those of the known program included."""
         self._memory: list[int | None] = [None] * description.variables_size
-        self._reads: list[tuple[int, int, int]] = []
-        """Start, number of words and time of the requests that are not answered yet."""
+        self._reads: list[_Read] = []
         self.set_program(None)
 
     @property
@@ -63,22 +74,31 @@ class RemoteNode:
 
     def expect(self, request: GetVariables, now_ns: int) -> None:
         """Note a request for variables."""
-        self._reads.append((request.start, request.count, now_ns))
+        self._reads.append(_Read(request.start, request.count, now_ns))
 
     def overdue(self, sent_before_ns: int) -> list[tuple[int, int]]:
         """Forget the requests sent before a time; return start and number of words of each."""
-        found = [(start, count) for start, count, sent_ns in self._reads if sent_ns < sent_before_ns]
-        self._reads = [read for read in self._reads if read[2] >= sent_before_ns]
+        found = [(read.start, read.count) for read in self._reads if read.sent_ns < sent_before_ns]
+        self._reads = [read for read in self._reads if read.sent_ns >= sent_before_ns]
         return found
 
-    def store(self, start: int, values: Sequence[int]) -> tuple[str, ...]:
-        """Store values that arrived or were written; return the names of the variables that have changed."""
-        values = values[: max(0, len(self._memory) - start)]
-        end = start + len(values)
+    def write(self, start: int, values: Sequence[int]) -> None:
+        """Store values that are written; answers to earlier requests do not replace them."""
+        self.store(start, values)
+        for read in self._reads:
+            read.written.update(range(start, start + len(values)))
+
+    def store(self, start: int, values: Sequence[int], kept: Collection[int] = ()) -> tuple[str, ...]:
+        """Store values except at the `kept` addresses; return the names of the variables that have changed."""
+        end = min(start + len(values), len(self._memory))
         before = self._memory[start:end]
-        if before == list(values):
+        after = [
+            known if start + index in kept else value
+            for index, (known, value) in enumerate(zip(before, values, strict=False))
+        ]
+        if before == after:
             return ()
-        self._memory[start:end] = values
+        self._memory[start:end] = after
         return tuple(
             name
             for name, (address, size) in self.addresses.items()
@@ -88,11 +108,15 @@ class RemoteNode:
             != self._memory[max(address, start) : min(address + size, end)]
         )
 
-    def finish_read(self, start: int, count: int) -> None:
-        """Note that values arrived: all or the first ones of the oldest request from this address on."""
-        for index, (read_start, wanted, sent_ns) in enumerate(self._reads):
-            if read_start == start:
+    def finish_read(self, start: int, count: int) -> Collection[int]:
+        """Note that values arrived: all or the first ones of the oldest request from this address on.
+
+        Return the addresses that were written since that request.
+        """
+        for index, read in enumerate(self._reads):
+            if read.start == start:
                 # a robot on the radio answers in pieces
-                rest = [(start + count, wanted - count, sent_ns)] if 0 < count < wanted else []
-                self._reads[index : index + 1] = rest
-                return
+                rest = [_Read(start + count, read.count - count, read.sent_ns, read.written)]
+                self._reads[index : index + 1] = rest if 0 < count < read.count else []
+                return read.written
+        return ()

@@ -73,7 +73,7 @@ def test_a_client_with_few_messages_does_not_wait_for_throttled_clients(monkeypa
         async with bridge() as server, server.client() as client:
             await client.settle()
             monkeypatch.setattr("thymio_sim_ros.bridge.throttle.time", SlowClock())
-            async with server.server._throttle._pausing:
+            async with server.server._throttle._turns.take(0.0):
                 for _ in range(20):
                     await client.settle()
 
@@ -190,7 +190,7 @@ def test_silent_connections_are_limited_and_free_their_slots_when_they_close() -
                     assert await loop.sock_recv(silent[-1], 1) == b""
             for one in silent:
                 one.close()
-            await server.until(lambda: not server.server._connections)
+            await server.until(lambda: not server.server._connections.count)
             async with server.client() as client:
                 await client.settle()
 

@@ -25,6 +25,12 @@ def test_on_this_computer_only(address):
     assert text[:2] == ["Page      http://localhost:8080/", "Foxglove  ws://localhost:8765"]
 
 
+def test_a_computer_without_a_network_interface_says_so(monkeypatch):
+    monkeypatch.setattr(banner, "loopback_problem", lambda: "Network is unreachable")
+    first = banner.banner(SuiteConfig(), ["thymio"]).splitlines()[0]
+    assert first == ("Network   this computer cannot reach itself (Network is unreachable): switch its interface lo on")
+
+
 def test_for_the_whole_network(monkeypatch):
     monkeypatch.setattr(addresses, "own_address", lambda: "10.1.2.3")
     text = banner.banner(SuiteConfig(address="0.0.0.0", port=80, foxglove_port=81), ["thymio"]).splitlines()

@@ -92,6 +92,22 @@ def test_a_late_or_changed_submission_is_graded_alone(loop: Loop, sandbox: Sandb
     assert len(sandbox.runs) == 4
 
 
+def test_reports_of_an_earlier_grading_do_not_stay(loop: Loop) -> None:
+    assert main(GRADE) == 0
+    pupils, teacher = Path("grades/pupils"), Path("grades/teacher")
+    for own in (pupils / "notes", pupils / "001-Anna" / "test-1.jsonl"):
+        own.write_text("")
+    hand_in("Amir", "good")
+    assert main(GRADE) == 0
+    numbered = ["001-Amir", "002-Anna", "003-Ben", "004-Cleo"]
+    assert sorted(path.name for path in pupils.iterdir()) == [*numbered, "notes"]
+    assert sorted(path.stem for path in teacher.iterdir()) == numbered
+    hand_in("Amir", "bad")
+    (pupils / "001-Amir" / "test-1.jsonl").write_text("")
+    assert main(GRADE) == 0
+    assert not (pupils / "001-Amir" / "test-1.jsonl").exists()
+
+
 def test_a_damaged_report_is_made_again(loop: Loop, sandbox: Sandbox) -> None:
     assert main(GRADE) == 0
     for damage, path in zip(("", "{}", '{"outcomes": 3}'), Path("grades", "finished").iterdir(), strict=True):

@@ -362,6 +362,13 @@ def test_data_of_the_device(bench):
     assert bench.send(GetDeviceInfo(0, ID, 2))[0].data == "é".encode() * 27
 
 
+@pytest.mark.parametrize(("name", "data"), [("red", b"red "), ("x" * 60, b"x" * 54)])
+def test_a_name_has_an_even_size(bench, name, data):
+    """The asebaswitch of Aseba 1.6 takes the message for a user message, and aborts if its size is odd."""
+    bench.node.name = name
+    assert bench.send(GetDeviceInfo(0, ID, 2)) == [DeviceInfo(ID, 2, data)]
+
+
 def test_without_clients_nothing_is_collected():
     bench = Bench(client=None)
     bench.host.load(compiled("emit ping [1, 2]"))

@@ -8,14 +8,18 @@ import re
 import socket
 import sys
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.grading.example_class import HARMLESS, PUPILS, moodle_zip, write_assignment
+from thymio_sim_ros.cli import grade as grade_command
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.cli.errors import USAGE_ERROR
+from thymio_sim_ros.grading import grader
 from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.sandbox.levels import best_level
 from thymio_sim_ros.runlog.replay import replay
 
@@ -106,6 +110,25 @@ def test_a_cluster_with_an_address_gives_the_same_marks(small: Path, tmp_path: P
         output = grade(tmp_path, ("Good", "Straight"), "--scheduler", client.scheduler.address)
     one, other = rows(small), rows(output)
     assert {name: {**one[name], "id": ""} for name in other} == {name: {**other[name], "id": ""} for name in other}
+
+
+def test_the_table_is_written_while_the_class_is_graded(
+    level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class_ = moodle_zip(tmp_path / "class.zip", ("Good", "Stands"), host_folder=tmp_path, host_port=1)
+    output = tmp_path / "grades"
+    assignment = write_assignment(tmp_path / "assignment")
+
+    def run_submissions(*_: object, **__: object) -> Iterator[list[tuple[int, Report]]]:
+        yield [(0, Report({}, remark="this one came first"))]
+        assert rows(output)["Good"]["remark"] == "this one came first"
+        yield [(1, Report({}))]
+
+    monkeypatch.setattr(grader, "run_submissions", run_submissions)
+    monkeypatch.setattr(grade_command, "WRITE_S", 0.0)
+    words = ["grade", class_, "--assignment", assignment, "-o", output]
+    assert main.main(list(map(str, words))) == 0
+    assert list(rows(output)) == ["Good", "Stands"]
 
 
 def test_a_failure_has_a_page_with_a_picture_and_a_run_log(small: Path) -> None:

@@ -52,6 +52,108 @@ def test_a_canvas_export_joins_the_files_of_a_pupil(tmp_path: Path) -> None:
     assert (class_["ben"].identifier, dict(class_["ben"].files)) == ("13", {"a.aesl": b"3"})
 
 
+METADATA = b"""---
+submission_900:
+  :submitters:
+  - :name: Anna
+    :sid: '1'
+  :created_at: 2026-11-01 10:00:00.5 Z
+submission_901:
+  :submitters:
+  - :name: Ben
+  - :name: Cleo
+"""
+
+
+@pytest.mark.parametrize("folder", ["", "assignment_77_export/"])
+def test_a_gradescope_export_has_the_names_of_its_metadata(tmp_path: Path, folder: str) -> None:
+    files = {f"submission_{number}/a.aesl": b"" for number in (900, 901, 902)}
+    files = {folder + name: data for name, data in ({"submission_metadata.yml": METADATA} | files).items()}
+    (tmp_path / "export.zip").write_bytes(zipped(files))
+    with zipfile.ZipFile(tmp_path / "export.zip") as archive:
+        archive.extractall(tmp_path / "unpacked")
+    for path in (tmp_path / "export.zip", tmp_path / "unpacked" / folder):
+        assert {name: one.identifier for name, one in found(path).items()} == {
+            "Anna": "900",
+            "Ben and Cleo": "901",
+            "submission_902": "902",
+        }
+
+
+@pytest.mark.parametrize("metadata", [b"", b"a: [", b"- 1", b"submission_900: {':submitters': 3}", b"\xff\xfe", b"!!x"])
+def test_a_gradescope_export_without_names_has_numbers(tmp_path: Path, metadata: bytes) -> None:
+    files = {"submission_metadata.yml": metadata, "submission_900/a.aesl": b""}
+    (tmp_path / "export.zip").write_bytes(zipped(files))
+    assert list(found(tmp_path / "export.zip")) == ["submission_900"]
+
+
+def test_what_systems_and_tools_add_does_not_count(tmp_path: Path) -> None:
+    clutter = {f".git/objects/{number}": b"" for number in range(archives.MAX_FILES + 1)} | {".DS_Store": b""}
+    for name, data in ({"anna/work.zip": zipped({"a.aesl": b"1"} | clutter), "ben/b.aesl": b"2"}).items():
+        for path, content in {name: data, **{f"{name.partition('/')[0]}/{more}": b"" for more in clutter}}.items():
+            (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / path).write_bytes(content)
+    (tmp_path / "ben" / ".venv").symlink_to("/usr")
+    assert {name: dict(one.files) for name, one in found(tmp_path).items()} == {
+        "anna": {"a.aesl": b"1"},
+        "ben": {"b.aesl": b"2"},
+    }
+
+
+def test_a_rejected_file_in_a_zip_of_the_class_costs_its_own_submission_only(tmp_path: Path) -> None:
+    files = {"anna/a.aesl": b"1", "ben/big": bytes(archives.MAX_BYTES + 1), "dora/../../evil": b"", "eve/e": b"2"}
+    with zipfile.ZipFile(tmp_path / "class.zip", "w") as archive:
+        link = zipfile.ZipInfo("cleo/a.aesl")
+        link.external_attr = (stat.S_IFLNK | 0o777) << 16
+        archive.writestr(link, "/etc/passwd")
+        for name, content in files.items():
+            archive.writestr(name, content)
+    assert {name: one.problem for name, one in found(tmp_path / "class.zip").items()} == {
+        "anna": "",
+        "ben": "more than 8 MB, unpacked",
+        "cleo": "cleo/a.aesl is a symbolic link; expected a file or folder",
+        "dora": "the zip has the path 'dora/../../evil'; expected paths inside of it",
+        "eve": "",
+    }
+
+
+def test_a_pupil_without_a_file_is_not_forgotten(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "class.zip", "w") as archive:
+        for name in (
+            "class/",
+            "class/anna/",
+            "class/ben/.keep",
+            "class/cleo/c.aesl",
+            "__MACOSX/class/dora/x",
+            ".DS_Store",
+        ):
+            archive.writestr(name, "")
+    assert {name: set(one.files) for name, one in found(tmp_path / "class.zip").items()} == {
+        "anna": set(),
+        "ben": set(),
+        "cleo": {"c.aesl"},
+    }
+
+
+def test_an_encrypted_zip_is_a_row_with_a_reason(tmp_path: Path) -> None:
+    data = bytearray(zipped({"a.aesl": b"1"}))
+    data[data.index(b"PK\x01\x02") + 8] |= 1
+    (tmp_path / "anna.zip").write_bytes(data)
+    assert found(tmp_path)["anna"].problem == "a.aesl is encrypted; expected a zip without a password"
+
+
+def test_names_of_a_mac_are_read_as_they_were_written(tmp_path: Path) -> None:
+    data = zipped({"class/Zoe\u0308/lo\u0308sung.py": b"1"})  # decomposed, in UTF-8
+    unflagged = bytearray(data)
+    for flags in (7, data.index(b"PK\x01\x02") + 9):
+        unflagged[flags] &= ~0x08  # macOS does not say that it is UTF-8
+    for name, content in {"flagged": data, "unflagged": bytes(unflagged)}.items():
+        (tmp_path / f"{name}.zip").write_bytes(content)
+        assert {who: dict(one.files) for who, one in found(tmp_path / f"{name}.zip").items()} == {
+            "Zo\u00eb": {"l\u00f6sung.py": b"1"}
+        }
+
+
 def test_pupils_of_the_same_name_stay_apart(tmp_path: Path) -> None:
     files = {f"Anna_{number}_assignsubmission_file_/a.aesl": b"" for number in (12, 13)}
     (tmp_path / "export.zip").write_bytes(zipped(files))
@@ -125,6 +227,23 @@ def test_a_class_that_is_missing_or_empty_is_an_error(tmp_path: Path) -> None:
         ({"anna final.aesl": b""}, ("f.aesl",), {"f.aesl"}, ""),
         ({"a.aesl": b"", "b.aesl": b""}, ("f.aesl",), {"a.aesl", "b.aesl"}, "no file f.aesl; found a.aesl, b.aesl"),
         ({"a.txt": b""}, ("f.aesl",), {"a.txt"}, "no file f.aesl; found a.txt"),
+        (
+            {"p/setup.py": b"", "p/p/f.py": b"", "p/p/g.py": b""},
+            ("f.py",),
+            {"setup.py", "p/f.py", "p/g.py", "f.py", "g.py"},
+            "",
+        ),
+        (
+            {"r.txt": b"", "a/f.py": b"", "b/f.py": b""},
+            ("f.py",),
+            {"r.txt", "a/f.py", "b/f.py"},
+            "no file f.py; found a/f.py, b/f.py, r.txt",
+        ),
+        ({"F.AESL": b""}, ("f.aesl",), {"f.aesl"}, ""),
+        ({"work.zip": zipped({"w/f.aesl": b""}), "w/notes.pdf": b""}, ("f.aesl",), {"f.aesl", "notes.pdf"}, ""),
+        ({"f.aesl": b"", "old.zip": b"no zip"}, ("f.aesl",), {"f.aesl", "old.zip"}, ""),
+        ({"x" * 256 + "/f.aesl": b""}, ("f.aesl",), {"f.aesl"}, ""),
+        ({"f.aesl": b"", "a": b"", "a/b": b""}, ("f.aesl",), {"f.aesl", "a", "a/b"}, "a is both a file and a folder"),
         ({}, ("f.aesl",), set(), "no file was handed in"),
     ],
 )

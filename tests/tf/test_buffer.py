@@ -16,6 +16,8 @@ from rclpy.node import Node
 from rclpy.time import Time
 from std_msgs.msg import String
 
+from tests import pages
+from thymio_sim_ros.examples import go_to_goal_tf
 from thymio_sim_ros.tf import (
     Buffer,
     ExtrapolationException,
@@ -212,21 +214,13 @@ def test_a_reset_of_the_simulator_empties_the_buffer_of_a_node_on_its_time(ros, 
     assert latest.sec == 0
 
 
-@pytest.mark.parametrize("goal", [(-0.3, 0.1), (0.2, -0.25)])
-def test_the_example_of_the_page_goes_to_its_goal(ros, simulation, tmp_path, goal):
-    path = tmp_path / "go_to_goal.py"
-    path.write_text(re.search(r"```python\n(import math.*?)```", PAGE.read_text(), re.DOTALL)[1])
-    sim = simulation()
-    ros.start(path, parameters={"goal": list(goal)})
-    robot = sim.world.robots["thymio"]
-
-    def is_there():
-        return math.dist(goal, (robot.pose.x_m, robot.pose.y_m)) < 0.03
-
-    sim.until(is_there, seconds=30.0)
-    sim.step(1.0)
-    assert is_there()
-    assert robot.twist.linear_m_s == pytest.approx(0.0, abs=1e-3)
+def test_the_page_shows_the_lines_of_the_model_node():
+    node = [line.strip() for line in Path(go_to_goal_tf.__file__).read_text(encoding="utf-8").splitlines()]
+    shown = [text for text in pages.blocks(pages.read("tf.md"), "python") if "self." in text and "here =" not in text]
+    assert len(shown) == 2
+    for block in shown:
+        lines = [line.strip() for line in block.splitlines()]
+        assert lines in [node[at : at + len(lines)] for at in range(len(node))]
 
 
 def test_the_page_names_all_classes():

@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from socket import socket
-from typing import Any, Protocol, cast
+from typing import Protocol, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
@@ -36,7 +36,7 @@ from thymio_sim_ros.bridge.switchboard.outcome import Delivery
 from thymio_sim_ros.bridge.switchboard.subscriptions import Routes
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 from thymio_sim_ros.bridge.throttle import Throttle
-from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
+from thymio_sim_ros.bridge.transport import SLICE_S, ConnectionMaker, SharedConnection
 
 __all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 
@@ -113,8 +113,7 @@ class BridgeServer:
         self._throttle: Throttle
         self._is_limit_logged = False
         self._is_closing = False
-        self._connections: set[SharedConnection] = set()
-        """All connections, including those in their handshake."""
+        self._connections = ConnectionMaker(2 * self._settings.max_clients, self._log_client_limit)
 
     async def start(self, listeners: Iterable[socket]) -> None:
         """Serve on bound sockets; the server takes ownership of them."""
@@ -129,7 +128,7 @@ class BridgeServer:
                 self._serve_client,
                 sock=listener,
                 ssl=settings.tls,
-                create_connection=cast("type[ServerConnection]", self._make_connection),
+                create_connection=cast("type[ServerConnection]", self._connections),
                 select_subprotocol=select_subprotocol,
                 process_request=self._handshakes.check,
                 compression=None,
@@ -216,16 +215,6 @@ class BridgeServer:
             self._flush_is_due = any(queue.has_backlog for queue in self._queues.values())
         if self._flush_is_due:
             self._flush_soon()
-
-    def _make_connection(self, *arguments: Any, **options: Any) -> SharedConnection:
-        connection = SharedConnection(*arguments, **options)
-        if len(self._connections) < 2 * self._settings.max_clients:
-            self._connections.add(connection)
-            connection.on_lost = lambda: self._connections.discard(connection)
-        else:
-            connection.is_refused = True
-            self._log_client_limit()
-        return connection
 
     async def _serve_client(self, connection: ServerConnection) -> None:
         assert isinstance(connection, SharedConnection)

@@ -19,7 +19,7 @@ from websockets.asyncio.server import ServerConnection
 
 from thymio_sim_ros.bridge.protocol.constants import Role
 
-__all__ = ["SLICE_S", "SharedConnection", "SharedTransport"]
+__all__ = ["SLICE_S", "ConnectionMaker", "SharedConnection", "SharedTransport"]
 
 SLICE_S = 0.002
 """Processor time of the event loop that one client may use before other clients are served, s."""
@@ -287,3 +287,28 @@ class SharedConnection(ServerConnection):
         if self._feeding is not None:
             self._feeding.cancel()
             self._feeding = None
+
+
+class ConnectionMaker:
+    """Makes the connections of one server, up to a limit; further ones are refused."""
+
+    def __init__(self, limit: int, on_refused: Callable[[], None]) -> None:
+        """`limit`: connections, including those in their handshake; `on_refused` is called for each further one."""
+        self._limit, self._on_refused = limit, on_refused
+        self._connections: set[SharedConnection] = set()
+
+    @property
+    def count(self) -> int:
+        """Connections that are open."""
+        return len(self._connections)
+
+    def __call__(self, *arguments: Any, **options: Any) -> SharedConnection:
+        """Make a connection, as `websockets` calls its class."""
+        connection = SharedConnection(*arguments, **options)
+        if len(self._connections) < self._limit:
+            self._connections.add(connection)
+            connection.on_lost = lambda: self._connections.discard(connection)
+        else:
+            connection.is_refused = True
+            self._on_refused()
+        return connection

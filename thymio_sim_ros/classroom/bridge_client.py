@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 from websockets.asyncio.client import ClientConnection, connect
 
@@ -19,6 +18,7 @@ from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import CDR, JSON, SUBPROTOCOLS
 from thymio_sim_ros.bridge.protocol.errors import FrameError
 from thymio_sim_ros.classroom.cdr import CdrError, read_diagnostic, read_string
+from thymio_sim_ros.classroom.suite_state import Overview, SuiteState, SuiteStateError, read_overview, read_state
 
 __all__ = ["PLAYGROUND", "SOURCE", "BridgeClient", "SuiteStatus"]
 
@@ -33,10 +33,10 @@ _PING_S, _PONG_S = 10.0, 30.0
 
 @dataclass(slots=True)
 class SuiteStatus:
-    """What is known about a running suite: contents of its topics, empty until they have arrived."""
+    """What is known about a running suite: contents of its topics, None or empty until they have arrived."""
 
-    state: Mapping[str, Any] = field(default_factory=dict)
-    overview: Mapping[str, Any] = field(default_factory=dict)
+    state: SuiteState | None = None
+    overview: Overview = field(default_factory=dict)
     programs: dict[str, dict[str, str]] = field(default_factory=dict)
     """Topic of a robot's program → its values."""
 
@@ -148,11 +148,11 @@ class BridgeClient:
     def _read(self, topic: str, payload: bytes) -> None:
         try:
             if topic == _STATE:
-                self.status.state = json.loads(read_string(payload))
+                self.status.state = read_state(read_string(payload))
                 self.is_ready.set()
             elif topic == _OVERVIEW:
-                self.status.overview = json.loads(read_string(payload))
+                self.status.overview = read_overview(read_string(payload))
             elif topic:
                 self.status.programs[topic] = read_diagnostic(payload)
-        except (CdrError, ValueError):
+        except (CdrError, SuiteStateError):
             return  # a pupil's node may publish on these topics, too

@@ -6,12 +6,12 @@ Tokens are secrets: the folder can be read by its owner only.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from aseba_vm.cli.output import write_file
 from thymio_sim_ros.bridge.access import TOKEN, new_token
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.pupils import folder_name
@@ -48,7 +48,7 @@ class ClassFolder:
             raise ClassError(
                 f"{error.filename or path}: {error.strerror}; expected a folder that can be written"
             ) from error
-        except (ValueError, TypeError, KeyError, AttributeError) as error:
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
             raise ClassError(
                 f"{self._file}: {error}; expected the file as this program wrote it: restore or delete it (a new one "
                 "has new links)"
@@ -59,7 +59,10 @@ class ClassFolder:
         return self._path / _FILE
 
     def places(self, names: Sequence[str]) -> list[Place]:
-        """Return the places of these pupils in their order; new pupils get the lowest free numbers."""
+        """Return the places of these pupils in their order; new pupils get the lowest free numbers.
+
+        Raises OSError with the name of the file.
+        """
         for name in names:
             if name not in self._places:
                 ids = [place.id for place in self._places.values()]
@@ -87,7 +90,7 @@ class ClassFolder:
         return self.pupil(place) / "program.aesl"
 
     def keep_program(self, place: Place, text: str) -> None:
-        """Write a pupil's program; a crash in between leaves the one before."""
+        """Write a pupil's program; a crash in between leaves the one before. Raises OSError."""
         _write(self.program_file(place), text)
 
     def _save(self) -> None:
@@ -96,10 +99,7 @@ class ClassFolder:
 
 
 def _write(path: Path, text: str) -> None:
-    fresh = path.with_name(f"{path.name}.new")
-    fresh.write_text(text, "utf-8")
-    fresh.chmod(0o600)
-    os.replace(fresh, path)
+    write_file(str(path), text.encode("utf-8", "replace"), mode=0o600)
 
 
 def _place(fields: dict[str, Any]) -> Place:

@@ -28,7 +28,10 @@ def read_pupils(data: bytes, where: str) -> list[str]:
     name; without a header the first column is the name. Empty lines are skipped. `where` begins the messages of errors.
     Raises ClassError for names that occur twice, that are too long, or too many.
     """
-    rows = _rows(_text(data))
+    try:
+        rows = _rows(_text(data))
+    except csv.Error as error:
+        raise ClassError(f"{where}: {error}; expected a table with one name per line") from error
     if not rows:
         raise ClassError(f"{where}: found no names; expected one per line")
     columns = _columns(rows[0][1])

@@ -53,7 +53,7 @@ async def answer(classroom: Classroom, method: str, name: str, body: bytes) -> A
         raise RefusalError(404, f"found no such action; expected {', '.join(_ACTIONS)}")
     try:
         fields = json.loads(body or b"{}")
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise RefusalError(400, f"not JSON: {error}") from error
     if not isinstance(fields, dict):
         raise RefusalError(400, "expected a JSON object")

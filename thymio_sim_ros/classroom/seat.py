@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import hashlib
+import logging
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -35,6 +36,9 @@ START_S = 90.0
 RECONNECT_S = 10.0
 """Time until a suite whose connection was lost must answer again."""
 _CONNECT_S = 0.3
+
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,13 +99,17 @@ class Seat:
         wait_s = 0.0
         try:
             while True:
-                async with self._starting:
-                    began_s = clock_s()
-                    self.phase = "starting"
-                    await self._start()
-                    serving = asyncio.create_task(self._serve())
-                    await self._until_ready(serving)
-                reason = await self._until_end(serving)
+                began_s = clock_s()
+                try:
+                    async with self._starting:
+                        began_s = clock_s()
+                        self.phase = "starting"
+                        await self._start()
+                        serving = asyncio.create_task(self._serve())
+                        await self._until_ready(serving)
+                    reason = await self._until_end(serving)
+                except OSError as error:  # its files cannot be read or written, or there is no process for it
+                    reason = f"{error.filename or self.place.name}: {error.strerror}"
                 if self._asked.is_set():
                     self._asked.clear()
                     wait_s, self.phase = 0.0, "waiting"
@@ -164,7 +172,7 @@ class Seat:
                 try:
                     await client.run()
                 except (OSError, WebSocketException):
-                    if client.status.state:  # a connection that worked is lost: perhaps only that
+                    if client.status.state is not None:  # a connection that worked is lost: perhaps only that
                         end_s = clock_s() + RECONNECT_S
                     await asyncio.sleep(_CONNECT_S)
                 finally:
@@ -179,7 +187,7 @@ class Seat:
         await client.watch_overview(wanted=self._wants_overview)
         if self._notice != Notice():
             await client.set_notice(self._notice.text, self._notice.link)
-        while self._wants_pause and not client.status.state.get("paused"):
+        while self._wants_pause and not (client.status.state is not None and client.status.state.paused):
             await client.pause(paused=True)
             await asyncio.sleep(_CONNECT_S)
 
@@ -220,12 +228,15 @@ class Seat:
             self._set_playground(value)
         if name == SOURCE and value and value != self._given_program:
             self._given_program = value
-            self._folder.keep_program(self.place, value)
+            try:
+                self._folder.keep_program(self.place, value)
+            except OSError as error:
+                _log.error("the program of %s is not kept: %s: %s", self.place.name, error.filename, error.strerror)
 
     def _set_playground(self, value: str) -> None:
         self.playground = value
         """The playground of the suite, as `load_playground` takes it."""
-        self.plan = hashlib.sha256(value.encode()).hexdigest()[:16]
+        self.plan = hashlib.sha256(value.encode("utf-8", "surrogatepass")).hexdigest()[:16]
         """Names it; the same for the same playground."""
 
     async def _attempt(self, request: Any) -> None:
@@ -245,9 +256,9 @@ class Seat:
             "phase": self.phase,
             "reason": self.reason,
             "restarts": self.restarts,
-            "paused": bool(state.get("paused", False)),
-            "achieved": state.get("achieved", 0.0),
-            "fallen": [robot.get("robot", "") for robot in state.get("robots", []) if robot.get("fallen")],
+            "paused": state is not None and state.paused,
+            "achieved": 0.0 if state is None else state.achieved,
+            "fallen": [] if state is None else state.fallen,
             "programs": programs,
             "overview": client.overview,
             "plan": self.plan,

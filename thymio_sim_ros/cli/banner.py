@@ -6,7 +6,7 @@ import io
 import os
 from collections.abc import Sequence
 
-from thymio_sim_ros.addresses import describe_access, describe_urls, urls
+from thymio_sim_ros.addresses import describe_access, describe_urls, loopback_problem, urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
 from thymio_sim_ros.domain import describe_domain
@@ -36,6 +36,9 @@ def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = (
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
         lines.append(f"Access    {describe_access(suite.address, tokens)}")
     lines += servers
+    problem = loopback_problem()
+    if problem:
+        lines.insert(0, f"Network   this computer cannot reach itself ({problem}): switch its interface lo on")
     if suite.robot:
         lines.insert(0, f"Robot     {parse_target(suite.robot)} (real robot: no simulation, no ground truth)")
     return "\n".join([*lines, f"Domain    {describe_domain(os.environ)}", "Stop      Ctrl-C"])

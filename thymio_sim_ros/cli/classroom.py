@@ -56,6 +56,8 @@ def run(argv: Sequence[str]) -> int:
             places = folder.places(names)
         except ClassError as error:
             raise UsageError(str(error)) from error
+        except OSError as error:
+            raise UsageError(f"{error.filename}: {error.strerror}; expected a file that can be written") from error
         _check_ports(options, places)
         asyncio.run(_serve(options, folder, places, is_kept=given.folder is not None))
     return 0

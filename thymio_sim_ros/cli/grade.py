@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import time
 from collections.abc import Sequence
 from contextlib import closing
 from fractions import Fraction
@@ -20,8 +21,8 @@ from thymio_sim_ros.grading import grader, submissions
 from thymio_sim_ros.grading.assignment import Assignment
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.finished import FinishedReports
-from thymio_sim_ros.grading.reports.folder import write_reports, write_submission
-from thymio_sim_ros.grading.reports.texts import number, shown_remark
+from thymio_sim_ros.grading.reports.folder import remove_former, write_reports, write_submission
+from thymio_sim_ros.grading.reports.texts import number, shown_name, shown_remark
 from thymio_sim_ros.grading.results import Graded, GradedTest
 from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.sandbox.levels import LEVELS, best_level, why_unavailable
@@ -30,6 +31,8 @@ from thymio_sim_ros.grading.submissions import Submission
 __all__ = ["run"]
 
 FAILED = 1
+WRITE_S = 5.0
+"""Time between two tables while submissions are graded."""
 
 EXAMPLE = """\
 SUBMISSIONS is a folder or zip with a folder, file or zip for each pupil, also as exported by Moodle or Canvas.
@@ -83,6 +86,7 @@ class _Execution:
         """Graded submissions by position from 1."""
         self._printed = 0
         self._not_graded = 0
+        self._written_s = time.monotonic()
 
     def run(self) -> int:
         """Grade what has not been graded before; return the exit code."""
@@ -100,6 +104,7 @@ class _Execution:
         if stop.number is not None and len(self._class) < len(self._found):
             print("thymio-sim: stopped; the same command continues the grading", file=sys.stderr)
             exit_by_signal(stop.number)
+        remove_former(self._output, self._class)
         _print("written: " + ", ".join(str(self._output / name) for name in ("marks.csv", "index.html", "junit.xml")))
         return FAILED if self._not_graded else 0
 
@@ -109,9 +114,13 @@ class _Execution:
         runs = grader.run_submissions(waiting, self._assignment, self._tests, self._level, **cluster)
         with closing(runs) as reports:
             for some in stop.until_signal(reports):
+                if some:
+                    progress.clear()
                 for index, report in some:
                     self._add(missing[index], report)
                 progress.show(len(self._class), self._not_graded)
+                if some and time.monotonic() - self._written_s > WRITE_S:
+                    self._write()
 
     def _add_finished(self) -> list[int]:
         """Add what needs no run; return the positions of the other submissions."""
@@ -139,6 +148,7 @@ class _Execution:
     def _write(self) -> None:
         isolation = f"{self._level} ({LEVELS[self._level]})"
         write_reports(self._output, self._assignment.name, isolation, self._tests, self._class)
+        self._written_s = time.monotonic()
 
 
 def _level(wanted: str) -> str:
@@ -155,7 +165,7 @@ def _level(wanted: str) -> str:
 def _line(graded: Graded) -> str:
     remark = shown_remark(graded)
     points = f"{number(graded.points)}/{number(graded.maximum)}"
-    return f"{points:>8}  {graded.submission.name}" + (f": {remark}" if remark else "")
+    return f"{points:>8}  {shown_name(graded)}" + (f": {remark}" if remark else "")
 
 
 def _print(text: str) -> None:

@@ -10,7 +10,7 @@ import struct
 from collections.abc import Iterator
 
 from aseba_vm import Variable, machine_messages, protocol
-from aseba_vm.protocol import MAX_PAYLOAD, MAX_WORDS, PROTOCOL_VERSION, Message
+from aseba_vm.protocol import MAX_PAYLOAD, MAX_WORDS, PROTOCOL_VERSION, Message, device_name
 from thymio_sim_ros.device.behavior_host import BehaviorHost, is_internal
 from thymio_sim_ros.device.layout import target
 
@@ -34,7 +34,7 @@ PAUSING = (protocol.Pause, protocol.Step, protocol.Reset)
 UUID, NAME, RADIO = 1, 2, 3
 """Kinds of device data."""
 
-MAX_NAME = 55
+MAX_NAME = 54
 """Maximum length of the name in bytes."""
 
 _OLD_VERSION = 4
@@ -139,7 +139,7 @@ class NetworkNode:
                 yield from self._device_info(message.kind)
             case protocol.SetDeviceInfo():
                 if message.kind == NAME:
-                    self.name = message.data[:MAX_NAME].decode(errors="ignore")
+                    self.name = message.data[:MAX_NAME].decode(errors="ignore").rstrip()
             case _:
                 self._run_control(message)
                 if isinstance(message, PAUSING):
@@ -268,7 +268,7 @@ class NetworkNode:
         _, network = self._device.services.network
         data = {
             UUID: self._uuid,
-            NAME: _cut(self.name, MAX_NAME).encode(),
+            NAME: device_name(_cut(self.name, MAX_NAME)),
             RADIO: struct.pack("<HHH", network & 0xFFFF, node, 0xFFFF),
         }
         if kind in data:

@@ -82,7 +82,7 @@ def _load_toml(path: Path) -> Assignment:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise GradingError(f"{path}: {error.strerror}; expected a file that can be read") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise GradingError(f"{path}: {error}; expected TOML in UTF-8") from error
     limits = _limits(path, table.pop("limits", {}))
     for key, value in table.items():
@@ -97,7 +97,7 @@ def _load_toml(path: Path) -> Assignment:
 
 def _is_inside(name: str) -> bool:
     path = PurePosixPath(name)
-    return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and "\\" not in name
+    return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and not {"\\", "\0"} & set(name)
 
 
 def _limits(path: Path, table: object) -> Limits:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+from aseba_vm.cli.output import write_file
 from thymio_sim_ros import __version__
 from thymio_sim_ros.grading.assignment import Assignment
 from thymio_sim_ros.grading.sandbox.job import Report
@@ -29,16 +30,13 @@ class FinishedReports:
         """Return the report of a submission, or None if it has not been graded. Raises OSError."""
         try:
             return Report.from_json(self._path(submission).read_text(encoding="utf-8"))
-        except (FileNotFoundError, ValueError, KeyError, TypeError, AttributeError):
+        except (FileNotFoundError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return None  # missing, or changed by hand
 
     def add(self, submission: Submission, report: Report) -> None:
         """Keep a report. Raises OSError."""
         self._folder.mkdir(parents=True, exist_ok=True)
-        path = self._path(submission)
-        part = path.with_suffix(".part")
-        part.write_text(report.to_json(), encoding="utf-8")
-        part.replace(path)
+        write_file(str(self._path(submission)), report.to_json().encode())
 
     def _path(self, submission: Submission) -> Path:
         return self._folder / f"{_digest(self._assignment.encode(), *_parts(submission.files))}.json"

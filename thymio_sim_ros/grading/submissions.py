@@ -1,26 +1,41 @@
 """Finds the submissions of a class: folders, files and archives, as learning platforms export them.
 
 A folder or zip of the whole class has one entry for each pupil: a folder, a file, or a zip. Names of Moodle
-(`Name_12345_assignsubmission_file_`) and Canvas (`name_123_456_file.ext`) are recognized. A submission is read into
-memory, so that no name in an archive ever becomes a path of this computer.
+(`Name_12345_assignsubmission_file_`), Canvas (`name_123_456_file.ext`) and Gradescope (`submission_123`) are
+recognized. A submission is read into memory, so that no name in an archive ever becomes a path of this computer.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+import unicodedata
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 
-from thymio_sim_ros.grading.archives import Content, RejectedError, read_folder, read_zip, unpack
+from thymio_sim_ros.grading import gradescope
+from thymio_sim_ros.grading.archives import (
+    Content,
+    RejectedError,
+    check_paths,
+    is_clutter,
+    is_zip,
+    read_class_zip,
+    read_folder,
+    unpack,
+)
 from thymio_sim_ros.grading.errors import GradingError
 
 __all__ = ["Submission", "find", "prepared"]
 
 _MOODLE = re.compile(r"(?P<name>.+)_(?P<id>\d+)_assignsubmission_(?:file|onlinetext)_?")
 _CANVAS = re.compile(r"(?P<name>[^_]+)_(?:LATE_)?(?P<id>\d+)_\d+_(?P<file>.+)")
+_GRADESCOPE = re.compile(r"submission_(?P<id>\d+)")
 _RESUBMITTED = re.compile(r"-\d+(?=\.\w+$)")
 """Canvas adds -1, -2, … to the name of a file that is handed in again."""
+
+_Read = bytes | RejectedError | None
+"""A file as it was read: its content, or why it is rejected; None: no file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,81 +77,118 @@ def find(path: Path) -> list[Submission]:
 def prepared(submission: Submission, expected: Iterable[str]) -> Submission:
     """Return the submission with the files that an assignment expects under their names.
 
-    A folder around all files is removed. An expected file that is missing is replaced by the only file with the same
-    suffix, as pupils rename files. Otherwise the submission gets a `problem`.
+    A folder around all files is removed. An expected file that is missing is replaced by the only one with its name in
+    another folder, or the only one with its suffix, as pupils rename files; zips beside other files are opened for it.
+    Otherwise the submission gets a `problem`.
     """
     if submission.problem:
         return submission
-    files, notes = dict(submission.files), list(submission.notes)
-    if not files:
+    if not submission.files:
         return replace(submission, problem="no file was handed in")
     expected = tuple(expected)
+    try:
+        result = _with_expected(submission, submission.files, expected)
+        if result.problem and any(map(is_zip, submission.files)):
+            result = _with_expected(submission, _with_zips_opened(submission.files), expected)
+        check_paths(result.files)
+    except RejectedError as error:
+        return replace(submission, problem=str(error))
+    return result
+
+
+def _with_expected(submission: Submission, files: Content, expected: Collection[str]) -> Submission:
+    files, notes = dict(files), list(submission.notes)
     while not set(expected) & files.keys() and (folder := _common_folder(files)):
         files = {name.removeprefix(folder): content for name, content in files.items()}
     for wanted in expected:
         if wanted in files:
             continue
-        suffix = PurePosixPath(wanted).suffix
-        same = [name for name in files if PurePosixPath(name).suffix == suffix and name not in expected]
-        if len(same) != 1:
+        named = [name for name in files if name.endswith(f"/{wanted}")]
+        same = [name for name in files if _suffix(name) == _suffix(wanted) and name not in expected]
+        if len(named) == 1:  # with what it imports or reads beside it
+            folder = named[0].removesuffix(wanted)
+            beside = {name.removeprefix(folder): data for name, data in files.items() if name.startswith(folder)}
+            files = {**beside, **files}
+        elif len(same) == 1:
+            files[wanted] = files.pop(same[0])
+        else:
             found = ", ".join(sorted(files)[:5])
             return replace(submission, problem=f"no file {wanted}; found {found}")
-        files[wanted] = files.pop(same[0])
-        notes.append(f"{same[0]} was graded as {wanted}")
+        notes.append(f"{(named if len(named) == 1 else same)[0]} was graded as {wanted}")
     return replace(submission, files=files, notes=tuple(notes))
+
+
+def _with_zips_opened(files: Content) -> Content:
+    """The files, and those of the zips among them; a file outside of the zips has priority."""
+    others = {name: data for name, data in files.items() if not is_zip(name)}
+    return unpack({**unpack({name: data for name, data in files.items() if is_zip(name)}), **others})
+
+
+def _suffix(name: str) -> str:
+    return PurePosixPath(name).suffix.lower()
 
 
 def _class_entries(path: Path) -> list[Submission]:
     if path.is_dir():
-        return [_from_path(entry) for entry in sorted(path.iterdir()) if not _is_clutter(entry.name)]
-    tops = _by_top(read_zip(path.read_bytes(), whole_class=True))
+        paths = sorted(entry for entry in path.iterdir() if not is_clutter(entry.name))
+        metadata = path / gradescope.METADATA
+        names = gradescope.names(read_folder(metadata).get(gradescope.METADATA)) if metadata in paths else {}
+        return [_from_path(entry, names) for entry in paths if entry.name != gradescope.METADATA]
+    tops = _by_top(read_class_zip(path.read_bytes()))
     if len(tops) == 1:
         ((top, only),) = tops.items()
         if "" not in only and not _MOODLE.fullmatch(top):  # the folder of the class itself
             tops = _by_top(only)
-    return [_from_files(top, files) for top, files in tops.items()]
+    names = gradescope.names(tops.pop(gradescope.METADATA, {}).get(""))
+    return [_from_files(top, files, names) for top, files in tops.items()]
 
 
-def _by_top(files: Content) -> dict[str, dict[str, bytes]]:
+def _by_top(files: Mapping[str, _Read]) -> dict[str, dict[str, _Read]]:
     """Files by the first part of their path; a file without a folder has the rest ""."""
-    tops: dict[str, dict[str, bytes]] = {}
+    tops: dict[str, dict[str, _Read]] = {}
     for name, data in files.items():
         top, _, rest = name.partition("/")
-        if not _is_clutter(top):
+        if top != "." and not is_clutter(top):
             tops.setdefault(top, {})[rest] = data
     return tops
 
 
-def _from_path(path: Path) -> Submission:
-    name, identifier, _ = _owner(path.name, is_folder=path.is_dir() and not path.is_symlink())
+def _from_path(path: Path, names: Mapping[str, str]) -> Submission:
     try:
         if path.is_symlink():
             raise RejectedError(f"{path.name} is a symbolic link; expected a file or folder")
-        content = read_folder(path) if path.is_dir() else {"": read_folder(path)[path.name]}
-    except RejectedError as error:
-        return Submission(name, identifier, problem=str(error))
-    except OSError as error:
-        return Submission(name, identifier, problem=f"{path.name}: {error.strerror}")
-    return _from_files(path.name, content)
+        content = read_folder(path) if path.is_dir() else {"": next(iter(read_folder(path).values()))}
+    except (RejectedError, OSError) as error:
+        reason = f"{path.name}: {error.strerror}" if isinstance(error, OSError) else str(error)
+        name, identifier, _ = _owner(path.name, names, is_folder=path.is_dir() and not path.is_symlink())
+        return Submission(name, identifier, problem=reason)
+    return _from_files(path.name, content, names)
 
 
-def _from_files(top: str, files: Content) -> Submission:
+def _from_files(top: str, files: Mapping[str, _Read], names: Mapping[str, str]) -> Submission:
     """A submission from an entry of the class: a file has the key "", a folder its relative paths."""
     is_folder = "" not in files
-    name, identifier, file = _owner(top, is_folder=is_folder)
+    name, identifier, file = _owner(top, names, is_folder=is_folder)
+    content: dict[str, bytes] = {}
     try:
-        content = unpack(files if is_folder else {file: files[""]})
+        for path, data in files.items():
+            if isinstance(data, RejectedError):
+                raise data
+            if data is not None:
+                content[path if is_folder else file] = data
+        return Submission(name, identifier, unpack(content))
     except RejectedError as error:
         return Submission(name, identifier, problem=str(error))
-    return Submission(name, identifier, {path: data for path, data in content.items() if not _has_clutter(path)})
 
 
-def _owner(top: str, *, is_folder: bool) -> tuple[str, str, str]:
+def _owner(top: str, names: Mapping[str, str], *, is_folder: bool) -> tuple[str, str, str]:
     """Name and number of the pupil, and the name of the file as it was handed in."""
+    top = unicodedata.normalize("NFC", top)
     if moodle := _MOODLE.fullmatch(top):
         return moodle["name"], moodle["id"], top
     if is_folder:
-        return top, "", top
+        handed_in = _GRADESCOPE.fullmatch(top)
+        return names.get(top, top), handed_in["id"] if handed_in else "", top
     if canvas := _CANVAS.fullmatch(top):
         return canvas["name"], canvas["id"], _RESUBMITTED.sub("", canvas["file"])
     return PurePosixPath(top).stem, "", top
@@ -158,11 +210,3 @@ def _common_folder(files: Mapping[str, bytes]) -> str:
     folders = {name.partition("/")[0] if "/" in name else "" for name in files}
     only = folders.pop() if len(folders) == 1 else ""
     return f"{only}/" if only else ""
-
-
-def _is_clutter(name: str) -> bool:
-    return name.startswith(".") or name in ("__MACOSX", "__pycache__", "desktop.ini", "Thumbs.db")
-
-
-def _has_clutter(path: str) -> bool:
-    return any(_is_clutter(part) for part in path.split("/"))

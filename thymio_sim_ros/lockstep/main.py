@@ -19,7 +19,7 @@ from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any
 
-from thymio_sim_ros.lockstep import clocks, keyboard, threads
+from thymio_sim_ros.lockstep import clocks, keyboard, real_time, threads
 from thymio_sim_ros.lockstep.channel import Channel, ClosedError
 from thymio_sim_ros.lockstep.turns import Turns
 
@@ -30,6 +30,9 @@ STACKS_SIGNAL = signal.SIGXCPU
 """On this signal the process writes the stacks of all threads to a file."""
 
 INTERRUPTED = 130
+
+FORKED_TURN_S = 0.01
+"""Duration of a turn of a process that the program forked, in simulated and real time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +68,8 @@ class Session:
         ros_waits.install(self.turns)
         self._graph: Graph = ros_graph.Graph(options.name, self.settle, self.turns.poll)
         self._graph.install()
+        self._is_forked = False
+        os.register_at_fork(after_in_child=self._leave_test)
 
     def begin(self) -> None:
         """Get the first turn."""
@@ -73,6 +78,10 @@ class Session:
 
     def end_turn(self) -> None:
         """All threads wait: end the turn and wait for the next one."""
+        if self._is_forked:
+            real_time.sleep(FORKED_TURN_S)
+            self.turns.begin(self.turns.until_ns, self.turns.until_ns + round(FORKED_TURN_S * clocks.SECOND_NS))
+            return
         if self._graph.has_new:
             self.settle()
         self._send("done", waits=[thread.waits_for for thread in self.turns.threads], next_ns=self.turns.next_ns)
@@ -80,6 +89,8 @@ class Session:
 
     def settle(self) -> None:
         """Wait in real time until new endpoints are matched."""
+        if self._is_forked:
+            return
         self._send("settle")
         self._graph.match(self._receive()["match"])
 
@@ -87,7 +98,14 @@ class Session:
         """Send what comes before the end of the process."""
         if self._graph.has_new:
             self.settle()
-        self._send("ending")
+        if not self._is_forked:
+            self._send("ending")
+
+    def _leave_test(self) -> None:
+        """In a process that the program forked: real time passes, and the connection is that of the program only."""
+        self._is_forked = True
+        self._channel.close()
+        self.turns.keep_only_running()
 
     def _send(self, event: str, **values: Any) -> None:
         changed = {"endpoints": self._graph.endpoints()} if self._graph.has_changed or event == "settle" else {}
@@ -132,7 +150,14 @@ def main() -> None:
     session.begin()
     random.seed(options.seed)
     code = _run(options)
-    threads.join_all()
+    try:
+        threads.join_all()
+    except KeyboardInterrupt as error:
+        _print(error)
+        session.end()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(INTERRUPTED)  # Python would wait for threads that get no turn
     sys.stdout.flush()
     session.end()
     sys.exit(code)

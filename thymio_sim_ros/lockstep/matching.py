@@ -9,6 +9,8 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
+from thymio_sim_ros.type_names import type_name
+
 __all__ = ["EVERYWHERE", "all_matched", "endpoints", "fit", "is_complete", "is_matched"]
 
 EVERYWHERE = ("/clock", "/parameter_events", "/rosout")
@@ -27,13 +29,16 @@ def all_matched(nodes: Sequence[Node]) -> bool:
 
 
 def endpoints(nodes: Iterable[Node]) -> dict[str, dict[str, int]]:
-    """Numbers of publishers, subscriptions, services and clients by name, for `is_complete` in another process."""
+    """Numbers of publishers, subscriptions, services and clients, for `is_complete` in another process.
+
+    Those of topics are by name, as the graph counts them; those of services by name and type.
+    """
     numbers = {kind: Counter[str]() for kind in ("publishers", "subscriptions", "services", "clients")}
     for node in nodes:
         for kind in ("publishers", "subscriptions"):
             numbers[kind].update(one.topic_name for one in getattr(node, kind))
-        numbers["services"].update(one.service_name for one in node.services)
-        numbers["clients"].update(one.service_name for one in node.clients)
+        for kind in ("services", "clients"):
+            numbers[kind].update(_service(one) for one in getattr(node, kind))
     return {kind: dict(counted) for kind, counted in numbers.items()}
 
 
@@ -58,7 +63,7 @@ def is_complete(nodes: Sequence[Node], expected: Mapping[str, Mapping[str, int]]
             client.service_is_ready()
             for node in nodes
             for client in node.clients
-            if client.service_name in expected["services"]
+            if _service(client) in expected["services"]
         )
     )
 
@@ -69,16 +74,22 @@ def _node_is_matched(node: Node, topics: Set[str]) -> bool:
     )
 
 
+def _service(end: Any) -> str:
+    return f"{end.service_name} {type_name(end.srv_type)}"
+
+
 def _publisher_is_matched(node: Node, publisher: Any) -> bool:
+    own = type_name(publisher.msg_type)
     infos = node.get_subscriptions_info_by_topic(publisher.topic_name)
-    fits = sum(fit(publisher.qos_profile, info.qos_profile) for info in infos)
+    fits = sum(info.topic_type == own and fit(publisher.qos_profile, info.qos_profile) for info in infos)
     return bool(publisher.get_subscription_count() >= fits)
 
 
 def is_matched(node: Node, subscription: Any) -> bool:
     """Whether a subscription is matched with all compatible publishers, including those of other processes."""
+    own = type_name(subscription.msg_type)
     infos = node.get_publishers_info_by_topic(subscription.topic_name)
-    fits = sum(fit(info.qos_profile, subscription.qos_profile) for info in infos)
+    fits = sum(info.topic_type == own and fit(info.qos_profile, subscription.qos_profile) for info in infos)
     return bool(subscription.get_publisher_count() >= fits)
 
 

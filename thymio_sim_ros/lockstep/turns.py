@@ -141,6 +141,11 @@ class Turns:
         self.threads.remove(thread)
         self._run(following)
 
+    def keep_only_running(self) -> None:
+        """Forget the other threads: a forked process has the one that forked only."""
+        self.main = self.running
+        self.threads = [self.running]
+
     def interrupt(self) -> None:
         """Make the main thread raise KeyboardInterrupt, as Ctrl-C does."""
         self.main.is_interrupted = True

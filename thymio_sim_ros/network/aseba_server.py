@@ -167,6 +167,7 @@ class _Port:
             writer.transport.abort()
             with contextlib.suppress(OSError):
                 await writer.wait_closed()  # otherwise asyncio logs the error of a lost connection
+        await client.spent.pause_at_end()
 
 
 class _Client:
@@ -176,11 +177,13 @@ class _Client:
         self._port, self._address, self._transport = port, address, writer.transport
         self._frames = FrameReader(MAX_PAYLOAD)
         self._connections: dict[Network, Connection] = {}
-        self._spent = port.throttle.client()
+        self.spent = port.throttle.client()
+        """Time that was spent on it."""
 
     def join(self, network: Network) -> None:
         """Become a client of a network."""
-        self._connections[network] = network.connect(self._send)
+        with self.spent.measured():
+            self._connections[network] = network.connect(self._send)
 
     def leave(self, network: Network) -> None:
         """Leave a network, and disconnect with the last one."""
@@ -203,12 +206,12 @@ class _Client:
         """Pass messages of the client to the nodes until it disconnects."""
         try:
             while data := await reader.read(_READ_BYTES):
-                with self._spent.measured():
+                with self.spent.measured():
                     self._receive(data)
                 await asyncio.sleep(0)  # more bytes may be there already: the others come first
                 while any(connection.is_full for connection in self._connections.values()):
                     await asyncio.sleep(_RETRY_S)
-                await self._spent.pause_if_busy()
+                await self.spent.pause_if_busy()
         except ProtocolError as error:
             self._warn(f"{error}; disconnected, as this is no Aseba message")
         except OSError:
@@ -225,7 +228,7 @@ class _Client:
             connection.send(*messages)
 
     def _send(self, messages: Sequence[Message]) -> None:
-        with self._spent.measured():
+        with self.spent.measured():
             for message in messages:
                 if self._transport.is_closing():
                     return

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["SerialTarget", "Target", "TargetError", "TcpTarget", "parse_target"]
 
+_HOST = re.compile(r"[^][\s;=/\0-\x1f]+")
+_PORT = re.compile("[0-9]{1,5}")
 ASEBA_PORT = 33333
 """Port of the first robot (docs/spec/aseba-protocol.md section 1.1)."""
 
@@ -70,6 +73,8 @@ def _tcp(text: str, rest: str) -> TcpTarget:
         if not colon or rest.endswith("]"):
             host, port = rest, ""
     host = host.strip().removeprefix("[").removesuffix("]") or "localhost"
-    if port and not (port.isdecimal() and 1 <= int(port) <= 65535):
+    if not _HOST.fullmatch(host):
+        raise TargetError(f"robot '{text}': found host '{host}', expected a name or an address, as in tcp:[::1]:33333")
+    if port and not (_PORT.fullmatch(port) and 1 <= int(port) <= 65535):
         raise TargetError(f"robot '{text}': found port '{port}', expected a number from 1 to 65535")
     return TcpTarget(host, int(port or ASEBA_PORT))

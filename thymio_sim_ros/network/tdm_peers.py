@@ -8,13 +8,14 @@ import logging
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from http import HTTPStatus
 from socket import socket
-from typing import Protocol
+from typing import Protocol, cast
 
 from websockets.asyncio.server import Server, ServerConnection, broadcast, serve
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from thymio_sim_ros.bridge.origin_policy import is_allowed
+from thymio_sim_ros.bridge.transport import ConnectionMaker
 from thymio_sim_ros.network.tdm.protocol.codec import MAX_MESSAGE_BYTES, StreamReader, framed
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
 
@@ -134,9 +135,16 @@ def is_this_computer(address: str) -> bool:
 
 
 async def serve_websocket(
-    listener: socket, handle: Callable[[Peer], Awaitable[None]], allowed_origins: Sequence[str], report: Report
+    listener: socket,
+    handle: Callable[[Peer], Awaitable[None]],
+    allowed_origins: Sequence[str],
+    report: Report,
+    max_connections: int,
 ) -> Server:
-    """Serve clients on a bound socket, except foreign web pages (`bridge.origin_policy`)."""
+    """Serve clients on a bound socket, except foreign web pages (`bridge.origin_policy`).
+
+    Pings and parts of messages of one client delay the others no more than its messages do.
+    """
 
     async def handle_connection(connection: ServerConnection) -> None:
         await handle(WebSocketPeer(connection))
@@ -149,11 +157,16 @@ async def serve_websocket(
         report("tdm origin", f"web page from {origin:.100} rejected: add it to allowed_origins if it is yours")
         return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
 
+    def report_refused() -> None:
+        report("tdm connections", f"{max_connections} connections to port {port}: more are refused")
+
+    port = listener.getsockname()[1]
     log = logging.getLogger(f"{__name__}.websockets")
     log.setLevel(logging.CRITICAL)  # it logs each rejected handshake with a traceback
     return await serve(
         handle_connection,
         sock=listener,
+        create_connection=cast("type[ServerConnection]", ConnectionMaker(max_connections, report_refused)),
         process_request=check_origin,
         compression=None,
         server_header=None,

@@ -180,7 +180,8 @@ class TdmServer:
             self._servers.append(await asyncio.start_server(self._accept_tcp, sock=listener))
         origins = self._settings.allowed_origins
         for listener in websocket:
-            self._servers.append(await serve_websocket(listener, self._serve, origins, self._report))
+            connections = 2 * self._max_clients  # of which half may be in their handshake
+            self._servers.append(await serve_websocket(listener, self._serve, origins, self._report, connections))
 
     async def _advance(self) -> None:
         while True:

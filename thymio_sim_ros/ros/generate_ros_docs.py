@@ -21,7 +21,6 @@ from thymio_sim_ros.ros.interface import driver_topics, qos, sensor_topics
 from thymio_sim_ros.ros.interface.names import SIDES, is_hidden
 from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.rclpy_ext import parameters
-from thymio_sim_ros.ros.rclpy_ext.type_mismatch import type_name
 from thymio_sim_ros.ros.ros_docs_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
 from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_topics
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
@@ -30,6 +29,7 @@ from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 from thymio_sim_ros.suite_config import SuiteConfig
+from thymio_sim_ros.type_names import type_name
 
 __all__ = ["own_sensors", "published", "table", "text", "type_name"]
 

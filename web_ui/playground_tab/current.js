@@ -58,13 +58,14 @@ export function currentPanel(context) {
     icon("blocks"),
     t("new"),
   );
+  const choices = h("div", { class: "row" }, copy, build, file);
   const element = h(
     "section",
     { class: "current browse", "aria-label": t("current") },
     h("p", { class: "cap" }, t("current")),
     h("div", { class: "current-head" }, h("span", { class: "frame" }, icon("playground"), picture), h("div", {}, title, description)),
     remarks,
-    h("div", { class: "row" }, copy, build, file),
+    choices,
     box.element,
   );
   let drawn = "";
@@ -105,9 +106,11 @@ export function currentPanel(context) {
       const reason = disabledReason(state, pageText);
       for (const control of [copy, buttonOf(file)]) lock(control, reason);
       const shipped = playgrounds.find(({ name }) => name === simulator?.playground);
+      const isReal = state.robots[state.selected]?.isReal ?? false;
+      choices.hidden = isReal;
       const titles = shipped === undefined ? null : translated(shipped, language);
       setText(title, titles?.title ?? simulator?.title ?? "");
-      setText(description, titles?.description ?? (simulator === null ? "" : t("current.file")));
+      setText(description, titles?.description ?? (isReal ? t("current.real") : simulator === null ? "" : t("current.file")));
       if ((shipped?.name ?? "") !== drawn) void draw(shipped?.name ?? "");
       const texts = simulator?.notes ?? [];
       const notesJson = JSON.stringify(texts);

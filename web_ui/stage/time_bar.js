@@ -99,7 +99,7 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
     achieved,
     clock,
   ];
-  const real = h("p", { class: "real-robot muted", hidden: true }, t("time.realRobot"));
+  const real = h("p", { class: "real-robot muted", role: "status", hidden: true });
   const element = h("div", { class: "time-parts" }, ...controls, real);
   showLength();
   const fit = fitNames(
@@ -135,10 +135,14 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
   return {
     slot: "time",
     element,
-    render({ connection, readOnly, simulator, timeNs, robots, selected, services }) {
+    render({ connection, readOnly, simulator, timeNs, robots, programs, selected, services }) {
       const reason = disabledReason({ connection, readOnly }, pageText);
       const isReal = robots[selected]?.isReal ?? false;
       if (isReal === real.hidden) for (const part of [...controls, real]) part.hidden = !part.hidden;
+      const program = programs[selected];
+      const isLost = program?.state === "off"; // a real robot is off while there is no connection to it
+      setText(real, t(isLost ? "time.realRobotLost" : "time.realRobot"));
+      setAttribute(real, "title", isLost ? (program.values.fault ?? "") : "");
       const now = simulator?.paused ?? false;
       showPaused(now);
       showAchieved(simulator);

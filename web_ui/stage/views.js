@@ -81,7 +81,8 @@ export function viewsPanel(context) {
   return {
     slot: "views",
     element,
-    render({ connection, readOnly }) {
+    render({ connection, readOnly, robots, selected }) {
+      move.hidden = robots[selected]?.isReal ?? false; // a real robot is moved by hand
       if (isPhone !== (frame.layout === "phone")) {
         isPhone = frame.layout === "phone";
         foldCameras(isPhone);

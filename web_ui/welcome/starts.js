@@ -2,7 +2,7 @@
 
 import { titleOf } from "../examples/index.js";
 import { unfoldTray } from "../stage/tray.js";
-import { h } from "../ui/dom.js";
+import { h, setText } from "../ui/dom.js";
 import { keepFocus } from "../ui/focus.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
@@ -72,6 +72,7 @@ export function startsOver(context, t, slot, close) {
   const ros = h("button", { type: "button", class: "btn line", "data-start": "ros" }, t("ros.do"));
   const sheet = rosSheet(context, t, ros, close);
   const rosText = h("p", { class: "muted" });
+  const driveText = h("p", { class: "muted" });
   const driveButton = h("button", { type: "button", class: "btn you", "data-start": "drive", onclick: drive }, t("drive.do"));
   const watch = h(
     "button",
@@ -85,7 +86,7 @@ export function startsOver(context, t, slot, close) {
     h(
       "ul",
       { class: "welcome-cards" },
-      card("pad", "welcome-you", t("drive"), h("p", { class: "muted" }, t("drive.text")), driveButton),
+      card("pad", "welcome-you", t("drive"), driveText, driveButton),
       card("program", "welcome-act", t("program"), h("p", { class: "muted" }, t("program.text")), examples),
       card("plug", "welcome-sense", t("ros"), rosText, ros),
     ),
@@ -103,7 +104,9 @@ export function startsOver(context, t, slot, close) {
   return {
     /** @param {State} state */
     render(state) {
-      watch.hidden = state.robots[state.selected]?.isReal ?? false; // a real robot has no line to follow here
+      const isReal = state.robots[state.selected]?.isReal ?? false;
+      watch.hidden = isReal; // a real robot has no line to follow here
+      setText(driveText, t(isReal ? "drive.real" : "drive.text"));
       const now = sheet.render(state);
       if (now !== topic) {
         topic = now;

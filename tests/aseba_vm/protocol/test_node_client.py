@@ -263,6 +263,19 @@ def test_a_written_variable_has_its_value_at_once(client: NodeClient) -> None:
         client.write(1, "nothing", [1])
 
 
+def test_an_answer_that_is_older_than_a_write_does_not_undo_it(client: NodeClient) -> None:
+    node = client.nodes[1]
+    client.read(1)
+    client.write(1, "b", [7, 8])
+    client.read(1)
+    client.receive(Variables(1, 0, (1, 2)))
+    client.receive(Variables(1, 2, (3, 4, 5, 6)))
+    assert node.values() == {"a": (1,), "b": (7, 8, 4), "c": (5, 6)}
+    found = client.receive(Variables(1, 0, (1, 9, 9, 4, 5, 6)))
+    assert found == [reports.VariablesRead(1, 0, (1, 9, 9, 4, 5, 6), ("b",))]
+    assert node.value("b") == (9, 9, 4)
+
+
 def test_a_program_is_loaded_and_its_variables_are_known(client: NodeClient) -> None:
     program = compile("var n = 3\nvar m[2]\nonevent tick\nn++", TARGET)
     client.load(1, program)

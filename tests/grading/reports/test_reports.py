@@ -5,11 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from fractions import Fraction
 
 from thymio_sim_ros.grading.reports.csv_table import csv_table
 from thymio_sim_ros.grading.reports.junit import junit_xml
 from thymio_sim_ros.grading.reports.page import index_page, submission_page
+from thymio_sim_ros.grading.reports.texts import shown_name
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 from thymio_sim_ros.grading.submissions import Submission
 
@@ -25,6 +27,12 @@ def test_the_table_has_no_formulas() -> None:
     row = next(iter(csv.DictReader(io.StringIO(csv_table([GRADED], [TEST])))))
     assert row["name"].startswith("'=cmd")
     assert (row["points"], row["maximum"], row["verdict"]) == ("0", "0.33", "failed")
+
+
+def test_a_name_is_one_line_that_runs_forward() -> None:
+    evil = replace(GRADED, submission=Submission("Anna\n9/9 Ben\u202e\x1b[31m\x9b2J\udcff"))
+    assert shown_name(evil) == "Anna\ufffd9/9 Ben\ufffd\ufffd[31m\ufffd2J\ufffd"
+    assert len(csv_table([evil], [TEST]).splitlines()) == 2
 
 
 def test_junit_is_valid_xml_whatever_was_printed() -> None:

@@ -30,9 +30,10 @@ def test_it_reads_files_of_others(): probe("read")()
 def test_it_connects_by_tcp(): probe("connect")()
 def test_it_signals_others(): probe("signal")()
 def test_it_gets_rights(): probe("unshare")()
+def test_its_program_reads_the_tests_in_memory(): probe("read_parent")()
 """
 PROBE = """
-import ctypes, os, socket
+import ctypes, os, socket, subprocess, sys
 def write_here():
     with open("file", "w") as file: file.write("1")
 def read(): open({path!r}).read()
@@ -40,6 +41,8 @@ def connect(): socket.create_connection(("127.0.0.1", {port}), 1)
 def signal(): os.kill({pid}, 0)
 def unshare():
     if ctypes.CDLL(None).unshare(0x10000000): raise OSError("refused")
+def read_parent():
+    subprocess.run([sys.executable, "-c", "import os; open(f'/proc/{{os.getppid()}}/mem', 'rb')"], check=True)
 """
 
 

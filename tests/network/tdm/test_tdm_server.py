@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import random
 import socket
@@ -11,11 +12,12 @@ import time
 from collections.abc import Callable, Iterator
 
 import pytest
+from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from tests.network.tdm.machine_node import MachineNode
-from tests.network.tdm.raw_client import RawClient
+from tests.network.tdm.raw_client import DEADLINE_S, RawClient
 from tests.network.tdm.served import Served, served
 from tests.network.tdm.talk import values
 from thymio_sim_ros.network.hub import Hub
@@ -65,6 +67,34 @@ def test_a_websocket_client_speaks_the_same_without_lengths(one: Served) -> None
             nodes = found
         assert found == m.RequestCompleted(5)
         assert nodes.nodes[0].status == Status.READY
+
+
+def test_many_pings_at_once_are_handled_in_pieces(one: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pings without pause delayed the clients of all other servers by a tenth of a second."""
+    sizes: list[int] = []
+    receive = ServerConnection.data_received
+
+    def observed(connection: ServerConnection, data: bytes) -> None:
+        sizes.append(len(data))
+        receive(connection, data)
+
+    monkeypatch.setattr(ServerConnection, "data_received", observed)
+    with connect(f"ws://127.0.0.1:{one.ws_port}", compression=None) as client:
+        client.socket.sendall(bytes([0x89, 0x80, 0, 0, 0, 0]) * 40_000)
+        client.send(encode(m.ConnectionHandshake()))
+        assert isinstance(decode(client.recv(DEADLINE_S)), m.ConnectionHandshake)
+    assert sum(sizes) > 240_000
+    assert max(sizes) <= 8192
+
+
+def test_connections_without_a_handshake_are_limited() -> None:
+    with served(MachineNode(), max_clients=2) as found:
+        silent = [socket.create_connection(("127.0.0.1", found.ws_port), DEADLINE_S) for _ in range(5)]
+        with contextlib.suppress(ConnectionError):
+            assert silent[-1].recv(1) == b""
+        for one in silent:
+            one.close()
+        assert found.reports[0] == ("tdm connections", f"4 connections to port {found.ws_port}: more are refused")
 
 
 @pytest.mark.parametrize("origin", ["https://example.org", "null", "http://192.168.1.7"])

@@ -143,7 +143,7 @@ class Stranger:
     """A node that records calls of its parameter services."""
 
     def __init__(self, ros, name="stranger"):
-        node = ros.make_node(name)
+        self.node = node = ros.make_node(name)
         self.asked = []
         for kind in (ListParameters, GetParameters, SetParameters, GetParameterTypes, DescribeParameters):
             service = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in kind.__name__)
@@ -156,6 +156,27 @@ class Stranger:
         if isinstance(request, GetParameters.Request):
             response.values = [ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=5)]
         return response
+
+
+def test_no_clients_remain_of_a_node_that_ended_during_a_call(ros, bridge):
+    """A call that ends reads the value back, which must not create a client of the node that ended."""
+    peer = Stranger(ros, "short").node
+    ending = next(service for service in peer.services if service.srv_name.endswith("/set_parameters"))
+    peer.destroy_service(ending)
+    mute = Node("mute", context=ros.context, enable_rosout=False, start_parameter_services=False)  # not spun
+    mute.create_service(SetParameters, "/short/set_parameters", lambda request, response: response)
+    server = bridge()
+    with Studio(server.port, ros.until) as studio:
+        studio.parameter("/short.here")
+        studio.send(ms.SetParameters((ms.Parameter("/short.here", 3),), "late"))
+        ros.until(lambda: server.node.count_clients("/short/set_parameters"), what="the call is open")
+        for service in list(peer.services):
+            peer.destroy_service(service)
+        assert studio.next(ms.Status).message == "/short.here: service /short/set_parameters no longer exists"
+        studio.next(ms.ParameterValues, lambda values: values.id == "late")
+        names = [f"/short/{kind}_parameters" for kind in ("list", "get", "set")]
+        ros.until(lambda: not any(map(server.node.count_clients, names)), what="no client remains")
+    mute.destroy_node()
 
 
 def test_nodes_get_no_requests_before_a_client_requests_parameters(ros, bridge, peer):

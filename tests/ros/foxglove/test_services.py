@@ -74,6 +74,17 @@ def test_a_service_that_does_not_answer_fails_in_the_end(ros, bridge, monkeypatc
     assert failure.call_id == 1
 
 
+def test_a_service_is_withdrawn_when_its_server_ends_even_if_clients_remain(ros, studio):
+    """The middleware's list of services includes those that only have clients, such as the bridge's own."""
+    server = ros.node.create_service(SetBool, "/flip", flip)
+    service = studio.service("/flip")
+    studio.send(ms.ServiceRequest(service.id, 1, JSON, b'{"data": true}'))
+    studio.next(ms.ServiceResponse)
+    ros.node.destroy_service(server)
+    ros.until(lambda: "/flip" not in studio.read().services, what="the bridge withdraws the service")
+    ros.until(lambda: not ros.node.count_clients("/flip"), what="the bridge destroys its client")
+
+
 def test_unlisted_and_hidden_services_are_not_offered(ros, bridge):
     for name in ("/arm/flip", "/arm/_hidden", "/leg/flip"):
         ros.node.create_service(SetBool, name, flip)

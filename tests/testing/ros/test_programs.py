@@ -20,6 +20,33 @@ from thymio_sim_ros.testing.ros.student import StudentError
 pytestmark = pytest.mark.process
 
 SCRIPTS = {
+    "forks": """
+        import multiprocessing, os, time
+        import rclpy
+        from geometry_msgs.msg import Twist
+
+        def work(queue):
+            time.sleep(0.02)
+            queue.put(sum(range(10)))
+
+        program = os.getpid()
+        if os.fork() == 0:
+            while os.getppid() == program:
+                time.sleep(0.001)
+            os._exit(0)
+        context = multiprocessing.get_context("fork")
+        queue = context.Queue()
+        worker = context.Process(target=work, args=(queue,))
+        start = time.time()
+        worker.start()
+        rclpy.init()
+        node = rclpy.create_node("forks")
+        for number in range(10):
+            node.create_publisher(Twist, f"wheels_{number}", 10)
+            time.sleep(0.1)
+        print("sum", queue.get(), "after", round(time.time() - start, 2), "s")
+        worker.join()
+    """,
     "dance": """
         import sys, time
         import rclpy
@@ -68,6 +95,21 @@ SCRIPTS = {
             wheels.publish(command)
             print("now", node.get_clock().now().nanoseconds)
             rate.sleep()
+    """,
+    "wrong_types": """
+        import rclpy
+        from geometry_msgs.msg import TwistStamped
+        from std_srvs.srv import Empty, Trigger
+
+        rclpy.init()
+        node = rclpy.create_node("wrong_types")
+        node.create_publisher(TwistStamped, "cmd_vel", 10).publish(TwistStamped())
+        for kind in (Empty, Trigger):
+            client = node.create_client(kind, "simulator/pause" if kind is Empty else "simulator/reset")
+            print(kind.__name__, client.wait_for_service(timeout_sec=1.0))
+        answer = client.call_async(Trigger.Request())
+        rclpy.spin_until_future_complete(node, answer, timeout_sec=5.0)
+        print("reset", answer.result().success)
     """,
     "many": """
         import queue, threading, time
@@ -129,6 +171,11 @@ SCRIPTS = {
         while time.time() < end:
             rclpy.spin_once(node, timeout_sec=0)
         print("done at", round(node.get_clock().now().nanoseconds * 1e-9, 2))
+    """,
+    "stays": """
+        import threading, time
+
+        threading.Thread(target=time.sleep, args=(1e6,)).start()
     """,
     "busy": """
         import time
@@ -207,6 +254,12 @@ def test_waiting_for_the_first_message_and_polling_the_clock_both_end(sim: Simul
     assert done == pytest.approx(first + 0.5, abs=0.02)
 
 
+def test_a_wrong_type_is_no_connection_and_stops_nothing(sim: Simulation) -> None:
+    program = sim.ros.run("wrong_types.py")
+    assert program.wait(5) == 0
+    assert program.output.splitlines() == ["Empty False", "Trigger True", "reset True"]
+
+
 def test_two_programs_with_threads_run_the_same_twice(folder: Path) -> None:
     assert outcome(folder) == outcome(folder)
 
@@ -224,6 +277,20 @@ def outcome(folder: Path) -> tuple[object, ...]:
             return rated.output, many.output, sim.thymio.path
         finally:
             sim.ros.close()
+
+
+def test_forked_processes_run_in_real_time_and_disturb_nothing(sim: Simulation) -> None:
+    program = sim.ros.run("forks.py")
+    assert program.wait(seconds=5) == 0
+    assert program.output == "sum 45 after 1.0 s\n"
+
+
+def test_a_program_whose_thread_sleeps_for_ever_ends_when_it_is_interrupted(sim: Simulation) -> None:
+    program = sim.ros.run("stays.py")
+    sim.step(0.1)
+    assert program.exit_code is None
+    sim.ros.programs.stop(program, sim.world.now_ns)
+    assert program.exit_code == 130
 
 
 def test_a_busy_loop_and_an_exception_are_named_and_do_not_harm_each_other(sim: Simulation) -> None:

@@ -44,8 +44,8 @@ LED_NATIVES = {
 _TICKS_PER_S = 60
 """Unit of the duration of `sound.freq` (docs/spec/thymio-robot.md section 6.3)."""
 _NEWER = 2
-"""Consecutive readings with other targets that show that the program has set new ones: the first may be older than the
-command."""
+"""Consecutive readings with other targets that show that the program has set new ones: one may be the answer to an
+earlier request of another client."""
 
 
 @dataclass(slots=True)
@@ -105,10 +105,13 @@ class RemoteCommands:
             self._override = None
             self._drive(override.before)
 
-    def on_read(self) -> None:
-        """Compare the targets that were read: those of the program end a velocity at once."""
-        override, targets = self._override, self._targets
-        if override is None or targets is None:
+    def on_read(self, start: int, count: int) -> None:
+        """Compare the targets if these words include them: those of the program end a velocity at once."""
+        override, targets, node = self._override, self._targets, self._session.node
+        if override is None or targets is None or node is None:
+            return
+        address, _ = node.addresses[MOTORS[0]]
+        if not start <= address < start + count:
             return
         override.others = 0 if targets == override.targets else override.others + 1
         if override.others >= _NEWER:

@@ -9,9 +9,12 @@ teacher/001-Anna.txt messages and output of all tests, hidden ones included
 
 from __future__ import annotations
 
+import re
+import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from aseba_vm.cli.output import write_file
 from thymio_sim_ros.grading.reports.csv_table import csv_table
 from thymio_sim_ros.grading.reports.gradescope import gradescope_json
 from thymio_sim_ros.grading.reports.junit import junit_xml
@@ -19,7 +22,9 @@ from thymio_sim_ros.grading.reports.page import index_page, submission_page
 from thymio_sim_ros.grading.reports.texts import file_name
 from thymio_sim_ros.grading.results import Graded, GradedTest
 
-__all__ = ["write_reports", "write_submission"]
+__all__ = ["remove_former", "write_reports", "write_submission"]
+
+_NUMBERED = re.compile(r"\d{3,}-")
 
 
 def write_reports(
@@ -43,11 +48,25 @@ def write_submission(folder: Path, graded: Graded, position: int) -> None:
     for number, verdict in enumerate(graded.verdicts, start=1):
         if "run.jsonl" in verdict.files and not verdict.test.is_hidden:
             logs[verdict.test.name] = f"test-{number}.jsonl"
-            (own / f"test-{number}.jsonl").write_bytes(verdict.files["run.jsonl"])
+            write_file(str(own / f"test-{number}.jsonl"), verdict.files["run.jsonl"])
     _write(own / "index.html", submission_page(graded, logs))
     _write(own / "results.json", gradescope_json(graded))
     (folder / "teacher").mkdir(exist_ok=True)
     _write(folder / "teacher" / f"{name}.txt", _everything(graded))
+    for log in own.glob("test-*.jsonl"):
+        if log.name not in logs.values():  # of a submission that was replaced
+            log.unlink()
+
+
+def remove_former(folder: Path, class_: Mapping[int, Graded]) -> None:
+    """Remove reports of submissions that an earlier grading counted differently. Raises OSError."""
+    names = {file_name(graded, position) for position, graded in class_.items()}
+    for path in (*(folder / "pupils").glob("*"), *(folder / "teacher").glob("*.txt")):
+        if _NUMBERED.match(path.name) and path.name.removesuffix(".txt") not in names:
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path)
+            else:
+                path.unlink()
 
 
 def _everything(graded: Graded) -> str:
@@ -59,4 +78,4 @@ def _everything(graded: Graded) -> str:
 
 
 def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8", errors="replace", newline="\n")
+    write_file(str(path), text.encode("utf-8", "replace"))

@@ -10,6 +10,8 @@ from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 __all__ = ["file_name", "number", "short_names", "shown_message", "shown_name", "shown_remark"]
 
 _CONTROLS = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NOT_ON_A_LINE = re.compile(r"[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+"""Controls, line breaks, and characters that make following text run backward."""
 _HIDDEN = "a hidden test"
 
 
@@ -38,11 +40,10 @@ def shown_message(verdict: Verdict) -> str:
 
 
 def shown_name(graded: Graded) -> str:
-    """Name of a submission, without characters that XML refuses: it may come from a file name."""
-    return _CONTROLS.sub("\ufffd", graded.submission.name)
+    """Name of a submission on one line: it may come from a file name, and goes to a terminal, a table and XML."""
+    return _NOT_ON_A_LINE.sub("\ufffd", graded.submission.name)
 
 
 def shown_remark(graded: Graded) -> str:
     """Remark and notes of a submission as one line."""
-    parts = [graded.remark, *graded.submission.notes]
-    return _CONTROLS.sub(" ", "; ".join(filter(None, parts))).replace("\n", " ")
+    return _NOT_ON_A_LINE.sub(" ", "; ".join(filter(None, [graded.remark, *graded.submission.notes])))

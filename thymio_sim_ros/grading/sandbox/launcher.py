@@ -63,7 +63,7 @@ def _unprivileged_user() -> int | None:
     if os.geteuid() != 0:
         return None
     wanted = _FIRST_USER + os.getpid()
-    ranges = [tuple(map(int, line.split())) for line in Path("/proc/self/uid_map").read_text().splitlines()]
+    ranges = [tuple(map(int, line.split())) for line in Path("/proc/self/uid_map").read_text("ascii").splitlines()]
     return wanted if any(first <= wanted < first + count for first, _, count in ranges) else _NOBODY
 
 

@@ -22,6 +22,7 @@ from thymio_sim_ros.errors import ThymioSimError
 __all__ = ["ForgedError", "ReportProtocol"]
 
 _OUTCOMES = ("passed", "failed", "skipped")
+_KINDS = ("collected", "broken", "begin", "result", "end")
 
 
 class ForgedError(ThymioSimError):
@@ -48,7 +49,9 @@ class ReportProtocol:
             data = json.loads(line)
             if data["secret"] != self._secret or self.is_complete:
                 raise ForgedError("a line that the tests did not write")
-            kind = str(data["do"])
+            kind = data["do"]
+            if kind not in _KINDS:
+                raise ForgedError("a line of an unknown kind")
             getattr(self, f"_{kind}")(data)
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise ForgedError("a line that is no report") from error

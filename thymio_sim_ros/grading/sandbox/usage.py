@@ -6,20 +6,22 @@ import os
 import resource
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
-__all__ = ["Usage", "descendants", "memory_used", "used"]
+__all__ = ["Usage", "descendants", "is_working", "memory_used", "used"]
 
 _TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 _WORKING = "RD"
 """States of threads that compute, or wait for a processor or a disk."""
+_OF_DDS = b"dds."
+"""Begin of the names of threads of Fast DDS, which also run now and then in a program that waits."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Process:
     pid: int
     parent: int
-    state: str
     cpu_s: float
     rss: int
 
@@ -37,7 +39,20 @@ def used() -> Usage:
     found = descendants()
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu_s = ended.ru_utime + ended.ru_stime + sum(process.cpu_s for process in found)
-    return Usage(cpu_s, any(state in _WORKING for process in found for state in _states(process)))
+    return Usage(cpu_s, any(is_working(process.pid) for process in found))
+
+
+def is_working(pid: int) -> bool:
+    """Whether a thread of a process, apart from those of DDS, computes, or waits for a processor or a disk."""
+    try:
+        threads = [(task / "stat").read_bytes() for task in Path(f"/proc/{pid}/task").iterdir()]
+    except OSError:  # one has just ended
+        return True
+    return any(
+        after.split()[0].decode() in _WORKING
+        for name, _, after in (thread.rpartition(b")") for thread in threads)
+        if not name.partition(b"(")[2].startswith(_OF_DDS)
+    )
 
 
 def memory_used(limit: int) -> int:
@@ -73,18 +88,7 @@ def _processes() -> Iterator[_Process]:
         except OSError:
             continue  # ended meanwhile
         ticks = sum(map(int, fields[11:15]))  # its own time, and that of its children that it waited for
-        yield _Process(int(name), int(fields[1]), fields[0].decode(), ticks * _TICK_S, int(fields[21]) * _PAGE)
-
-
-def _states(process: _Process) -> Iterator[str]:
-    """States of its threads."""
-    yield process.state
-    try:
-        for thread in os.listdir(f"/proc/{process.pid}/task"):
-            with open(f"/proc/{process.pid}/task/{thread}/stat", "rb") as file:
-                yield file.read().rpartition(b")")[2].split()[0].decode()
-    except OSError:
-        return
+        yield _Process(int(name), int(fields[1]), ticks * _TICK_S, int(fields[21]) * _PAGE)
 
 
 def _own_share(process: _Process) -> int:

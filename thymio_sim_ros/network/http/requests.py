@@ -33,6 +33,8 @@ METHODS = ("GET", "POST", "PUT")
 MAX_WORDS = 258
 """Words of an event or a variable in one request."""
 _MAX_PATH = 4096
+_MAX_VALUES = 40_000
+"""Bytes of a body with values; the reference cuts bodies there. A megabyte of JSON takes a third of a second."""
 _RESETS = ("reset", "reset_all")
 _NUMBER = re.compile(r"[+-]?[0-9]{1,9}(?:\.[0-9]*)?")
 _XML_FORM = b"file="
@@ -166,6 +168,8 @@ def _values(body: bytes) -> tuple[int, ...]:
     """The values of a body: a JSON array of numbers, or nothing."""
     if not body.strip():
         return ()
+    if len(body) > _MAX_VALUES:
+        raise RequestError(413, f"found {len(body)} bytes of values, expected at most {_MAX_VALUES}")
     try:
         found = json.loads(body)
     except (ValueError, RecursionError) as error:

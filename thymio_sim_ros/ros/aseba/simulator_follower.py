@@ -68,7 +68,7 @@ class SimulatorFollower:
         try:
             state = json.loads(message.data)
             names, raw = [str(robot["name"]) for robot in state["robots"]], str(state.get("raw", ""))
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             self._warn(full_name(self._node, SIMULATOR_STATE), f"rejected: {error!r}")
             return
         self._subscribe_raw("" if self._has_driver else raw)

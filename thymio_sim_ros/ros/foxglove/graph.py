@@ -10,7 +10,14 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph
 
-__all__ = ["allow_list", "connection_graph", "is_parameter_service", "visible", "visible_topics"]
+__all__ = [
+    "allow_list",
+    "connection_graph",
+    "is_parameter_service",
+    "services_with_servers",
+    "visible",
+    "visible_topics",
+]
 
 _PARAMETER_SERVICE = re.compile(
     r"/(describe_parameters|get_parameter_types|get_parameters|list_parameters|set_parameters|"
@@ -28,6 +35,14 @@ def allow_list(patterns: Iterable[str]) -> Callable[[str], bool]:
 def is_parameter_service(name: str) -> bool:
     """Whether a service is one that every node has, for parameters, types and log levels."""
     return _PARAMETER_SERVICE.search(name) is not None
+
+
+def services_with_servers(node: Node) -> dict[str, Sequence[str]]:
+    """The services of the graph that have a server.
+
+    The middleware's list also has services with clients only; the bridge's own clients would keep them there for ever.
+    """
+    return {name: types for name, types in node.get_service_names_and_types() if node.count_services(name)}
 
 
 def visible(

@@ -36,6 +36,7 @@ from thymio_sim_ros.ros.foxglove.graph import (
     allow_list,
     connection_graph,
     is_parameter_service,
+    services_with_servers,
     visible,
     visible_topics,
 )
@@ -275,7 +276,7 @@ class FoxgloveBridge:
             return
         with self._discovery.work():
             topics = dict(self.node.get_topic_names_and_types())
-            services = dict(self.node.get_service_names_and_types())
+            services = services_with_servers(self.node)
         if (topics, services) == self._seen:
             return
         self._seen = (topics, services)

@@ -267,6 +267,10 @@ class Parameters:
     def _read(
         self, node: str, names: Sequence[str], then: Callable[[], None] = lambda: None, *, sender: int = 0
     ) -> None:
+        if node not in self._types:  # ended meanwhile: a call would create its client again
+            then()
+            return
+
         def got(response: Any, reason: str) -> None:
             if response is not None and len(response.values) == len(names):
                 self._update_cache(node, zip(names, response.values, strict=True))

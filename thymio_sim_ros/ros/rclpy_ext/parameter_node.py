@@ -19,6 +19,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter, get_parameter_value
 
 from thymio_sim_ros.ros.rclpy_ext import parameters
+from thymio_sim_ros.ros.rclpy_ext.callback_groups import forget_destroyed
 
 __all__ = ["ParameterNode", "parameter_node"]
 
@@ -45,6 +46,7 @@ class ParameterNode(Node):
         """`is_set_again`: whether a parameter is set even if unchanged, such as a file that may differ."""
         self._is_set_again = is_set_again
         super().__init__(name, context=context, **options)
+        forget_destroyed(self)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set the values that differ, all or none; called by rclpy's parameter services."""
@@ -114,11 +116,11 @@ def _numbers(found: str | Sequence[str]) -> list[float] | None:
     if isinstance(found, str):
         try:
             found = json.loads(found)
-        except ValueError:
+        except (ValueError, RecursionError):
             return None
         if not isinstance(found, list):
             return None
     try:
         return [float(one) for one in found]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return None

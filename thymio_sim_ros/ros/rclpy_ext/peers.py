@@ -20,6 +20,8 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
+from thymio_sim_ros.ros.rclpy_ext.callback_groups import forget_destroyed
+
 __all__ = ["HasPeers", "PeerContext", "follow_clock"]
 
 _CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -55,6 +57,7 @@ class PeerContext:
             start_parameter_services=False,
             parameter_overrides=[Parameter("start_type_description_service", value=False)],
         )
+        forget_destroyed(created)
         self._nodes.append(created)
         return created
 

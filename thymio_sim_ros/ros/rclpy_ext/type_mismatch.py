@@ -14,7 +14,9 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node, NodeNameNonExistentError
 
-__all__ = ["Mismatch", "TypeMismatches", "type_name"]
+from thymio_sim_ros.type_names import type_name
+
+__all__ = ["Mismatch", "TypeMismatches"]
 
 SHARE = 0.002
 """Largest share of one core that polling may use."""
@@ -113,9 +115,3 @@ def cure(topic: str, found: str, wanted: str, inputs: Mapping[str, str]) -> str:
         return f"Publish {wanted} there"
     option = f", or start the simulator with {STAMPED_PARAMETER}:=true" if found.endswith("TwistStamped") else ""
     return f"Publish it on {others[0]}{option if word == VELOCITY else ''}"
-
-
-def type_name(kind: Any) -> str:
-    """Return the type name of a message class, such as `std_msgs/msg/Bool`."""
-    package, form, *_ = kind.__module__.split(".")
-    return f"{package}/{form}/{kind.__name__}"

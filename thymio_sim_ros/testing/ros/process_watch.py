@@ -8,9 +8,9 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import BinaryIO
 
+from thymio_sim_ros.grading.sandbox.usage import is_working
 from thymio_sim_ros.lockstep.main import STACKS_SIGNAL
 
 __all__ = ["BLOCKED_S", "ProcessWatch"]
@@ -51,7 +51,7 @@ class ProcessWatch:
     def is_blocked(self) -> bool:
         """Whether no thread has wanted the processor for `BLOCKED_S` of real time."""
         idle_s = time.monotonic() - self._idle_since
-        if self._is_runnable() or self._total_s() - self._idle_begin_s > _IDLE_SHARE * max(idle_s, 1.0):
+        if is_working(self._process.pid) or self._total_s() - self._idle_begin_s > _IDLE_SHARE * max(idle_s, 1.0):
             self._idle_since, self._idle_begin_s = time.monotonic(), self._total_s()
             return False
         return idle_s > BLOCKED_S
@@ -71,17 +71,6 @@ class ProcessWatch:
             return time.clock_gettime(self._clock)
         except OSError:  # it has ended
             return 0.0
-
-    def _is_runnable(self) -> bool:
-        """Whether a thread runs, waits for a processor or for a disk."""
-        try:
-            states = [
-                (task / "stat").read_text().rpartition(")")[2].split()[0]
-                for task in Path(f"/proc/{self._process.pid}/task").iterdir()
-            ]
-        except OSError:  # one has just ended
-            return True
-        return any(state in "RD" for state in states)
 
     def _wait_for(self, condition: Callable[[], bool]) -> None:
         deadline = time.monotonic() + _STACKS_S

@@ -41,7 +41,7 @@ def handle(directory: Directory, node: ManagedNode, report: reports.Report) -> N
             record_breakpoint(directory, node, pc, is_set=is_set)
         case reports.DeviceInfoReceived(kind=kind, data=data):
             if kind == _DEVICE_NAME and data:
-                node.name = data.decode(errors="replace")
+                node.name = data.decode(errors="replace").rstrip()
                 directory.announce(node)
         case reports.RequestTimedOut(request=request):
             if isinstance(request, SetBytecode):

@@ -11,7 +11,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from aseba_vm.protocol.messages import SetDeviceInfo, UserMessage
+from aseba_vm.protocol.messages import SetDeviceInfo, UserMessage, device_name
 from thymio_sim_ros.network.tdm.conversation import program_requests
 from thymio_sim_ros.network.tdm.conversation.breakpoints import clear_breakpoints
 from thymio_sim_ros.network.tdm.conversation.clients import Client
@@ -29,7 +29,7 @@ __all__ = ["HANDLERS", "Handler", "release"]
 Handler = Callable[[Directory, Client, Any], Compilation | None]
 """Answers a request; a compilation is to be executed, and its result to be passed to `finish_compilation`."""
 
-MAX_NAME_BYTES = 55
+MAX_NAME_BYTES = 54
 """Longest name of a device on the network."""
 _DEVICE_NAME = 2
 """Kind of the device's information."""
@@ -99,7 +99,7 @@ def _rename(directory: Directory, client: Client, message: m.RenameNode) -> None
         directory.clients.fail(client.number, message.request_id, ErrorCode.UNKNOWN_NODE)
         return
     node.name = message.new_name
-    node.link.send(SetDeviceInfo(node.link.source, node.number, _DEVICE_NAME, name))
+    node.link.send(SetDeviceInfo(node.link.source, node.number, _DEVICE_NAME, device_name(message.new_name)))
     directory.announce(node)
     directory.clients.complete(client.number, message.request_id)
 

@@ -1,0 +1,94 @@
+"""What a suite publishes about its world as JSON, checked. Pure.
+
+Any node of a pupil can publish on these topics too, and what one pupil sends must not break the page of the teacher.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from thymio_sim_ros.errors import ThymioSimError
+
+__all__ = ["Overview", "SuiteState", "SuiteStateError", "read_overview", "read_state"]
+
+Overview = Mapping[str, Mapping[str, list[float] | None]]
+"""`robots` and `objects` by name: [x, y, yaw, red, green, blue] and [x, y, yaw], None for one that has fallen."""
+_LENGTHS = {"robots": 6, "objects": 3}
+
+
+class SuiteStateError(ThymioSimError, ValueError):
+    """A text that no suite publishes."""
+
+
+@dataclass(frozen=True, slots=True)
+class SuiteState:
+    """The part of `/simulator/_state` that the class needs; `achieved` is the real-time factor."""
+
+    paused: bool
+    achieved: float
+    fallen: tuple[str, ...]
+    """Names of the robots that fell off an edge."""
+
+
+def read_state(text: str) -> SuiteState:
+    """Return the state in a message of `/simulator/_state`. Raises SuiteStateError."""
+    match _object(text):
+        case {"paused": bool(paused), "achieved": int() | float() as achieved, "robots": list(robots)}:
+            return SuiteState(paused, _finite(achieved), tuple(name for one in robots for name in _fallen(one)))
+    raise SuiteStateError("expected the fields paused, achieved and robots")
+
+
+def read_overview(text: str) -> Overview:
+    """Return the poses in a message of `/simulator/_overview`. Raises SuiteStateError."""
+    found = _object(text)
+    overview: dict[str, dict[str, list[float] | None]] = {}
+    for kind, length in _LENGTHS.items():
+        items = found.get(kind)
+        if not isinstance(items, dict):
+            raise SuiteStateError(f"{kind}: expected an object")
+        overview[kind] = {name: _pose(values, length) for name, values in items.items()}
+    return overview
+
+
+def _object(text: str) -> dict[str, Any]:
+    try:
+        found = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError) as error:
+        raise SuiteStateError(f"not JSON: {error}") from error
+    if not isinstance(found, dict):
+        raise SuiteStateError("expected an object")
+    return found
+
+
+def _refuse(word: str) -> NoReturn:
+    raise SuiteStateError(f"found {word}, expected a number")
+
+
+def _fallen(robot: object) -> tuple[str, ...]:
+    match robot:
+        case {"robot": str(name), "fallen": True}:
+            return (name,)
+        case {"robot": str(), "fallen": False}:
+            return ()
+    raise SuiteStateError("robots: expected objects with the fields robot and fallen")
+
+
+def _pose(values: object, length: int) -> list[float] | None:
+    if values is None:
+        return None
+    if not isinstance(values, list) or len(values) != length:
+        raise SuiteStateError(f"expected {length} numbers or null")
+    return [_finite(value) for value in values]
+
+
+def _finite(value: object) -> float:
+    try:
+        if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+            return value
+    except OverflowError:  # an integer above all floats
+        pass
+    raise SuiteStateError("expected a finite number")
