@@ -119,6 +119,41 @@ def test_a_velocity_ends_whatever_was_requested_before_it(pair: Pair) -> None:
     assert [pair.value(name) for name in TARGETS] == [(70,), (0,)]
 
 
+def test_the_targets_that_hold_again_are_those_of_a_program_that_has_just_started(pair: Pair) -> None:
+    """They were not read since: the start of a program stops the wheels, and then the program sets its targets."""
+    pair.load("motor.left.target = 70\nmotor.right.target = 60")
+    pair.robot.execute(BodyTwist(0.083, 0.0, SECOND_NS // 2), pair.now_ns)
+    pair.exchange()
+    assert [pair.value(name) for name in TARGETS] == [(250,), (250,)]
+    pair.tick(11)
+    assert [pair.value(name) for name in TARGETS] == [(70,), (60,)]
+
+
+def test_a_velocity_ends_when_a_program_starts(pair: Pair) -> None:
+    pair.load("motor.left.target = 70")
+    pair.robot.execute(BodyTwist(0.083, 0.0, SECOND_NS // 2), pair.now_ns)
+    pair.exchange()
+    pair.now_ns += SECOND_NS
+    pair.load("motor.left.target = 40")
+    pair.tick(11)
+    assert [pair.value(name) for name in TARGETS] == [(40,), (0,)]
+
+
+def test_a_velocity_that_is_repeated_is_sent_once_and_again_when_the_program_has_set_others(pair: Pair) -> None:
+    """A node may publish velocities faster than a network or a radio carries them."""
+    pair.load("onevent go\nmotor.left.target = 40", ("go", 0))
+    pair.tick()
+    pair.robot.execute(BodyTwist(0.083, 0.0, SECOND_NS), pair.now_ns)
+    pair.exchange()
+    pair.robot.execute(BodyTwist(0.083, 0.0, SECOND_NS), pair.now_ns)
+    assert pair.robot.pop_messages() == []
+    pair.remote.receive_event("go", [])
+    for _ in range(5):
+        pair.robot.execute(BodyTwist(0.083, 0.0, SECOND_NS), pair.now_ns)
+        pair.tick()
+    assert [pair.value(name) for name in TARGETS] == [(250,), (250,)]
+
+
 def test_a_velocity_without_time_out_holds(pair: Pair) -> None:
     pair.robot.execute(BodyTwist(0.083, 0.0), pair.now_ns)
     pair.tick(100)

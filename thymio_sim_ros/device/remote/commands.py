@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from thymio_sim_ros.device.remote.ros_handlers import RemoteProgram
 from thymio_sim_ros.device.remote.session import Session
 from thymio_sim_ros.sim.actuators.motors import wheel_speeds
 from thymio_sim_ros.sim.commands import (
@@ -50,8 +51,9 @@ earlier request of another client."""
 
 @dataclass(slots=True)
 class _Override:
-    """Wheel targets that ROS has set for a time: what they were before, what they are, when they end."""
+    """Wheel targets that ROS has set for a time beside a program: what they were before, what they are, when they end."""
 
+    program: RemoteProgram
     before: tuple[int, int]
     targets: tuple[int, int]
     ends_ns: int | None
@@ -100,26 +102,35 @@ class RemoteCommands:
 
     def advance(self, now_ns: int) -> None:
         """End a velocity whose time is over."""
-        override = self._override
+        override = self._running_override
         if override is not None and override.ends_ns is not None and now_ns >= override.ends_ns:
             self._override = None
             self._drive(override.before)
 
-    def on_read(self, start: int, count: int) -> None:
+    def on_read(self, start: int, values: Sequence[int]) -> None:
         """Compare the targets if these words include them: those of the program end a velocity at once."""
-        override, targets, node = self._override, self._targets, self._session.node
+        override, targets, node = self._running_override, self._targets, self._session.node
         if override is None or targets is None or node is None:
             return
         address, _ = node.addresses[MOTORS[0]]
-        if not start <= address < start + count:
+        if start == address and len(values) == len(MOTORS):  # requested by `_drive_for` just before it set others
+            override.before = (values[0], values[1])
+        if not start <= address < start + len(values):
             return
         override.others = 0 if targets == override.targets else override.others + 1
         if override.others >= _NEWER:
             self._override = None
 
     def forget(self) -> None:
-        """Forget a velocity, because a program starts or the robot is gone."""
+        """Forget a velocity, because the robot is gone."""
         self._override = None
+
+    @property
+    def _running_override(self) -> _Override | None:
+        """The velocity that drives the wheels; the start of a program ends it."""
+        if self._override is not None and self._override.program is not self._session.program:
+            self._override = None
+        return self._override
 
     @property
     def _targets(self) -> tuple[int, int] | None:
@@ -128,9 +139,15 @@ class RemoteCommands:
 
     def _drive_for(self, command: BodyTwist | WheelVelocities, now_ns: int) -> None:
         left, right = (round(speed / units.units_to_speed(1)) for speed in wheel_speeds(command))
-        before = self._override.before if self._override is not None else self._targets or (0, 0)
         ends_ns = now_ns + command.timeout_ns if command.timeout_ns else None
-        self._override = _Override(before, (left, right), ends_ns)
+        override, node = self._running_override, self._session.node
+        if override is not None and override.targets == (left, right):
+            override.ends_ns = ends_ns  # velocities may come faster than a robot can take them
+            return
+        if override is None and node is not None and set(MOTORS) <= node.addresses.keys():
+            self._session.client.read(node.number, MOTORS)  # the last reading may be older than the program's targets
+        before = override.before if override is not None else self._targets or (0, 0)
+        self._override = _Override(self._session.program, before, (left, right), ends_ns)
         self._drive((left, right))
 
     def _drive(self, targets: tuple[int, int]) -> None:

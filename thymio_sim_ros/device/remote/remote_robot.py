@@ -122,7 +122,7 @@ class RemoteRobot:
                 self._session.node, self._session.problem = None, reason
                 self._commands.forget()
             case reports.VariablesRead(node=node, start=start, values=values) if node == own:
-                self._commands.on_read(start, len(values))
+                self._commands.on_read(start, values)
                 self._is_read = True
             case reports.EventReceived(source=node, number=number, words=words) if node == own:
                 self.device.add_emitted(number, words)
