@@ -55,6 +55,7 @@ def drop_file(page: Any, path: Path, selector: str) -> None:
     for kind in ("dragEnter", "dragOver", "drop"):
         data = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
         developer.send("Input.dispatchDragEvent", {"type": kind, "data": data} | place)
+        page.wait_for_function(f"document.querySelector('#drop').hidden === {str(kind == 'drop').lower()}")
 
 
 def without_welcome(address: str) -> str:

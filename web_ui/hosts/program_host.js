@@ -113,9 +113,9 @@ export class ProgramHost {
     /** @type {Context | null} */ this.context = null;
   }
 
-  /** Whether the tab currently needs a topic. @param {string} topic */
+  /** Whether the tab currently needs a topic: not before it is loaded, as a message would be lost. @param {string} topic */
   wants(topic) {
-    return this.isOpen && TOPIC.test(topic);
+    return this.isOpen && this.session !== null && TOPIC.test(topic);
   }
 
   /** @param {import("../protocol/client.js").ClientEvent} event @param {string} selected  robot */
