@@ -52,7 +52,15 @@ class Barrier:
     def wait(self, marks: Mapping[str, int]) -> None:
         """Wait until these marks of other participants have arrived. Raises NotAnsweredError."""
         wanted = {source: mark for source, mark in marks.items() if source != self.source}
-        real_time.wait_for(lambda: self._has(wanted), f"the messages of {', '.join(wanted)}")
+        try:
+            real_time.wait_for(lambda: self._has(wanted), f"the messages of {', '.join(wanted)}")
+        except real_time.NotAnsweredError as error:
+            raise real_time.NotAnsweredError(f"{error}; {self._missing(wanted)}") from error
+
+    def _missing(self, wanted: Mapping[str, int]) -> str:
+        marks = ", ".join(f"{self._received.get(source, 0)} of {mark} from {source}" for source, mark in wanted.items())
+        known, matched = self.node.count_publishers(TOPIC), self._subscription.get_publisher_count()
+        return f"{self.source} has received marks {marks}, and is matched with {matched} of {known} publishers"
 
     def _has(self, wanted: Mapping[str, int]) -> bool:
         while taken := self._take():
