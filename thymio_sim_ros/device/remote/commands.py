@@ -51,7 +51,7 @@ earlier request of another client."""
 
 @dataclass(slots=True)
 class _Override:
-    """Wheel targets that ROS has set for a time beside a program: what they were before, what they are, when they end."""
+    """Wheel targets that ROS has set beside a program for a time: those before, those now, and when they end."""
 
     program: RemoteProgram
     before: tuple[int, int]
