@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import { ProgramHost } from "../../web_ui/hosts/program_host.js";
 
-test("a topic of the tab is wanted once its messages are kept, since a latched one comes only once", async () => {
+test("a topic of the tab is wanted once its messages are kept, since a retained one comes only once", async () => {
   const host = new ProgramHost({
     slot: /** @type {HTMLElement} */ ({}),
     client: () => /** @type {import("../../web_ui/protocol/client.js").Client} */ ({ refresh() {} }),
