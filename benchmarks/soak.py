@@ -6,7 +6,8 @@ robots), viewers of Foxglove, nodes of ROS, Aseba ports, the Thymio Device Manag
 reset their connection in place of closing it, viewers stop reading, ROS processes are killed. Every minute the
 process is measured. After each lesson, all leave, the first playground and program are restored, and the suite is
 measured at rest. The change is the median slope after the warm-up (Theil and Sen) times the duration. Objects of
-Python are counted at rest after the warm-up and at the end. Needs Linux, ROS and the built page.
+Python are counted at rest after the warm-up and at the end, with what glibc's `malloc` has in use and free. Needs
+Linux, ROS and the built page.
 """
 
 from __future__ import annotations
@@ -60,6 +61,7 @@ class Course:
     in_use: list[Sample] = field(default_factory=list)
     at_rest: list[Sample] = field(default_factory=list)
     objects: list[Counter[str]] = field(default_factory=list)
+    malloc_mb: list[dict[str, float]] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     failures: list[str] = field(default_factory=list)
 
@@ -81,7 +83,7 @@ def measure(options: argparse.Namespace) -> Report:
                 course.at_rest.append(sample(process.pid, (time.monotonic() - begin_s) / 60))
                 print(course.at_rest[-1], flush=True)  # a run that is interrupted leaves what it has found
                 if (not course.objects and course.at_rest[-1].minute >= options.warm_up) or number == lessons - 1:
-                    course.objects.append(count_objects(process.pid, Path(folder) / "counts.json"))
+                    take_counts(process.pid, Path(folder) / "counts.json", course)
             process.signal(signal.SIGINT)
             code = process.wait()
         left = sum(path.exists() for path in own)
@@ -149,8 +151,8 @@ def restore(doors: Doors) -> None:
         pupil.call("/simulator/pause", data=False)
 
 
-def count_objects(pid: int, path: Path) -> Counter[str]:
-    """Ask the suite for its Python objects by type."""
+def take_counts(pid: int, path: Path, course: Course) -> None:
+    """Ask the suite for its Python objects by type, and for its memory of `malloc`."""
     path.unlink(missing_ok=True)
     os.kill(pid, signal.SIGUSR1)
     deadline = time.monotonic() + COUNT_S
@@ -158,7 +160,10 @@ def count_objects(pid: int, path: Path) -> Counter[str]:
         if time.monotonic() > deadline:
             raise TimeoutError(f"the suite has not counted its objects within {COUNT_S} s")
         time.sleep(0.05)
-    return Counter(json.loads(path.read_text(encoding="utf-8")))
+    found = json.loads(path.read_text(encoding="utf-8"))
+    course.objects.append(Counter(found["objects"]))
+    course.malloc_mb.append(found["malloc_mb"])
+    print(found["malloc_mb"], flush=True)
 
 
 def report(course: Course, warm_up: float, end: dict[str, int]) -> Report:
@@ -178,6 +183,14 @@ def report(course: Course, warm_up: float, end: dict[str, int]) -> Report:
             ["objects of Python at rest", "after the warm-up", "at the end"],
             [["all", first.total(), last.total()], *types],
             "The types that grew most",
+        ),
+        Table(
+            ["memory of `malloc` at rest, MB", "after the warm-up", "at the end"],
+            [
+                [what, *(one[what] for one in (course.malloc_mb[0], course.malloc_mb[-1]))]
+                for what in ("in use", "free")
+            ],
+            "The C library keeps what is free",
         ),
         Table(["action", "number"], sorted(course.counts.items()), f"Visitors in {minutes:.0f} minutes"),
     ]

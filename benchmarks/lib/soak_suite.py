@@ -1,10 +1,11 @@
-"""`thymio-sim` that counts its Python objects on SIGUSR1, for `soak.py`.
+"""`thymio-sim` that counts its Python objects and its memory of `malloc` on SIGUSR1, for `soak.py`.
 
 The first argument is the file in which the counts are written, the others are those of `thymio-sim`.
 """
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import json
 import os
@@ -19,6 +20,17 @@ from thymio_sim_ros.cli import main as command
 __all__ = ["main"]
 
 
+class _Mallinfo2(ctypes.Structure):
+    """What glibc's `mallinfo2` returns: bytes, over all arenas."""
+
+    _fields_ = tuple(
+        (name, ctypes.c_size_t)
+        for name in (
+            "arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks", "uordblks", "fordblks", "keepcost"
+        )
+    )  # fmt: skip
+
+
 def main() -> int:
     """Run the suite; return its exit code."""
     path = Path(sys.argv.pop(1))
@@ -31,9 +43,17 @@ def main() -> int:
 
 
 def _write(path: Path) -> None:
-    """Write how many objects of each type there are; the file appears when it is complete."""
+    """Write how many objects of each type there are, and the memory; the file appears when it is complete."""
     gc.collect()
     counts = Counter(f"{type(one).__module__}.{type(one).__qualname__}" for one in gc.get_objects())
     incomplete = path.with_suffix(".part")
-    incomplete.write_text(json.dumps(counts), encoding="utf-8")
+    incomplete.write_text(json.dumps({"objects": counts, "malloc_mb": _malloc_mb()}), encoding="utf-8")
     os.replace(incomplete, path)
+
+
+def _malloc_mb() -> dict[str, float]:
+    """Memory of glibc's `malloc`: in use, and free but kept."""
+    function = ctypes.CDLL(None).mallinfo2
+    function.restype = _Mallinfo2
+    found = function()
+    return {"in use": (found.uordblks + found.hblkhd) / 2**20, "free": found.fordblks / 2**20}

@@ -62,6 +62,7 @@ def opened(browser: Browser, *arguments: str) -> Iterator[Page]:
         page = browser.new_page(viewport=SIZE, bypass_csp=True)
         try:
             open_page(page, f"http://127.0.0.1:{port}/", unfold=False)
+            page.add_style_tag(content="label.speed, .real.small { visibility: hidden }")  # of the recording
             page.wait_for_function("window.thymio.frames() > 10")
             yield page
         finally:
