@@ -86,11 +86,12 @@ def measure(options: argparse.Namespace) -> Report:
                     take_counts(process.pid, Path(folder) / "counts.json", course)
             process.signal(signal.SIGINT)
             code = process.wait()
-        left = sum(path.exists() for path in own)
+        left = sorted(path.name for path in own if path.exists())
         faults = [line for line in process.output.splitlines() if "Traceback" in line or "internal error" in line]
-    for line, count in Counter([*course.failures, *faults]).most_common():
+    for line, count in Counter([*course.failures, *faults, *left]).most_common():
         print(f"{count} ×", line)
-    return report(course, options.warm_up, {"exit code": code, "files of shared memory": left, "faults": len(faults)})
+    ended = {"exit code": code, "files of shared memory": len(left), "faults": len(faults)}
+    return report(course, options.warm_up, ended)
 
 
 @contextmanager
