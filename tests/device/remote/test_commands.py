@@ -103,7 +103,7 @@ def test_new_targets_of_the_program_end_a_velocity_at_once(pair: Pair) -> None:
     pair.tick()
     pair.remote.receive_event("go", [])
     pair.tick(40)
-    assert [pair.value(name) for name in TARGETS] == [(40,), (250,)]
+    assert [pair.value(name) for name in TARGETS] == [(40,), (0,)]
 
 
 def test_a_velocity_ends_whatever_was_requested_before_it(pair: Pair) -> None:

@@ -120,6 +120,8 @@ class RemoteCommands:
         override.others = 0 if targets == override.targets else override.others + 1
         if override.others >= _NEWER:
             self._override = None
+            left, right = zip(targets, override.targets, override.before, strict=True)
+            self._drive((_of_program(*left), _of_program(*right)))
 
     def forget(self) -> None:
         """Forget a velocity, because the robot is gone."""
@@ -166,3 +168,8 @@ class RemoteCommands:
             reason = program.problem or f"it has no native function {native}"
             raise ValueError(f"the robot cannot do this: {reason}")
         self._session.emit(program.numbers[native], words)
+
+
+def _of_program(target: int, own: int, before: int) -> int:
+    """The program's target of a wheel, which is another than our own if the program has set a new one."""
+    return before if target == own else target
