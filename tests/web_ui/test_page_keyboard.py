@@ -227,3 +227,18 @@ def test_the_focus_is_not_lost_with_what_had_it(suite, page, tmp_path):
     playwright.expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
     page.keyboard.press("Escape")
     expect(page, "#help-open").to_be_focused()
+
+
+def test_an_open_menu_keeps_the_focus_when_the_editor_comes_late(exploring, page):
+    held = []
+    page.route("**/assets/editor-*.js", lambda route: held.append(route))
+    open_page(page, exploring)
+    open_tab(page, "program")
+    page.locator(".program[data-shown=program]").wait_for()
+    page.locator("#file-menu").press("Enter")
+    page.locator("#file-sheet .file-name").focus()
+    for route in held:
+        route.continue_()
+    page.locator(".cm-content").wait_for(state="attached")
+    assert held
+    assert page.evaluate("() => document.activeElement.matches('#file-sheet .file-name')")

@@ -11,6 +11,7 @@ import { ALL } from "../editor/workspace.js";
 import { exampleTitle, isExample, NO_PROGRAM, WELCOME } from "../examples/index.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { h, setAttribute } from "../ui/dom.js";
+import { isSomethingOpen } from "../ui/sheet.js";
 import { ProgramCommands } from "./commands.js";
 import { draftBar } from "./draft_bar.js";
 import { fileMenu } from "./file_menu.js";
@@ -176,6 +177,7 @@ export class ProgramTab {
   }
 
   #focus() {
+    if (isSomethingOpen()) return; // the user is in a menu that was opened while the language was loaded
     if (this.#isStartShown) this.start.focus();
     else this.#view?.focus();
   }
@@ -267,8 +269,7 @@ export class ProgramTab {
     const hadFocus = document.activeElement === document.body || this.element.contains(document.activeElement);
     this.start.element.hidden = !isStart;
     this.place.hidden = isStart;
-    if (isStart) return void (hadFocus && this.start.focus());
-    this.#view?.resized();
-    if (hadFocus) this.#view?.focus();
+    if (!isStart) this.#view?.resized();
+    if (hadFocus) this.#focus();
   }
 }
