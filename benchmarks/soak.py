@@ -101,7 +101,8 @@ def running(folder: Path) -> Iterator[tuple[Process, Doors]]:
     counts = folder / "counts.json"
     ports = zip(("--port", "--foxglove-port", "--tdm-port", "--http-port", "--aseba-port"), _ports(doors), strict=True)
     arguments = [text for option, port in ports for text in (option, str(port))]
-    world = ("--no-announcement", "--playground", WORLD, "--program", FIRST_PROGRAM)
+    websocket = ("--tdm-ws-port", str(free_port()))  # its own, too: a suite without it has no device manager
+    world = (*websocket, "--no-announcement", "--playground", WORLD, "--program", FIRST_PROGRAM)
     process = Process(folder, "benchmarks.lib.soak_suite", str(counts), *arguments, *world)
     try:
         for port in _ports(doors):
