@@ -157,8 +157,8 @@ class Tiering:
             if not is_usable():
                 self.apply(Change.FAILED)
                 return
-            if self._host is None:
-                self._host = WasmHost(self._machine, self)
+            self.close()  # with the code of the program before: a store frees its instances only all at once
+            self._host = WasmHost(self._machine, self)
         except Exception:
             if self._is_eager:
                 raise

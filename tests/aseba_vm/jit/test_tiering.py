@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import random
 import signal
 import subprocess
 import sys
+import weakref
 
 import pytest
 
@@ -303,6 +305,20 @@ def test_edge_flags_of_a_watched_run_are_kept(engine, watched):
             machine.receive(0, 1, [])
             machine.run(1000)
     assert machine.variables[counter] == 1
+
+
+@pytest.mark.skipif(WASM not in TRANSLATORS, reason="no wasmtime here")
+def test_a_machine_frees_the_translated_code_of_the_program_before():
+    """A store has the code of all its instances until it is freed itself; 20 kB for each program were kept."""
+    machine = VirtualMachine(THYMIO_II, engine=WASM)
+    stores = []
+    for value in (5, 6, 7):
+        machine.load(compile(f"var a = {value}", THYMIO_II))
+        machine.run(100)
+        assert machine.variables[THYMIO_II.variables_end] == value
+        gc.collect()
+        assert [store() for store in stores] == [None] * len(stores)
+        stores.append(weakref.ref(machine._tiering._host._store))
 
 
 def test_an_unknown_engine_is_rejected():
