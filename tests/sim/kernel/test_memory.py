@@ -42,6 +42,15 @@ def test_the_number_of_arguments_is_checked() -> None:
         KernelMemory(1000).bind(samples.early)
 
 
+def test_a_kernel_is_bound_as_often_as_robots_come_and_go() -> None:
+    """A store of wasmtime takes ten thousand instances; a world in which robots came and went broke after hours."""
+    memory = KernelMemory(1000)
+    array = memory.array(2, np.float64)
+    for _ in range(10_100):
+        call = memory.bind(samples.early, array)
+    call()
+
+
 def test_memory_that_is_freed_and_allocated_again_is_zero() -> None:
     memory = KernelMemory(1000)
     memory.array(3, np.float64)

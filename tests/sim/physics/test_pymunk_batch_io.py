@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+
 import numpy as np
 import numpy.typing as npt
 import pymunk
@@ -116,3 +119,18 @@ def test_a_reader_finds_bodies_in_whatever_order_the_space_has_them(
     reader.read()
     assert reader.order != order
     assert reader.state[reader.rows(bodies[1:])].tolist() == [list(row) for row in expected[1:]]
+
+
+def test_a_reader_keeps_no_body_that_was_removed() -> None:
+    found, bodies = space(2)
+    reader = BodyReader(found)
+    reader.read()
+    reader.rows(bodies)
+    gone = bodies.pop()
+    found.remove(gone, *gone.shapes)
+    reader.read()
+    reader.rows(bodies)
+    reference = weakref.ref(gone)
+    del gone
+    gc.collect()
+    assert reference() is None

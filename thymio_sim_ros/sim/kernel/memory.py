@@ -34,6 +34,8 @@ class KernelMemory:
     def __init__(self, size: int, *, is_compiled: bool | None = None) -> None:
         """Allocate `size` bytes. `is_compiled`: whether kernels are compiled; None: if that is possible."""
         self._wasmtime: Any = None
+        self._instances: dict[Kernel, Any] = {}
+        """Of each kernel one: a store keeps all instances, and takes ten thousand."""
         if is_usable() if is_compiled is None else is_compiled:
             runtime = WasmRuntime.get()
             self._wasmtime = wasmtime = runtime.wasmtime
@@ -102,8 +104,10 @@ class KernelMemory:
                 values.append(self._place(argument, str(kind)))
             else:
                 values.append(float(argument) if kind == "float" else argument)
-        instance = self._wasmtime.Instance(self._store, _compiled(kernel), [self._memory]).exports(self._store)
-        return make_caller(self._wasmtime, self._store, instance[kernel.__name__], values)
+        if kernel not in self._instances:
+            instance = self._wasmtime.Instance(self._store, _compiled(kernel), [self._memory])
+            self._instances[kernel] = instance.exports(self._store)[kernel.__name__]
+        return make_caller(self._wasmtime, self._store, self._instances[kernel], values)
 
     def close(self) -> None:
         """Free the memory; its arrays and bound kernels must not be used any more."""

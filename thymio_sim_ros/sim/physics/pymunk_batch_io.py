@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import repeat
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -67,7 +68,7 @@ class BodyReader:
         self._id_view: Any = b""
         self._room = (-1, 0, 0)
         """Values in the buffer, and the sizes of its arrays, when `state` and `_id_view` were made."""
-        self._id_of: dict[pymunk.Body, int] = {}
+        self._id_of: WeakKeyDictionary[pymunk.Body, int] = WeakKeyDictionary()
         self.order = 0
         """Increases whenever the order of the rows changes; rows found by `rows` are then no longer valid."""
         self.state = np.zeros((0, 6))
