@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from pathlib import Path
@@ -13,6 +14,8 @@ import pytest
 from tests.processes import wait_for_port
 
 DROPS = 3
+STEPS = 12
+STEP_MS = 5000
 
 MARKS = [pytest.mark.browser, pytest.mark.process]
 
@@ -67,6 +70,18 @@ def drop_file(page: Any, path: Path, selector: str) -> None:
         ):
             return
     pytest.fail(f"the browser has not dropped {path.name} in {DROPS} attempts")
+
+
+def step_into_event(page: Any, selector: str) -> None:
+    """Press F7 until an element shows the line of the halt: between events, a step needs one that waits already."""
+    from playwright.sync_api import TimeoutError as TooLate
+
+    for _ in range(STEPS):
+        page.keyboard.press("F7")
+        with contextlib.suppress(TooLate):
+            page.locator(selector).wait_for(state="attached", timeout=STEP_MS)
+            return
+    pytest.fail(f"{STEPS} steps lead to no line")
 
 
 def without_welcome(address: str) -> str:

@@ -18,6 +18,7 @@ from tests.web_ui.page_support import (
     open_menu,
     open_page,
     open_tab,
+    step_into_event,
     wait_for_service,
     watch_it_avoid,
 )
@@ -225,7 +226,7 @@ def test_blocks_are_put_together_by_keys_and_run_one_by_one(blocks):
     expect(page, "#program-state").to_have_text("running")
     page.keyboard.press("F10")
     expect(page, "#program-state").to_contain_text("halted")
-    page.keyboard.press("F7")  # while it waits for an event it is in no line
+    step_into_event(page, f"{BLOCKS} .blocklyHighlighted")  # while it waits for an event it is in no line
     expect(page, f"{BLOCKS} .blocklyHighlighted").to_have_count(1)
     expect(page, f"{CODE} [data-mark=running]").to_have_count(1)
     page.keyboard.press("F7")
