@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import base64
+import gc
 import json
 import math
+import weakref
 
 import pytest
 from geometry_msgs.msg import Twist, TwistStamped, Vector3
@@ -317,6 +319,17 @@ def test_a_command_to_a_robot_that_has_gone_with_its_playground_is_dropped(ros, 
     late(BodyTwist(0.1, 0.0))
     sim.step(0.1)
     assert list(sim.world.robots) == ["thymio"]
+
+
+def test_the_memory_of_a_world_is_freed_when_another_one_replaces_it(ros, simulation):
+    sim = simulation(playground="two_robots")
+    ground = weakref.ref(sim.world._shared.ground)
+    gc.disable()
+    try:
+        assert set_parameter(ros, "playground", "base").successful
+        assert ground() is None
+    finally:
+        gc.enable()
 
 
 def test_a_refused_upload_names_its_file_and_the_old_world_stays(ros, simulation):

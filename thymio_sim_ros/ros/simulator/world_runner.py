@@ -6,6 +6,7 @@ in it takes effect in the next tick, as if no tick had been deferred.
 
 from __future__ import annotations
 
+import gc
 import time
 import traceback
 from collections.abc import Callable
@@ -74,6 +75,8 @@ class WorldRunner:
         self._logged = None
         self.prepared, self.world = prepared, world
         self.start()
+        # Parts of the world before refer to each other; the collector, which does not count their megabytes, is late.
+        gc.collect()
 
     def run_due_ticks(self, wall_ns: int) -> None:
         """Execute the ticks that are due at `wall_ns`, unless paused."""
