@@ -43,7 +43,7 @@ class Record:
         """
         self.count, self.memory = count, memory
         view: Any = object.__new__(type(self))
-        self.view = view  # which has none: it would keep the memory until the collector comes
+        self.view = view  # without one of its own: such a cycle would keep the memory until the collector comes
         view.count = count
         for name, kind in fields(type(self)).items():
             array = memory.array(count, DTYPES[kind])

@@ -19,7 +19,6 @@ from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
 from thymio_sim_ros.ros.compat import dds_profile
-from thymio_sim_ros.ros.compat.arenas import limit_arenas
 from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, RunnableNode, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.peers import PeerContext
 from thymio_sim_ros.ros.simulator.node import Simulator
@@ -116,7 +115,6 @@ def _run(
     wrap: Callable[[Iterator[AnnouncedNode]], Iterator[RunnableNode]],
     on_ready: Callable[[], None] = lambda: None,
 ) -> int:
-    limit_arenas()
     try:
         with (
             assigned(sys.argv[1:] if args is None else args) as (words, warnings),
