@@ -199,7 +199,7 @@ def test_a_zip_that_lies_about_its_size_is_rejected(tmp_path: Path) -> None:
     assert "cannot be read" in found(tmp_path)["anna"].problem
 
 
-@pytest.mark.parametrize("content", [b"", b"no zip", zipped({"a": b"1"})[:-30]])
+@pytest.mark.parametrize("content", [b"", b"no zip", zipped({"a": b"1"})[:-30]], ids=["empty", "text", "cut off"])
 def test_a_damaged_zip_is_a_row_with_a_reason(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "anna.zip").write_bytes(content)
     assert "cannot be read" in found(tmp_path)["anna"].problem
