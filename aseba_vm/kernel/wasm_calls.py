@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 
@@ -20,8 +20,7 @@ def make_caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[fl
     """
     try:
         bindings = wasmtime._bindings
-        # PyDLL keeps the GIL: releasing and taking it again would cost more than a short event.
-        raw = ctypes.PyDLL(bindings.dll._name).wasmtime_func_call_unchecked
+        raw = _library(bindings.dll._name).wasmtime_func_call_unchecked
         values = (bindings.wasmtime_val_raw_t * max(1, len(arguments)))()
         for value, argument in zip(values, arguments, strict=False):
             setattr(value, "i32" if isinstance(argument, int) else "f64", argument)
@@ -58,3 +57,12 @@ def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
         return wasmtime.Func(store, kind, function)
     imported.kept = callback  # keeps it alive as long as the function
     return imported
+
+
+@cache
+def _library(name: str) -> ctypes.PyDLL:
+    """Return a library whose functions are called with the GIL: to release and take it costs more than a short event.
+
+    It is cached because each one has classes of its own, which only the collector frees.
+    """
+    return ctypes.PyDLL(name)

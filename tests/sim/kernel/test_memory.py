@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from _ctypes import CFuncPtr
+
 import numpy as np
 import pytest
 
@@ -49,6 +51,16 @@ def test_a_kernel_is_bound_as_often_as_robots_come_and_go() -> None:
     for _ in range(10_100):
         call = memory.bind(samples.early, array)
     call()
+
+
+def test_a_bound_kernel_has_no_classes_of_its_own() -> None:
+    """Only the collector frees classes, and it does not count what they keep outside Python."""
+    memory = KernelMemory(1000)
+    array = memory.array(2, np.float64)
+    kept = [memory.bind(samples.early, array)]
+    before = len(CFuncPtr.__subclasses__())
+    kept += [memory.bind(samples.early, array) for _ in range(10)]
+    assert len(CFuncPtr.__subclasses__()) == before
 
 
 def test_memory_that_is_freed_and_allocated_again_is_zero() -> None:
