@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import gc
 import os
 import random
 import socket
@@ -251,6 +254,28 @@ def test_a_port_that_is_taken_is_reported(make):
         assert done.wait(DEADLINE_S)
         thread.close()
     assert warnings == [f"Aseba port of anna: cannot listen on 127.0.0.1:{port}: address already in use"]
+
+
+@pytest.mark.parametrize("passes", range(6))
+def test_clients_that_are_being_accepted_at_the_end_are_disconnected(passes):
+    async def end_while_clients_come():
+        hub = Hub()
+        server = aseba_server.AsebaServer(hub, NetworkSettings(aseba_port=0), lambda *_report: None)
+        server.start()
+        hub.add(Network("robot", Nodes(1)))
+        (port,) = server.ports
+        await asyncio.sleep(0)
+        clients.extend(socket.create_connection(("127.0.0.1", port), DEADLINE_S) for _ in range(20))
+        for _ in range(passes):  # of the loop, which accept them step by step
+            await asyncio.sleep(0)
+        await server.close()
+
+    clients = []
+    asyncio.run(end_while_clients_come())
+    gc.collect()  # a connection that was forgotten warns, and warnings are errors
+    for client in clients:
+        with client, contextlib.suppress(ConnectionResetError):
+            assert client.recv(1) == b""
 
 
 def test_a_hub_reports_networks_to_those_who_follow_it():

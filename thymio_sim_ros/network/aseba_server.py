@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode, encode
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.throttle import Throttle
+from thymio_sim_ros.network.acceptor import Acceptor
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import LAST_PORT, OFF, NetworkSettings
 
@@ -99,9 +100,7 @@ class _Port:
         self.number = OFF
         self.networks: list[Network] = []
         self.clients: set[_Client] = set()
-        self._accepting: list[asyncio.Task[None]] = []
-        self._serving: set[asyncio.Task[None]] = set()
-        """One task for each client."""
+        self._acceptor: Acceptor | None = None
 
     def open(self, address: str, number: int) -> None:
         """Listen. Raises OSError if the port cannot be used."""
@@ -109,8 +108,9 @@ class _Port:
             raise OSError(errno.EINVAL, f"found {number}, expected at most {LAST_PORT}")
         listeners = listen(address, number)
         self.number = int(listeners[0].getsockname()[1])
-        loop = asyncio.get_running_loop()
-        self._accepting = [loop.create_task(self._accept(listener)) for listener in listeners]
+        self._acceptor = Acceptor(
+            listeners, self._serve, lambda error: self.report("accept", f"Aseba port {self.number}: {error.strerror}")
+        )
 
     def add(self, network: Network) -> None:
         """Add a network; clients that are connected become its clients too."""
@@ -126,34 +126,18 @@ class _Port:
 
     def close(self) -> None:
         """Stop listening and disconnect all clients."""
-        for task in (*self._accepting, *self._serving):
-            task.cancel()
-
-    async def _accept(self, listener: socket.socket) -> None:
-        loop = asyncio.get_running_loop()
-        listener.setblocking(False)
-        with contextlib.closing(listener):
-            while True:
-                try:
-                    accepted, peer = await loop.sock_accept(listener)
-                except OSError as error:  # out of file descriptors, or the client has disconnected
-                    self.report("accept", f"Aseba port {self.number}: {error.strerror}")
-                    await asyncio.sleep(_RETRY_S)
-                    continue
-                if len(self._serving) >= MAX_CLIENTS:
-                    self.report("full", f"Aseba port {self.number}: found a client, expected at most {MAX_CLIENTS}")
-                    accepted.close()
-                    continue
-                serving = loop.create_task(self._serve(accepted, str(peer[0])))
-                self._serving.add(serving)
-                serving.add_done_callback(self._serving.discard)
+        if self._acceptor is not None:
+            self._acceptor.close()
 
     async def _serve(self, accepted: socket.socket, address: str) -> None:
+        assert self._acceptor is not None
+        if self._acceptor.count > MAX_CLIENTS:
+            self.report("full", f"Aseba port {self.number}: found a client, expected at most {MAX_CLIENTS}")
+            return
         try:
             accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             reader, writer = await asyncio.open_connection(sock=accepted, limit=_READ_BYTES)
         except OSError:  # the client has disconnected
-            accepted.close()
             return
         client = _Client(self, address, writer)
         self.clients.add(client)

@@ -24,6 +24,7 @@ from websockets.asyncio.server import Server
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.throttle import Throttle
+from thymio_sim_ros.network.acceptor import Acceptor
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.conversation.clients import Closing
@@ -89,7 +90,9 @@ class TdmServer:
         self._peers: dict[int, Peer] = {}
         self._congested: set[int] = set()
         self._client_numbers = itertools.count(1)
-        self._servers: list[asyncio.Server | Server] = []
+        self._acceptor: Acceptor
+        self._servers: list[Server] = []
+        """Those of WebSocket, one for each address."""
         self._tasks: set[asyncio.Task[None]] = set()
         self._compiler = ThreadPoolExecutor(1, "tdm-compiler")
         self._throttle = Throttle(_SLICE_S)
@@ -113,7 +116,8 @@ class TdmServer:
         manager = ManagerSettings(self.uuid, self.ws_port, self._password)
         self._manager = DeviceManager(manager, self._now_ns())
         self._hub.follow(self)
-        self._run(self._open(tcp, websocket))
+        self._acceptor = Acceptor(tcp, self._serve_tcp, self._report_error)
+        self._run(self._open(websocket))
         self._run(self._advance())
         self._opened(self)
 
@@ -123,12 +127,14 @@ class TdmServer:
             return
         self.port = self.ws_port = OFF
         self._hub.unfollow(self)
+        self._acceptor.close()
         for server in self._servers:
             server.close()
         for peer in self._peers.values():
             peer.abort()
         for task in self._tasks:
             task.cancel()
+        await self._acceptor.wait_closed()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         closed = [asyncio.create_task(server.wait_closed()) for server in self._servers]
         if closed:
@@ -174,10 +180,8 @@ class TdmServer:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _open(self, tcp: Iterable[socket], websocket: Iterable[socket]) -> None:
-        """Accept connections."""
-        for listener in tcp:
-            self._servers.append(await asyncio.start_server(self._accept_tcp, sock=listener))
+    async def _open(self, websocket: Iterable[socket]) -> None:
+        """Accept connections to the WebSocket port."""
         origins = self._settings.allowed_origins
         for listener in websocket:
             connections = 2 * self._max_clients  # of which half may be in their handshake
@@ -193,10 +197,8 @@ class TdmServer:
                 self._report_bug()
             await asyncio.sleep(_PERIOD_S if self._peers else _IDLE_PERIOD_S)
 
-    def _accept_tcp(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        self._run(self._serve_tcp(reader, writer))
-
-    async def _serve_tcp(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def _serve_tcp(self, accepted: socket, _address: str) -> None:
+        reader, writer = await asyncio.open_connection(sock=accepted)
         try:
             await self._serve(TcpPeer(reader, writer))
         finally:
@@ -269,6 +271,9 @@ class TdmServer:
         finally:
             self._is_delivering = False
         return asked
+
+    def _report_error(self, error: OSError) -> None:
+        self._report("tdm accept", f"Thymio Device Manager: {error.strerror}")
 
     def _report_bug(self) -> None:
         """Report the exception that is handled."""

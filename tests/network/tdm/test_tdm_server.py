@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 import os
 import random
 import socket
@@ -256,6 +257,26 @@ def test_a_taken_port_is_reported_and_nothing_is_served() -> None:
         assert about == "tdm"
         assert text == f"Thymio Device Manager: cannot listen on 127.0.0.1:{port}: address already in use"
         asyncio.run(server.close())
+
+
+@pytest.mark.parametrize("passes", range(6))
+def test_clients_that_are_being_accepted_at_the_end_are_disconnected(passes: int) -> None:
+    async def end_while_clients_come() -> None:
+        settings = NetworkSettings(address="127.0.0.1", tdm_port=0, tdm_ws_port=0)
+        server = TdmServer(Hub(), settings, lambda *_report: None)
+        server.start()
+        await asyncio.sleep(0.01)
+        clients.extend(socket.create_connection(("127.0.0.1", server.port), DEADLINE_S) for _ in range(20))
+        for _ in range(passes):  # of the loop, which accept them step by step
+            await asyncio.sleep(0)
+        await server.close()
+
+    clients: list[socket.socket] = []
+    asyncio.run(end_while_clients_come())
+    gc.collect()  # a connection that was forgotten warns, and warnings are errors
+    for client in clients:
+        with client, contextlib.suppress(ConnectionResetError):
+            assert client.recv(1) == b""
 
 
 def test_a_removed_robot_is_disconnected(one: Served) -> None:
