@@ -246,22 +246,27 @@ def test_aseba_studio(port, client, start, locales, tmp_path):
             return client.ask(GetVariables(0, 1, PROGRAM_VARIABLE, 1), Variables).values[0]
 
         def is_loaded():
-            # Nothing outside shows that the window is ready: type, load and run until the program is there.
+            # Nothing outside shows whether the window is ready, the text compiled (until then Load has no effect), and
+            # the program loaded (until then Run has none).
             display.click(*EDITOR)
             display.select_all()
             display.type("var m = 77\n")
-            display.click(*LOAD)
-            end_s = time.monotonic() + 2.0
+            end_s = time.monotonic() + 5.0
             while value() != 77 and time.monotonic() < end_s:
-                display.click(*RUN)
-                time.sleep(0.2)
+                for button in (LOAD, RUN):
+                    time.sleep(0.2)
+                    display.click(*button)
             return value() == 77
 
         wait_for(is_loaded, "Studio has loaded and started a program")
-        display.click(*RUN)  # Pause
-        wait_for(
-            lambda: client.ask(GetExecutionState(0, 1), ExecutionStateChanged).flags & 2, "Studio has paused the robot"
-        )
+
+        def is_paused():
+            for button in (LOAD, RUN, RUN):  # Run becomes Pause
+                display.click(*button)
+                time.sleep(0.5)
+            return client.ask(GetExecutionState(0, 1), ExecutionStateChanged).flags & 2
+
+        wait_for(is_paused, "Studio has paused the robot")
         display.close()
     finally:
         server.terminate()
