@@ -17,7 +17,7 @@ from pathlib import Path
 
 from tests import pages
 from tests.pages import INTERRUPT, ROOT, Block, Command
-from tests.processes import free_port
+from tests.processes import free_port, wait_until_asleep
 
 DEADLINE_S = 180.0
 HAS_ROS2 = importlib.util.find_spec("ros2cli") is not None or shutil.which("ros2") is not None
@@ -117,6 +117,7 @@ class Terminal:
         """Press Ctrl-C and wait for the end: the last lines are those of the page, and there is no traceback."""
         assert self.is_busy, f"line {command.line}: nothing runs in terminal {command.terminal} to press Ctrl-C for"
         assert self.exit_code is None, f"{self._running!r} ended with {self.exit_code} before Ctrl-C\n{self.printed}"
+        wait_until_asleep(os.tcgetpgrp(self._master))
         self._write("\x03")
         self._wait(lambda: self.exit_code is not None)
         name, self._running = self._running, ""

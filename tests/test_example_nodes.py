@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from tests import pages
+from tests.processes import wait_until_asleep
 from thymio_sim_ros import examples
 
 pytest.importorskip("rclpy")
@@ -55,6 +56,7 @@ def test_a_node_of_a_page_ends_cleanly_on_ctrl_c(ros: Any, tmp_path: Path, sourc
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as node:
         try:
             ros.until(is_spinning(ros, name), START_S, what=f"the node {name}")
+            wait_until_asleep(node.pid)
             node.send_signal(signal.SIGINT)
             output, _ = node.communicate(timeout=END_S)
         finally:

@@ -15,7 +15,7 @@ from thymio_sim_ros.cli import runner, suite
 pytest.importorskip("rclpy")
 
 from tests import pages
-from tests.processes import Process
+from tests.processes import Process, wait_until_asleep
 
 README = pages.read("../README.md")
 START_S = 60.0
@@ -72,6 +72,7 @@ def test_the_node_of_the_readme_drives_the_robot(ros, tmp_path):
         with subprocess.Popen([sys.executable, str(wanderer)]) as node:
             try:
                 ros.until(lambda: odometry[-1].pose.pose.position.x > 0.05, START_S, what="a moving robot")
+                wait_until_asleep(node.pid)
                 node.send_signal(signal.SIGINT)
                 assert node.wait(END_S) == 0
             finally:
