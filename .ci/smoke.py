@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 import os
+import re
 import signal
 import socket
 import struct
@@ -30,7 +31,6 @@ def free_port() -> int:
 def main(prefix: Path) -> None:
     check_files(prefix)
     port, foxglove_port = free_port(), free_port()
-    shared_memory = set(os.listdir("/dev/shm"))
     ports = ["--port", str(port), "--foxglove-port", str(foxglove_port)]
     command = [prefix / "bin" / "thymio-sim", "--program", "line_follower", *ports]
     environment = os.environ | {"ROS_DOMAIN_ID": "97"}
@@ -42,12 +42,16 @@ def main(prefix: Path) -> None:
         page = urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=DEADLINE_S).read().decode()
         assert "<script" in page, page[:300]
         asyncio.run(asyncio.wait_for(see_it_move(foxglove_port), DEADLINE_S))
+        shared_memory = set(re.findall(r"/dev/shm/(\S+)", Path(f"/proc/{suite.pid}/maps").read_text()))
+        assert shared_memory
         begin = time.monotonic()
         os.killpg(suite.pid, signal.SIGINT)
         code = suite.wait(END_S)
         print(f"ended with {code} after {time.monotonic() - begin:.2f} s")
         assert code == 0
-        left = {name for name in set(os.listdir("/dev/shm")) - shared_memory if not is_mapped(f"/dev/shm/{name}")}
+        # The lock of a segment has its name and "_el".
+        own = {name for name in os.listdir("/dev/shm") if name.removesuffix("_el") in shared_memory}
+        left = {name for name in own if not is_mapped(f"/dev/shm/{name}")}
         assert not left, f"left in /dev/shm: {left}"
     finally:
         if suite.poll() is None:
@@ -55,7 +59,7 @@ def main(prefix: Path) -> None:
 
 
 def is_mapped(path: str) -> bool:
-    """Whether a process uses a file: other ROS programs of this machine may have begun meanwhile."""
+    """Whether a process uses a file: another ROS program of this machine may have opened it meanwhile."""
     for process in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
             if path in (process / "maps").read_text():
