@@ -31,6 +31,7 @@ def free_port() -> int:
 def main(prefix: Path) -> None:
     check_files(prefix)
     port, foxglove_port = free_port(), free_port()
+    before = set(os.listdir("/dev/shm"))
     ports = ["--port", str(port), "--foxglove-port", str(foxglove_port)]
     command = [prefix / "bin" / "thymio-sim", "--program", "line_follower", *ports]
     environment = os.environ | {"ROS_DOMAIN_ID": "97"}
@@ -50,7 +51,7 @@ def main(prefix: Path) -> None:
         print(f"ended with {code} after {time.monotonic() - begin:.2f} s")
         assert code == 0
         # The lock of a segment has its name and "_el".
-        own = {name for name in os.listdir("/dev/shm") if name.removesuffix("_el") in shared_memory}
+        own = {name for name in set(os.listdir("/dev/shm")) - before if name.removesuffix("_el") in shared_memory}
         left = {name for name in own if not is_mapped(f"/dev/shm/{name}")}
         assert not left, f"left in /dev/shm: {left}"
     finally:
