@@ -1,4 +1,4 @@
-"""Turns each measured scene of the chosen set into a test of its own."""
+"""Hands the measured scenes of the chosen set to tests."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from tests.sim.enki.scenes import SHIPPED, is_set, load
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """A test marked ``enki("prox")`` runs once for each scene of that file that shows no fault of the reference.
+    """A test marked ``enki("prox")`` with an argument `scene` runs once for each scene of that file.
 
-    With ``pushed=True`` only where something can be pushed.
+    With an argument `scenes` it runs once for all of them. Scenes that show a fault of the reference are left out.
     """
     mark = metafunc.definition.get_closest_marker("enki")
     if mark is None:
@@ -19,6 +19,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if not is_set(folder):
         raise pytest.UsageError(f"--vectors: no file of measured scenes in {folder}")
     scenes = [scene for scene in load(mark.args[0], folder) if not scene.get("artefact")]
-    if mark.kwargs.get("pushed"):
-        scenes = [scene for scene in scenes if any(thing["mass"] is not None for thing in scene["objects"])]
-    metafunc.parametrize("scene", scenes, ids=[scene["id"] for scene in scenes])
+    if "scenes" in metafunc.fixturenames:
+        metafunc.parametrize("scenes", [scenes] if scenes else [], ids=lambda _: mark.args[0])
+    else:
+        metafunc.parametrize("scene", scenes, ids=[scene["id"] for scene in scenes])

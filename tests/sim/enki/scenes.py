@@ -1,4 +1,4 @@
-"""Measured scenes of the reference simulator, and the same scenes as worlds of ours."""
+"""Measured scenes of the reference simulator, and the same scenes in worlds of ours."""
 
 from __future__ import annotations
 
@@ -14,12 +14,14 @@ from typing import Any
 from tests.sim.builders import GRAY, make
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.model import robot_constants
-from thymio_sim_ros.sim.model.primitives import Disc, Polygon, Solid
+from thymio_sim_ros.sim.model.primitives import Disc, Floor, Polygon, Solid
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
 SHIPPED = Path(__file__).parents[2] / "data" / "enki"
 FILES = ("prox", "ground", "motion", "collision", "playground-live")
+PITCH_M = 4.0
+"""Distance of the scenes in a world. A robot drives 1.2 m at most."""
 Scene = dict[str, Any]
 
 
@@ -41,44 +43,57 @@ def load(name: str, folder: Path = SHIPPED) -> tuple[Scene, ...]:
     )
 
 
-def world_of(scene: Mapping[str, Any], **options: Any) -> World:
-    """The world of a scene; robots are in their places even where a start would be refused."""
-    shapes: list[dict[str, Any]] = []
-    if scene["world"]["kind"] == "square":
-        width, height = scene["world"]["width"], scene["world"]["height"]
-        place = {"x_m": width / 2, "y_m": height / 2, "size_x_m": width + 0.02, "size_y_m": height + 0.02}
-        shapes.append({"kind": "rectangle", **place, "color": GRAY, "walls": {"height_m": 1.0}})
-    shapes += [_thing(thing, f"thing{index}") for index, thing in enumerate(scene["objects"])]
-    built = make(shapes, [])
-    starts = [
-        RobotStart(f"robot{index}", start["x"], start["y"], start["theta"])
-        for index, start in enumerate(scene["robots"])
-    ]
+def world_of(scenes: Sequence[Mapping[str, Any]], **options: Any) -> World:
+    """The world of scenes that all have walls around them or all have none, each in a place of its own (`place_of`).
+
+    Robots are in their places even where a start would be refused.
+    """
+    solids: list[Solid] = []
+    robots: list[RobotStart] = []
+    floors: list[Floor] = []
+    for number, scene in enumerate(scenes):
+        x_m, y_m = place_of(number)
+        built = make(_shapes(scene, number, x_m, y_m), [])
+        floors += built.floors
+        solids += built.solids
+        robots += [
+            RobotStart(f"robot{number}_{index}", x_m + start["x"], y_m + start["y"], start["theta"])
+            for index, start in enumerate(scene["robots"])
+        ]
     solids = [
         replace(solid, load=replace(solid.load, lever_m=_lever(solid))) if solid.load is not None else solid
-        for solid in built.solids
+        for solid in solids
     ]
-    return World(replace(built, robots=tuple(starts), solids=tuple(solids)), **options)
+    playground = replace(make([], []), floors=tuple(floors), solids=tuple(solids), robots=tuple(robots))
+    return World(playground, **options)
 
 
-def play(scene: Mapping[str, Any], *, seed: int) -> list[tuple[float, ...]]:
-    """Run a scene; a row every `every` of its steps, in the order of its `mean`: robots, then things, x, y, heading.
+def place_of(number: int) -> tuple[float, float]:
+    """The origin of a scene of a world: out of sight and reach of all others."""
+    row, column = divmod(number, 40)
+    return (column - 20) * PITCH_M, (row - 20) * PITCH_M
 
+
+def play(scene: Scene, *, runs: int) -> list[list[tuple[float, ...]]]:
+    """Run a scene so many times with different noise, in one world.
+
+    Each run has a row every `every` of the scene's steps, in the order of its `mean`: robots, then things; x, y, yaw.
     The reference lets a target move the robot two of its steps later.
     """
-    world = world_of(scene, seed=seed, periods_ns={})
+    world = world_of([scene] * runs, periods_ns={})
     ticks = round(scene["dt"] / 0.01)
     commands = {ticks * (command["step"] + 2): command for command in scene["commands"]}
-    driver = next(iter(world.robots))
-    rows = [_row(world)]
+    drivers = list(world.robots)[:: len(scene["robots"])]
+    rows = [_rows(world, runs)]
     for tick in range(ticks * scene["every"] * (len(scene["mean"]) - 1)):
         if tick in commands:
             targets = commands[tick]
-            world.post(driver, MotorTargets(int(targets["left_target"]), int(targets["right_target"])))
+            for driver in drivers:
+                world.post(driver, MotorTargets(int(targets["left_target"]), int(targets["right_target"])))
         world.step()
         if (tick + 1) % (ticks * scene["every"]) == 0:
-            rows.append(_row(world))
-    return rows
+            rows.append(_rows(world, runs))
+    return [list(run) for run in zip(*rows, strict=True)]
 
 
 def mean_rows(runs: Sequence[list[tuple[float, ...]]]) -> list[tuple[float, ...]]:
@@ -88,14 +103,39 @@ def mean_rows(runs: Sequence[list[tuple[float, ...]]]) -> list[tuple[float, ...]
     ]
 
 
-def _row(world: World) -> tuple[float, ...]:
-    return tuple(_values(world))
-
-
-def _values(world: World) -> Iterator[float]:
+def _rows(world: World, runs: int) -> list[tuple[float, ...]]:
+    """A row of each run."""
     snapshot = world.snapshot()
-    for body in (*snapshot.robots, *snapshot.objects):
-        yield from (body.pose.x_m, body.pose.y_m, body.pose.yaw_rad)
+    robots, things = len(snapshot.robots) // runs, len(snapshot.objects) // runs
+    return [
+        tuple(
+            _values(
+                [
+                    *snapshot.robots[run * robots : (run + 1) * robots],
+                    *snapshot.objects[run * things : (run + 1) * things],
+                ],
+                *place_of(run),
+            )
+        )
+        for run in range(runs)
+    ]
+
+
+def _values(bodies: Sequence[Any], x_m: float, y_m: float) -> Iterator[float]:
+    for body in bodies:
+        yield from (body.pose.x_m - x_m, body.pose.y_m - y_m, body.pose.yaw_rad)
+
+
+def _shapes(scene: Mapping[str, Any], number: int, x_m: float, y_m: float) -> list[dict[str, Any]]:
+    """The walls and things of a scene whose origin is in a place."""
+    shapes: list[dict[str, Any]] = []
+    if scene["world"]["kind"] == "square":
+        width, height = scene["world"]["width"], scene["world"]["height"]
+        size = {"size_x_m": width + 0.02, "size_y_m": height + 0.02}
+        shapes.append({"kind": "rectangle", "x_m": width / 2, "y_m": height / 2, **size, "color": GRAY})
+        shapes[0]["walls"] = {"height_m": 1.0}
+    shapes += [_thing(thing, f"thing{number}_{index}") for index, thing in enumerate(scene["objects"])]
+    return [{**shape, "x_m": x_m + shape["x_m"], "y_m": y_m + shape["y_m"]} for shape in shapes]
 
 
 def _thing(thing: Mapping[str, Any], name: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import pytest
 from tests.sim.enki.scenes import Scene, mean_rows, play
 from thymio_sim_ros.sim.model.units import units_to_speed
 
-SEEDS = range(8)
+RUNS = 8
 ROUNDED = 1e-5
 """What the recorded numbers are rounded to."""
 
@@ -17,9 +17,9 @@ ROUNDED = 1e-5
 @pytest.mark.enki("motion")
 def test_a_robot_drives_as_measured(scene: Scene) -> None:
     """Places within 0.2 % of the way so far, headings within 0.5 % of the turn, and what the noise leaves open."""
-    rows = mean_rows([play(scene, seed=seed) for seed in SEEDS])
+    rows = mean_rows(play(scene, runs=RUNS))
     way_m = turn_rad = 0.0
-    spread = math.sqrt(1 / scene["runs"] + 1 / len(SEEDS))
+    spread = math.sqrt(1 / scene["runs"] + 1 / RUNS)
     for number, (found, expected, std) in enumerate(zip(rows, scene["mean"], scene["std"], strict=True)):
         left, right = _targets(scene, number * scene["every"])
         seconds = scene["every"] * scene["dt"]
