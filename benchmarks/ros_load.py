@@ -76,12 +76,12 @@ class Scene:
 NOTHING, THIRTEEN, ALL = "no subscriber", "13 topics", "all topics"
 
 SCENES = (
-    Scene(1, 10.0, ALL, 1.5),
+    Scene(1, 10.0, ALL),
     Scene(1, 10.0, THIRTEEN, 1.5),
     Scene(20, 10.0, NOTHING, 6.0),
-    Scene(20, 10.0, ALL, 10.0),
+    Scene(20, 10.0, ALL),
     Scene(20, 10.0, THIRTEEN, 10.0),
-    Scene(20, 50.0, ALL, 40.0),
+    Scene(20, 50.0, ALL),
     Scene(20, 50.0, THIRTEEN, 40.0),
     Scene(100, 10.0, NOTHING, 30.0),
     Scene(100, 10.0, THIRTEEN),

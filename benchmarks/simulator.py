@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import itertools
 import time
 from collections.abc import Callable
 from typing import Any
@@ -40,12 +39,8 @@ MODES: dict[str, dict[str, Any]] = {
 }
 EACH, FIRMWARE, RAYS, ALL = MODES
 ENKI = "Enki"
-LIMITS_US = {1: 100.0, 10: 30.0}
-"""Most microseconds per robot-step, "every step", by the number of robots."""
-SPEED_UP = {20: 2.0}
-"""Least speed-up of "all" to the other checkout."""
-ENKI_RATIOS = {(100, EACH): 0.8, (400, EACH): 9.0, (100, FIRMWARE): 1.3, (400, FIRMWARE): 13.0}
-"""Least speed in units of Enki's; at 100, "every step", the price of one integrator for all robots."""
+ENKI_RATIOS = {EACH: 0.8, FIRMWARE: 1.3}
+"""Least speed with 100 robots in units of Enki's."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -128,26 +123,10 @@ def _ratio(row: dict[tuple[str, str], float], slow: tuple[str, str], fast: tuple
 
 
 def _goals(found: dict[int, dict[tuple[str, str], float]]) -> list[Goal]:
-    now, before = rounds.NOW, rounds.BEFORE
-    goals = [
-        Goal(f"{_robots(count)}, every step, per robot-step", limit, found[count][EACH, now], "µs")
-        for count, limit in LIMITS_US.items()
-        if count in found
+    row = found.get(100, {})
+    ratios = {mode: _ratio(row, (ENKI, ENKI), (mode, rounds.NOW)) for mode in ENKI_RATIOS}
+    return [
+        Goal(f"100 robots, {mode}, to Enki", ENKI_RATIOS[mode], ratio, "×", is_least=True)
+        for mode, ratio in ratios.items()
+        if ratio is not None
     ]
-    totals = [count * row[EACH, now] for count, row in sorted(found.items())]
-    if len(totals) > 1:
-        least = min(after / less for less, after in itertools.pairwise(totals))
-        goals.append(Goal("time of a step with more robots ÷ with fewer, at least", 1.0, least, "×", is_least=True))
-    for count, limit in SPEED_UP.items():
-        if count in found and (ALL, before) in found[count]:
-            ratio = _ratio(found[count], (ALL, before), (ALL, now))
-            goals.append(Goal(f"{_robots(count)}, all sensors, to the other commit", limit, ratio, "×", is_least=True))
-    for (count, mode), limit in ENKI_RATIOS.items():
-        if count in found and (ENKI, ENKI) in found[count]:
-            ratio = _ratio(found[count], (ENKI, ENKI), (mode, now))
-            goals.append(Goal(f"{_robots(count)}, {mode}, to Enki", limit, ratio, "×", is_least=True))
-    return goals
-
-
-def _robots(count: int) -> str:
-    return "one robot" if count == 1 else f"{count} robots"

@@ -16,7 +16,6 @@ import argparse
 import json
 import os
 import signal
-import statistics
 import tempfile
 import time
 from collections import Counter
@@ -36,7 +35,7 @@ from tests.processes import Process, free_port, wait_for_port
 
 QUICK = {"hours": 0.006, "lesson": 0.12, "warm_up": 0.12, "rest": 0.5, "period": 3.0}
 MOST_PERCENT = 5.0
-"""Growth of memory that counts as flat."""
+"""Growth of objects that counts as none."""
 VISITS = (visit_page, visit_page, visit_foxglove, visit_ros, visit_aseba, visit_tdm, visit_http)
 SHOWN_TYPES = 8
 ASEBA_PORTS = 20
@@ -197,10 +196,6 @@ def report(course: Course, warm_up: float, end: dict[str, int]) -> Report:
         Table(["action", "number"], sorted(course.counts.items()), f"Visitors in {minutes:.0f} minutes"),
     ]
     goals = [
-        Goal(f"growth of memory {where} (PSS)", MOST_PERCENT, percent(changes[where, "pss_mb"], samples), "%")
-        for where, samples in judged.items()
-    ]
-    goals += [
         Goal(f"more {what} at rest", 0, round(changes["at rest", name]))
         for name, what in (("descriptors", "descriptors"), ("threads", "threads"), ("shared_files", "shared files"))
     ]
@@ -221,8 +216,3 @@ def after(samples: Sequence[Sample], minute: float) -> Sequence[Sample]:
 def grown(samples: Sequence[Sample], name: str) -> float:
     """By how much a size has changed."""
     return change([one.minute for one in samples], [getattr(one, name) for one in samples])
-
-
-def percent(grown_mb: float, samples: Sequence[Sample]) -> float:
-    """A change of PSS as a part of its median."""
-    return 100 * grown_mb / statistics.median(one.pss_mb for one in samples)

@@ -33,7 +33,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 from thymio_sim_ros.testing.ros.domain import reserved
 
 QUICK = {"robots": [1, 2], "rounds": 1, "starts": 1}
-MOST_GREETING_S = {20: 2.0, 100: 10.0}
+MOST_GREETING_S = {100: 10.0}
 SUITE = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(sys.argv[1:]))"
 LISTENER = "import sys; from benchmarks.start import listen; listen(sys.argv[1])"
 GREETING = "Stop "
