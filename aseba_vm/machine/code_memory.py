@@ -8,6 +8,7 @@ from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
 from aseba_vm.machine.operations import OTHER, Decoded, decode
 
 _FLAG = WAS_TRUE.bit_length() - 1
+_BRANCH = int(Op.BRANCH)  # compared with every word of the memory, where a member of an enumeration takes twice as long
 
 
 class CodeMemory:
@@ -36,13 +37,13 @@ class CodeMemory:
     def word(self, pc: int) -> int:
         """Return an unsigned word with its edge flag; 0 beyond the memory."""
         word = self._words[pc] if pc < len(self._words) else 0
-        return (word & ~WAS_TRUE) | self.edges[pc] << _FLAG if word >> 12 == Op.BRANCH else word
+        return (word & ~WAS_TRUE) | self.edges[pc] << _FLAG if word >> 12 == _BRANCH else word
 
     @property
     def words(self) -> tuple[int, ...]:
         """All words, unsigned, with their edge flags."""
         return tuple(
-            (word & ~WAS_TRUE) | edge << _FLAG if word >> 12 == Op.BRANCH else word
+            (word & ~WAS_TRUE) | edge << _FLAG if word >> 12 == _BRANCH else word
             for word, edge in zip(self._words, self.edges, strict=True)
         )
 
@@ -52,7 +53,7 @@ class CodeMemory:
         self._words[start:end] = [word & 0xFFFF for word in words]
         self.edges[start:end] = [word >> _FLAG & 1 for word in self._words[start:end]]
         self.overlapped = {
-            pc for pc, word in enumerate(self._words) if word >> 12 == Op.BRANCH and self._is_overlapped(pc)
+            pc for pc, word in enumerate(self._words) if word >> 12 == _BRANCH and self._is_overlapped(pc)
         }
         for pc in range(max(start - 2, 0), end):
             self._decode(pc)
@@ -70,14 +71,15 @@ class CodeMemory:
 
         Source: docs/spec/aseba-bytecode-vm.md section 10.4.
         """
+        words, edges = self._words, self.edges
         pc = 2 * self.word(0) + 1
-        while pc < len(self):
-            word = self.word(pc)
-            if word >> 12 == Op.BRANCH and word & WAS_TRUE:
-                self.edges[pc] = 0
+        while pc < len(words):
+            kind = words[pc] >> 12
+            if kind == _BRANCH and edges[pc]:
+                edges[pc] = 0
                 if pc in self.overlapped:
                     self.refresh(pc)
-            pc += LENGTH[word >> 12]
+            pc += LENGTH[kind]
 
     def _find_events(self) -> None:
         """Read the table of events."""
