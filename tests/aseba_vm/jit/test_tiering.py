@@ -8,6 +8,8 @@ import signal
 import subprocess
 import sys
 import weakref
+from contextlib import suppress
+from functools import cache
 
 import pytest
 
@@ -32,8 +34,8 @@ def _state(machine):
         machine.pc,
         machine.flags,
         machine.stack[: machine.sp + 1],
-        list(machine.variables),
-        machine.bytecode,
+        machine.variables.words[:],
+        machine.code.edges[:],
         machine.instructions,
         machine.random_state,
         machine.fault,
@@ -65,6 +67,7 @@ def _compare_at(costs, words, seed, engines):
         for engine in (INTERPRETER, engines[0])
     ]
     source = random.Random(seed)
+    current = engines[0]
     for machine in machines:
         machine.set_bytecode(words)
     for _ in range(source.randint(3, 25)):
@@ -91,22 +94,31 @@ def _compare_at(costs, words, seed, engines):
             if choice != 1:
                 machine.resume()
             machine.run(limit)
-        machines[1].use_engine(engine)
+        if engine != current:
+            machines[1].use_engine(engine)
+            current = engine
         assert _state(machines[0]) == _state(machines[1])
+    assert machines[0].bytecode == machines[1].bytecode
 
 
 @pytest.mark.parametrize("engines", [*([name] for name in TRANSLATORS), AVAILABLE], ids="-".join)
 @pytest.mark.parametrize("seed", range(6))
 def test_random_programs_end_in_the_same_state(seed, engines):
-    compiled = 0
+    programs = _random_programs(seed)
+    assert len(programs) >= 10
+    for number, words in programs.items():
+        _compare(words, number, engines)
+
+
+@cache
+def _random_programs(seed):
+    """Return the words of the correct ones of 60 programs, by their numbers."""
+    programs = {}
     for number in range(60):
-        try:
+        with suppress(CompileError):
             program = compile(Writer(7000 * seed + number).program(), THYMIO_II, EVENTS, [("N", 4)])
-        except CompileError:
-            continue
-        compiled += 1
-        _compare(program.words, number, engines)
-    assert compiled >= 10
+            programs[number] = program.words
+    return programs
 
 
 @pytest.mark.parametrize("engines", [*([name] for name in TRANSLATORS), AVAILABLE], ids="-".join)
