@@ -5,18 +5,14 @@ from __future__ import annotations
 import contextlib
 import itertools
 import os
-import select
 import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-START_S = 60.0
-END_S = 20.0
-ASLEEP_S = 10.0
+from tests.patience import PATIENCE_S, until
 
 _PORTS = range(20_000, 32_000)
 """Below those that systems choose themselves: from 32 768 on, or 49 152."""
@@ -79,8 +75,8 @@ class Process:
         os.killpg(self._popen.pid, number)
 
     def wait(self) -> int:
-        """The exit code, at most `END_S` later."""
-        return self._popen.wait(END_S)
+        """The exit code, at most `PATIENCE_S` later."""
+        return self._popen.wait(PATIENCE_S)
 
     def end(self) -> None:
         """End what still runs as a terminal would, so that it can tidy up; by force when it does not."""
@@ -95,27 +91,29 @@ class Process:
 
 
 def wait_for_port(port: int) -> None:
-    """Block until a process listens there; fails after `START_S`."""
-    deadline = time.monotonic() + START_S
-    while True:
+    """Block until a process listens there; fails after `PATIENCE_S`."""
+
+    def listens() -> bool:
         with socket.socket() as probe:
-            probe.settimeout(0.1)
-            if probe.connect_ex(("127.0.0.1", port)) == 0:
-                return
-        assert time.monotonic() < deadline, f"no process listens on port {port}"
-        select.select([], [], [], 0.05)
+            probe.settimeout(PATIENCE_S)
+            return probe.connect_ex(("127.0.0.1", port)) == 0
+
+    until(listens, lambda: f"no process listens on port {port}")
 
 
 def wait_until_asleep(pid: int) -> None:
     """Return as soon as the main thread of a process waits, before a message can wake it: for Ctrl-C to a node.
 
     An interrupt while rclpy converts a message becomes a RuntimeError: of 40 nodes that got a thousand messages a
-    second one to six, and none after this (measured). A process that does not wait for `ASLEEP_S` is not waited for.
+    second one to six, and none after this (measured). A process that does not wait is interrupted after
+    `PATIENCE_S` all the same.
     """
-    deadline = time.monotonic() + ASLEEP_S
-    with contextlib.suppress(OSError), open(f"/proc/{pid}/stat", "rb", buffering=0) as stat:  # OSError: it has ended
-        while b") S " not in os.pread(stat.fileno(), 200, 0) and time.monotonic() < deadline:
-            select.select([], [], [], 0.001)
+    # OSError: it has ended; AssertionError: it is busy
+    with (
+        contextlib.suppress(OSError, AssertionError),
+        open(f"/proc/{pid}/stat", "rb", buffering=0) as stat,
+    ):
+        until(lambda: b") S " in os.pread(stat.fileno(), 200, 0), every_s=0.001)
 
 
 def free_port() -> int:

@@ -11,15 +11,14 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from tests import pages
 from tests.pages import INTERRUPT, ROOT, Block, Command
+from tests.patience import PATIENCE_S, PROGRAM_S, Deadline
 from tests.processes import free_port, wait_until_asleep
 
-DEADLINE_S = 180.0
 HAS_ROS2 = importlib.util.find_spec("ros2cli") is not None or shutil.which("ros2") is not None
 NO_ROS2 = "all but the commands `ros2`, which this machine does not have (docs/ros2-tools.md says how to get them)"
 
@@ -86,8 +85,8 @@ class Terminal:
             self.expect(command)
             return
         self._wait(lambda: self.exit_code is not None)
-        deadline = time.monotonic() + DEADLINE_S
-        while not self._is_as_promised(command) and _LOOKS.match(command.text) and time.monotonic() < deadline:
+        deadline = Deadline(PROGRAM_S)
+        while not self._is_as_promised(command) and _LOOKS.match(command.text) and not deadline.is_over:
             self._type(command.text)
             self._wait(lambda: self.exit_code is not None)
         self._running = ""
@@ -150,12 +149,11 @@ class Terminal:
 
     def _wait(self, condition: Callable[[], object], describe: Callable[[], str] | None = None) -> None:
         """Read until the condition is true."""
-        deadline = time.monotonic() + DEADLINE_S
+        deadline = Deadline(PROGRAM_S)
         while not condition():
-            left = deadline - time.monotonic()
-            if left <= 0 or not select.select([self._master], [], [], left)[0]:
+            if not select.select([self._master], [], [], deadline.left_s)[0]:
                 found = describe() if describe else f"{self._running!r} has not ended\n{self.printed}"
-                raise AssertionError(f"after {DEADLINE_S:.0f} s: {found}")
+                raise AssertionError(f"after {PROGRAM_S:g} s: {found}")
             self._raw += os.read(self._master, 65536)
 
 
@@ -209,7 +207,7 @@ class Reader:
             terminal.close()
         if self._has_used_ros2:
             stop = [str(self._commands / "ros2"), "daemon", "stop"]
-            subprocess.run(stop, env=self._environment, capture_output=True, timeout=DEADLINE_S, check=False)
+            subprocess.run(stop, env=self._environment, capture_output=True, timeout=PATIENCE_S, check=False)
 
     def _leaves_out(self, command: Command, block: Block) -> bool:
         """Whether a command is not executed because it needs `ros2`, or continues one that was not executed."""

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import PATIENCE_S, until
 from thymio_sim_ros import entry_points
 
 ROOT = Path(__file__).parent.parent
@@ -23,7 +24,6 @@ NODES = {
     "web_ui": "web.node",
 }
 EXAMPLES = sorted(path.stem for path in (ROOT / "thymio_sim_ros" / "examples").glob("[a-z]*.py"))
-END_S = 60.0
 IN_A_SHELL = (
     f"import sys; sys.path.insert(0, '{ROOT}'); "
     "from thymio_sim_ros.entry_points import thymio_sim; sys.exit(thymio_sim())"
@@ -85,7 +85,7 @@ def interrupted(command: list[str], after_s: float) -> tuple[int, str]:
         select.select([process.stdout], [], [], after_s)  # the moment is what is tested
         process.send_signal(signal.SIGINT)
         try:
-            output, _ = process.communicate(timeout=END_S)
+            output, _ = process.communicate(timeout=PATIENCE_S)
         finally:
             process.kill()
         return process.returncode, output.decode()
@@ -114,7 +114,7 @@ def test_an_interrupt_at_any_moment_of_a_start_ends_it_without_a_traceback(ros_d
 def test_a_run_with_closed_standard_streams_is_a_run(tmp_path, closed):
     log = tmp_path / "run.jsonl"
     command = f'"{sys.executable}" -c "{IN_A_SHELL}" runner --seconds 1 --log "{log}" {closed}'
-    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=END_S, check=False)
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(log.read_text().splitlines()[-1]) == {"end": True}, "nothing else was written to the log"
     assert bool(done.stdout) == (">&-" not in closed.replace("2>&-", ""))
@@ -127,12 +127,9 @@ def test_nodes_start_with_closed_standard_streams(ros_domain, tmp_path, closed):
     command = f'exec "{sys.executable}" -c "{IN_A_SHELL}" --headless --log "{log}" {closed}'
     with subprocess.Popen(["sh", "-c", command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
         try:
-            for _ in range(int(END_S / 0.05)):
-                if (log.exists() and log.stat().st_size) or process.poll() is not None:
-                    break
-                select.select([], [], [], 0.05)
+            until(lambda: (log.exists() and log.stat().st_size) or process.poll() is not None)
             process.send_signal(signal.SIGINT)
-            output, _ = process.communicate(timeout=END_S)
+            output, _ = process.communicate(timeout=PATIENCE_S)
         finally:
             process.kill()
     assert log.exists(), output
@@ -156,7 +153,7 @@ def test_nodes_start_without_a_home_folder(ros_domain, tmp_path, home):
                 if line.startswith(b"Stop"):
                     break
             process.send_signal(signal.SIGINT)
-            output, _ = process.communicate(timeout=END_S)
+            output, _ = process.communicate(timeout=PATIENCE_S)
         finally:
             process.kill()
     assert lines[1].startswith(f"thymio-sim: log files go to {tmp_path}/thymio-sim-log-")

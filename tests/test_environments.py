@@ -6,18 +6,19 @@ import asyncio
 import shutil
 import subprocess
 import sys
-import time
 import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.patience import PATIENCE_S, until
+
 pytest.importorskip("rclpy")
 
 from websockets.asyncio.client import connect
 
-from tests.processes import END_S, START_S, SUITE, Process, free_port
+from tests.processes import SUITE, Process, free_port
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS
@@ -63,11 +64,8 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Process]]:
 
 
 def _until(condition: Callable[[], bool], process: Process) -> None:
-    deadline = time.monotonic() + START_S
-    while not condition():
-        assert process.is_running, process.output
-        assert time.monotonic() < deadline, process.output
-        time.sleep(0.05)
+    until(lambda: condition() or not process.is_running, lambda: process.output)
+    assert process.is_running, process.output
 
 
 async def _simulated_time_passes(port: int) -> None:
@@ -100,8 +98,8 @@ def test_the_suite_does_not_care_for_jumps_of_the_clock(start: Callable[..., Pro
     _until(lambda: "Stop" in suite.output, suite)
     for jump in ("+1d", "-1d", "+3650d", "-2d"):
         offset.write_text(f"{jump}\n")
-        asyncio.run(asyncio.wait_for(_simulated_time_passes(foxglove_port), START_S))
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=END_S) as page:
+        asyncio.run(asyncio.wait_for(_simulated_time_passes(foxglove_port), PATIENCE_S))
+        with urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=PATIENCE_S) as page:
             assert page.status == 200
     suite.end()
     assert suite.wait() == 0, suite.output

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from tests import pages
+from tests.patience import PATIENCE_S
 from tests.processes import wait_until_asleep
 from thymio_sim_ros import examples
 
@@ -31,9 +32,8 @@ EXAMPLES = [
     for path in sorted(Path(examples.__file__).parent.glob("*.py"))
     if path.stem != "__init__"
 ]
-START_S = 60.0
-END_S = 20.0
-REPEAT_S = 1.0
+REPEAT = 200
+"""Turns of the executors, of 5 ms at most, after which a request is repeated."""
 
 
 def test_the_pages_show_nodes() -> None:
@@ -55,10 +55,10 @@ def test_a_node_of_a_page_ends_cleanly_on_ctrl_c(ros: Any, tmp_path: Path, sourc
     command = [sys.executable, "node.py"]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as node:
         try:
-            ros.until(is_spinning(ros, name), START_S, what=f"the node {name}")
+            ros.until(is_spinning(ros, name), PATIENCE_S, what=f"the node {name}")
             wait_until_asleep(node.pid)
             node.send_signal(signal.SIGINT)
-            output, _ = node.communicate(timeout=END_S)
+            output, _ = node.communicate(timeout=PATIENCE_S)
         finally:
             node.kill()
     assert "Traceback" not in output, output
@@ -74,12 +74,10 @@ def is_spinning(ros: Any, name: str) -> Callable[[], bool]:
 
     client = ros.node.create_client(ListParameters, f"/{name}/list_parameters")
     requests: list[Any] = []
-    next_s = 0.0
+    turns = itertools.count()
 
     def has_answered() -> bool:
-        nonlocal next_s
-        if client.service_is_ready() and time.monotonic() >= next_s:
-            next_s = time.monotonic() + REPEAT_S
+        if client.service_is_ready() and next(turns) % REPEAT == 0:
             requests.append(client.call_async(ListParameters.Request()))
         return any(request.done() for request in requests)
 

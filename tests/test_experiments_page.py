@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests import pages
+from tests.patience import PROGRAM_S
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.runner import Runner
@@ -29,7 +30,7 @@ def run(folder: Path, *command: str) -> str:
     """What a command prints."""
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     ended = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=600, check=False
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=PROGRAM_S, check=False
     )
     assert (ended.returncode, ended.stderr) == (0, "")
     return ended.stdout

@@ -12,6 +12,7 @@ from xml.sax.saxutils import escape
 import pytest
 
 from tests import pages
+from tests.patience import PROGRAM_S
 from tests.tracks import assert_avoids
 from tests.web_ui.test_skeletons import skeleton
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
@@ -72,7 +73,7 @@ def test_the_test_of_the_page_passes(pytester: pytest.Pytester, monkeypatch: pyt
     for name, text in FILES.items():
         (pytester.path / name).write_text(text)
     plugin = ["-p", "thymio_sim_ros.pytest_plugin", "-p", "no:cacheprovider"]
-    pytester.runpytest_subprocess(*plugin, "test_avoid.py", timeout=600).assert_outcomes(passed=2)
+    pytester.runpytest_subprocess(*plugin, "test_avoid.py", timeout=PROGRAM_S).assert_outcomes(passed=2)
 
 
 def test_every_word_of_the_page_is_on_it() -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests import pages
+from tests.patience import PROGRAM_S
 
 ROOT = Path(__file__).parents[1]
 PAGE = pages.read("grading.md")
@@ -36,7 +37,7 @@ def folder(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Path:
 def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     """pytest in that folder, in a process of its own."""
     plugin = ["-p", "thymio_sim_ros.pytest_plugin", "-p", "no:cacheprovider"]
-    return pytester.runpytest_subprocess(*plugin, *arguments, timeout=600)
+    return pytester.runpytest_subprocess(*plugin, *arguments, timeout=PROGRAM_S)
 
 
 def test_the_page_has_its_examples() -> None:

@@ -23,9 +23,6 @@ def test_the_text_of_step_1_is_that_of_the_blocks() -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("setsid") is None, reason="the program setsid is not installed")
 @pytest.mark.skipif(importlib.util.find_spec("rclpy") is None, reason="needs ROS")
-def test_the_commands_do_what_the_page_promises(
-    tmp_path: Path, ros_domain: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(terminals, "DEADLINE_S", 300.0)  # four laps in one command
+def test_the_commands_do_what_the_page_promises(tmp_path: Path, ros_domain: int) -> None:
     with terminals.reader(tmp_path, ros_domain) as reader:
         reader.follow(TEXT)

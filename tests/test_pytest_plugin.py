@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import PROGRAM_S
+
 ROOT = Path(__file__).parents[1]
 PLUGIN = "thymio_sim_ros.pytest_plugin"
 HAS_ROS = importlib.util.find_spec("rclpy") is not None
@@ -24,7 +26,7 @@ def run(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Run:
     (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: thymio_sim_ros\nVersion: 0\n")
     (installed / "entry_points.txt").write_text(f"[pytest11]\n{PLUGIN} = {PLUGIN}\n")
     monkeypatch.setenv("PYTHONPATH", f"{installed.parent}:{ROOT}")
-    return lambda *arguments: pytester.runpytest_subprocess("-p", "no:cacheprovider", *arguments, timeout=600)
+    return lambda *arguments: pytester.runpytest_subprocess("-p", "no:cacheprovider", *arguments, timeout=PROGRAM_S)
 
 
 def test_the_fixtures_are_there_without_a_line_in_conftest(pytester: pytest.Pytester, run: Run) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import PATIENCE_S, PROGRAM_S
 from thymio_sim_ros.cli import runner, suite
 
 pytest.importorskip("rclpy")
@@ -18,8 +19,6 @@ from tests import pages
 from tests.processes import Process, wait_until_asleep
 
 README = pages.read("../README.md")
-START_S = 60.0
-END_S = 20.0
 
 
 def words_of(pattern):
@@ -67,14 +66,14 @@ def test_the_node_of_the_readme_drives_the_robot(ros, tmp_path):
     odometry: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     try:
-        ros.until(lambda: odometry, START_S, what="odometry")
+        ros.until(lambda: odometry, PATIENCE_S, what="odometry")
         assert odometry[-1].pose.pose.position.x == 0.0
         with subprocess.Popen([sys.executable, str(wanderer)]) as node:
             try:
-                ros.until(lambda: odometry[-1].pose.pose.position.x > 0.05, START_S, what="a moving robot")
+                ros.until(lambda: odometry[-1].pose.pose.position.x > 0.05, PATIENCE_S, what="a moving robot")
                 wait_until_asleep(node.pid)
                 node.send_signal(signal.SIGINT)
-                assert node.wait(END_S) == 0
+                assert node.wait(PATIENCE_S) == 0
             finally:
                 node.kill()
     finally:
@@ -86,7 +85,7 @@ def test_the_test_of_the_readme_passes(pytester, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
     pytester.makepyfile(wanderer=node, test_wanderer=test)
     assert len([line for line in test.splitlines() if line.strip()]) <= 10
-    result = pytester.runpytest_subprocess("-p", "thymio_sim_ros.pytest_plugin", "test_wanderer.py", timeout=600)
+    result = pytester.runpytest_subprocess("-p", "thymio_sim_ros.pytest_plugin", "test_wanderer.py", timeout=PROGRAM_S)
     result.assert_outcomes(passed=1)
 
 

@@ -34,9 +34,8 @@ except KeyboardInterrupt:
 
 
 @pytest.fixture
-def follow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], terminals.Reader]:
-    """Follow a page; nothing it shows takes long."""
-    monkeypatch.setattr(terminals, "DEADLINE_S", 10.0)
+def follow(tmp_path: Path) -> Callable[[str], terminals.Reader]:
+    """Follow a page."""
 
     def make(text: str) -> terminals.Reader:
         with terminals.reader(tmp_path, domain=0) as reader:
@@ -85,7 +84,7 @@ def test_a_promise_that_is_broken_is_an_error(follow: Callable[[str], terminals.
 def test_a_command_that_does_not_end_or_print_is_an_error(
     follow: Callable[[str], terminals.Reader], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(terminals, "DEADLINE_S", 1.0)
+    monkeypatch.setattr(terminals, "PROGRAM_S", 1.0)
     with pytest.raises(AssertionError, match="after 1 s: 'sleep 1000' has not ended"):
         follow(console("$ sleep 1000"))
 

@@ -13,6 +13,7 @@ import pytest
 
 from tests.aseba_vm.engines import AVAILABLE
 from tests.aseba_vm.vectors import SHIPPED, is_set, load
+from tests.patience import PROGRAM_S
 
 ROOT = Path(__file__).parents[2]
 
@@ -34,7 +35,7 @@ def run(folder):
         "tests/aseba_vm/test_vectors.py",
     ]
     ended = subprocess.run(
-        [*command, "--vectors", str(folder)], cwd=ROOT, capture_output=True, text=True, timeout=300, check=False
+        [*command, "--vectors", str(folder)], cwd=ROOT, capture_output=True, text=True, timeout=PROGRAM_S, check=False
     )
     words = ended.stdout.splitlines()[-1].replace(",", "").split() if ended.stdout else []
     counts = {word: int(number) for number, word in pairwise(words) if number.isdigit()}

@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 from benchmarks.lib import command, page, report
+from tests.patience import PROGRAM_S
 
 ROOT = Path(__file__).parents[2]
-WITHIN_S = 240
 FOUND = {
     "module": lambda name: importlib.util.find_spec(name) is not None,
     "program": lambda name: shutil.which(name) is not None,
@@ -33,7 +33,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     argv = [sys.executable, "-m", "benchmarks", *arguments]
     return subprocess.run(
-        argv, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=WITHIN_S, check=False
+        argv, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=PROGRAM_S, check=False
     )
 
 

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
@@ -21,8 +22,6 @@ from thymio_sim_ros.bridge.server import BridgeServer
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
-
-DEADLINE_S = 20.0
 
 T = TypeVar("T")
 
@@ -58,7 +57,7 @@ class Sink:
 
     async def until(self, condition: Callable[[list[ev.Event]], bool]) -> None:
         """Wait until the events satisfy the condition."""
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             while not condition(self.events):
                 self._arrived.clear()
                 await self._arrived.wait()
@@ -77,7 +76,7 @@ class Client:
 
     async def next(self, kind: type[T]) -> T:
         """The next message of this kind; others are skipped."""
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             while True:
                 message = wire.decode_server(await self.connection.recv())
                 if isinstance(message, kind):
@@ -134,7 +133,7 @@ class Bridge:
 
     async def until(self, condition: Callable[[], bool]) -> None:
         """Run the event loop until the condition is true."""
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             while not condition():
                 await asyncio.sleep(0)
 
@@ -194,7 +193,7 @@ class StalledClient:
 
     async def next(self, kind: type[T]) -> T:
         """Read until the next message of this kind."""
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             while True:
                 message = await self._next()
                 if isinstance(message, kind):

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import threading
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge.fair_lock import FairLock
-
-DEADLINE_S = 20.0
 
 
 def test_one_thread_at_a_time_has_the_lock() -> None:
@@ -30,7 +29,7 @@ def test_one_thread_at_a_time_has_the_lock() -> None:
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(DEADLINE_S)
+        thread.join(PATIENCE_S)
     assert count == len(threads) * rounds
 
 
@@ -54,7 +53,7 @@ def test_a_waiting_thread_gets_the_lock_before_the_thread_that_released_it() -> 
 
     patient = threading.Thread(target=take_it_once)
     patient.start()
-    came = has_had_it.wait(DEADLINE_S)
+    came = has_had_it.wait(PATIENCE_S)
     is_enough.set()
     patient.join()
     restless.join()

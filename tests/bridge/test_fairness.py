@@ -11,7 +11,8 @@ from contextlib import asynccontextmanager, suppress
 import pytest
 from websockets.exceptions import ConnectionClosedError
 
-from tests.bridge.peers import DEADLINE_S, Client, StalledClient, bridge, masked_frame, run
+from tests.bridge.peers import Client, StalledClient, bridge, masked_frame, run
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import ServerSettings
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol.bounded_json import MAX_STRUCTURE
@@ -185,7 +186,7 @@ def test_silent_connections_are_limited_and_free_their_slots_when_they_close() -
             silent = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(5)]
             for one in silent:
                 one.setblocking(False)
-            async with asyncio.timeout(DEADLINE_S):
+            async with asyncio.timeout(PATIENCE_S):
                 with suppress(ConnectionError):
                     assert await loop.sock_recv(silent[-1], 1) == b""
             for one in silent:

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClient, bridge, run
+from tests.bridge.peers import CHANNEL, Bridge, Client, StalledClient, bridge, run
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import ServerSettings
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue
 from thymio_sim_ros.bridge.protocol import messages as ms
@@ -160,7 +161,7 @@ def test_a_flood_of_control_answers_to_a_stalled_client_is_bounded() -> None:
             server.server.execute(ev.ParametersChanged((ms.Parameter("/n.p", "x" * limit),)))
             stalled = StalledClient(server.port)
             await stalled.connect()
-            async with asyncio.timeout(DEADLINE_S):
+            async with asyncio.timeout(PATIENCE_S):
                 while server.server.client_count == 2:
                     try:
                         await stalled.say(ms.GetParameters((), "more"))

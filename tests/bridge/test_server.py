@@ -12,7 +12,8 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.typing import Subprotocol
 
 from tests.bridge.certificates import make_certificate
-from tests.bridge.peers import CHANNEL, DEADLINE_S, Client, StalledClient, bridge, run
+from tests.bridge.peers import CHANNEL, Client, StalledClient, bridge, run
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerSettings, Tokens
 from thymio_sim_ros.bridge.handshake import WRONG_TOKEN
 from thymio_sim_ros.bridge.protocol import messages as ms
@@ -304,7 +305,7 @@ def test_a_client_that_waits_for_the_event_sink_does_not_delay_closing() -> None
             server.sink.full = True
             await busy.send(*[ms.ClientMessageData(1, b"data")] * 100)
             await server.sink.until(lambda events: len(events) == 2)
-            async with asyncio.timeout(DEADLINE_S):
+            async with asyncio.timeout(PATIENCE_S):
                 await server.server.close()
             assert server.server.client_count == 0
 
@@ -320,7 +321,7 @@ def test_a_stalled_client_does_not_delay_closing() -> None:
             await server.sink.until(lambda events: len(events) == 1)
             for _ in range(20_000):
                 server.publish(KILOBYTE)
-            async with asyncio.timeout(DEADLINE_S):
+            async with asyncio.timeout(PATIENCE_S):
                 await server.server.close()
             assert server.server.client_count == 0
             stalled.abort()

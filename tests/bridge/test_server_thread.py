@@ -17,6 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from tests.bridge.certificates import make_certificate, trusting
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
@@ -25,7 +26,6 @@ from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.switchboard import events as ev
 
 CHANNEL = ms.Channel(1, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
-DEADLINE_S = 20.0
 
 
 class Sink:
@@ -96,7 +96,7 @@ def test_without_ipv6_the_other_loopback_is_enough(monkeypatch: pytest.MonkeyPat
 def test_a_client_may_connect_by_ipv6() -> None:
     server, _ = start()
     with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:
-        assert isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.ServerInfo)
+        assert isinstance(wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.ServerInfo)
         assert server.client_count == 1
     server.close()
 
@@ -117,12 +117,12 @@ def test_commands_of_another_thread_arrive_in_order() -> None:
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
-        assert sink.subscribed.wait(DEADLINE_S)
+        assert sink.subscribed.wait(PATIENCE_S)
         for number in range(100):
             server.publish(1, number, b"x")
         times: list[int] = []
         while len(times) < 100:
-            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            message = wire.decode_server(client.recv(timeout=PATIENCE_S))
             if isinstance(message, ms.MessageData):
                 times.append(message.time_ns)
         assert times == list(range(100))
@@ -134,14 +134,14 @@ def test_data_and_other_commands_do_not_overtake_each_other() -> None:
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
-        assert sink.subscribed.wait(DEADLINE_S)
+        assert sink.subscribed.wait(PATIENCE_S)
         for number in range(200):
             for _ in range(number % 3):
                 server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, str(number))))
             server.publish(1, number, b"x")
         received: list[str] = []
         while received.count("data 199") < 1:
-            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            message = wire.decode_server(client.recv(timeout=PATIENCE_S))
             if isinstance(message, ms.MessageData):
                 received.append(f"data {message.time_ns}")
             elif isinstance(message, ms.Status):
@@ -158,20 +158,20 @@ def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
 
         def post(self, event: ev.Event) -> None:
             super().post(event)
-            assert self.may_go_on.wait(DEADLINE_S)
+            assert self.may_go_on.wait(PATIENCE_S)
 
     sink = Busy()
     server = ServerThread(ServerInfo("test", ()), sink, port=0)
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
-        assert sink.subscribed.wait(DEADLINE_S)
+        assert sink.subscribed.wait(PATIENCE_S)
         server.publish(1, 7, b"x")
         server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "sent")))
-        while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+        while not isinstance(message := wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
-        assert wire.decode_server(client.recv(timeout=DEADLINE_S)) == ms.Status(StatusLevel.INFO, "sent")
+        assert wire.decode_server(client.recv(timeout=PATIENCE_S)) == ms.Status(StatusLevel.INFO, "sent")
         sink.may_go_on.set()
     server.close()
 
@@ -185,19 +185,19 @@ def test_data_of_another_thread_arrives_with_tls(tmp_path: Path) -> None:
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trusting(cert)) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
-        assert sink.subscribed.wait(DEADLINE_S)
+        assert sink.subscribed.wait(PATIENCE_S)
         for number in range(100):
             server.publish(1, number, number.to_bytes(4, "little") * 500)
         numbers: list[int] = []
         while len(numbers) < 100:
-            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            message = wire.decode_server(client.recv(timeout=PATIENCE_S))
             if isinstance(message, ms.MessageData):
                 assert message.payload == message.time_ns.to_bytes(4, "little") * 500
                 numbers.append(message.time_ns)
         assert numbers == list(range(100))
         server.close()
         with pytest.raises(ConnectionClosed, match="1001"):
-            client.recv(timeout=DEADLINE_S)
+            client.recv(timeout=PATIENCE_S)
 
 
 def test_a_command_that_cannot_be_encoded_harms_neither_its_sender_nor_later_ones(
@@ -207,10 +207,10 @@ def test_a_command_that_cannot_be_encoded_harms_neither_its_sender_nor_later_one
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
-        assert sink.subscribed.wait(DEADLINE_S)
+        assert sink.subscribed.wait(PATIENCE_S)
         server.post(ev.SendToClient(1, ms.ParameterValues((ms.Parameter("/n.p", float("nan")),))))
         server.publish(1, 7, b"x")
-        while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+        while not isinstance(message := wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
     server.close()
@@ -235,7 +235,7 @@ def test_a_thread_that_sends_without_pauses_does_not_block_new_clients() -> None
                     connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS, close_timeout=0)
                 )
                 client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
-                while not isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+                while not isinstance(wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.MessageData):
                     pass
     finally:
         is_enough.set()
@@ -284,10 +284,10 @@ def test_closing_ends_the_thread_and_closes_connections() -> None:
     server, _ = start()
     started = set(threading.enumerate()) - before
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
-        client.recv(timeout=DEADLINE_S)
+        client.recv(timeout=PATIENCE_S)
         server.close()
         with pytest.raises(ConnectionClosed, match="1001"):
-            client.recv(timeout=DEADLINE_S)
+            client.recv(timeout=PATIENCE_S)
     assert started
     assert not any(thread.is_alive() for thread in started)
 

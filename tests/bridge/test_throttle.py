@@ -6,6 +6,7 @@ import asyncio
 
 import pytest
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import throttle
 from thymio_sim_ros.bridge.throttle import ClientTime, Throttle
 
@@ -103,7 +104,7 @@ def test_clients_that_are_disconnected_while_they_pause_or_wait_stop_no_other_on
         pausing.cancel()
         await other
 
-    asyncio.run(asyncio.wait_for(scenario(), 60.0))
+    asyncio.run(asyncio.wait_for(scenario(), PATIENCE_S))
 
 
 def test_a_client_that_is_disconnected_as_its_turn_comes_stops_no_other_one() -> None:
@@ -115,7 +116,7 @@ def test_a_client_that_is_disconnected_as_its_turn_comes_stops_no_other_one() ->
         pauses[0].cancel()
         await pauses[1]
 
-    asyncio.run(asyncio.wait_for(scenario(), 60.0))
+    asyncio.run(asyncio.wait_for(scenario(), PATIENCE_S))
 
 
 def test_a_client_that_leaves_pauses_for_the_rest_of_its_time(clock: Clock) -> None:

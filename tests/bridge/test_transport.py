@@ -11,7 +11,8 @@ from contextlib import asynccontextmanager
 
 import pytest
 
-from tests.bridge.peers import DEADLINE_S, run
+from tests.bridge.peers import run
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge.transport import SharedTransport
 
 CHUNK = struct.Struct("<II992x")
@@ -36,7 +37,7 @@ class Ends:
     async def read(self, size: int) -> bytes:
         """Read this number of bytes, or fewer at the end."""
         data = bytearray()
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             while len(data) < size:
                 piece = await asyncio.get_running_loop().sock_recv(self.peer, 1 << 16)
                 if not piece:

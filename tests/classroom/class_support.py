@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.processes import START_S, Process, wait_for_port
+from tests.patience import PATIENCE_S, until
+from tests.processes import Process, wait_for_port
 
 _POLL_S = 0.2
 
@@ -47,7 +47,7 @@ class RunningClass:
             None if fields is None else json.dumps(fields).encode(),
             {"Authorization": f"Bearer {given}"},
         )
-        with urllib.request.urlopen(request, timeout=START_S) as answer:
+        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
             body: bytes = answer.read()
             return body
 
@@ -62,8 +62,11 @@ class RunningClass:
 
     def until(self, pupil: str, condition: Callable[[Any], bool]) -> Any:
         """Wait for a state of a pupil and return it."""
-        deadline = time.monotonic() + START_S
-        while not condition(found := self.pupil(pupil)):
-            assert time.monotonic() < deadline, f"{found}\n{self.process.output}"
-            time.sleep(_POLL_S)
-        return found
+        found: list[Any] = []
+
+        def is_reached() -> bool:
+            found[:] = [self.pupil(pupil)]
+            return condition(found[0])
+
+        until(is_reached, lambda: f"{found}\n{self.process.output}", every_s=_POLL_S)
+        return found[0]

@@ -7,16 +7,15 @@ import importlib.util
 import json
 import os
 import pathlib
-import select
 import signal
 import socket
 import subprocess
 import sys
-import time
 
 import pytest
 
 from tests import disk
+from tests.patience import PATIENCE_S, until
 from tests.processes import free_port
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.cli import main, suite
@@ -145,7 +144,9 @@ def test_the_runner_needs_no_ros():
         "from thymio_sim_ros.cli import main as cli\n"
         "sys.exit(cli.main(['runner', '--seconds', '1']))\n"
     )
-    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
+    result = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=PATIENCE_S, check=False
+    )
     assert result.returncode == 0, result.stderr
     assert "real_time_factor" in result.stdout
 
@@ -263,13 +264,10 @@ def test_a_run_that_is_interrupted_keeps_what_it_made(tmp_path, number):
     log, sound = tmp_path / "run.jsonl", tmp_path / "sound.wav"
     command = [*COMMAND, "runner", "--seconds", LONG_S, "--log", str(log), "--sound", str(sound)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
-        deadline = time.monotonic() + 120
-        while not (log.exists() and '"crc"' in log.read_text()):
-            assert running.poll() is None, running.communicate()
-            assert time.monotonic() < deadline
-            select.select([], [], [], 0.05)
+        until(lambda: running.poll() is not None or (log.exists() and '"crc"' in log.read_text()))
+        assert running.poll() is None, running.communicate()
         running.send_signal(number)
-        output, errors = running.communicate(timeout=120)
+        output, errors = running.communicate(timeout=PATIENCE_S)
     assert running.returncode == -number  # so that the loop of a shell around it ends, too
     seconds = json.loads(output)["seconds"]
     assert 0 < seconds < float(LONG_S)

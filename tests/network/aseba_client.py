@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import socket
-import time
 
 from aseba_vm.protocol import FrameReader, Message, decode, encode
-
-DEADLINE_S = 60.0
-"""Time-out of any answer, generous for loaded computers."""
+from tests.patience import PATIENCE_S, Deadline
 
 
 class AsebaClient:
@@ -17,7 +14,7 @@ class AsebaClient:
 
     def __init__(self, port: int) -> None:
         self.port = port
-        self.stream = socket.create_connection(("127.0.0.1", port), DEADLINE_S)
+        self.stream = socket.create_connection(("127.0.0.1", port), PATIENCE_S)
         self.stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._reader = FrameReader()
         self._received: list[Message] = []
@@ -27,14 +24,14 @@ class AsebaClient:
 
     def wait_for(self, *kinds: type[Message]) -> Message:
         """Return the next message of these classes; others are skipped."""
-        end_s = time.monotonic() + DEADLINE_S
-        while time.monotonic() < end_s:
+        deadline = Deadline()
+        while not deadline.is_over:
             while self._received:
                 message = self._received.pop(0)
                 if isinstance(message, kinds):
                     return message
-            self._read(end_s - time.monotonic())
-        raise TimeoutError(f"no {[kind.__name__ for kind in kinds]} within {DEADLINE_S} s")
+            self._read(deadline.left_s)
+        raise TimeoutError(f"no {[kind.__name__ for kind in kinds]} within {PATIENCE_S} s")
 
     def ask(self, message: Message, *kinds: type[Message]) -> Message:
         self.send(message)
@@ -43,7 +40,7 @@ class AsebaClient:
     @property
     def is_closed_by_server(self) -> bool:
         """Wait until the server closes the connection; False if it does not."""
-        self.stream.settimeout(DEADLINE_S)
+        self.stream.settimeout(PATIENCE_S)
         try:
             while self.stream.recv(1 << 16):
                 pass

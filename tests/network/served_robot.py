@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from aseba_vm.protocol import Message
+from tests.patience import PATIENCE_S, until
 from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.network_node import NetworkNode
@@ -20,7 +21,6 @@ from thymio_sim_ros.sim.commands import Command
 T = TypeVar("T")
 
 TICK_S = 0.01
-DEADLINE_S = 20.0
 
 
 class ServedRobot:
@@ -37,11 +37,7 @@ class ServedRobot:
         self._nodes.deliver = self._network.deliver
         self._thread.call(self._thread.hub.add, self._network)
         self._thread.call(self._nodes.start)
-        end_s = time.monotonic() + DEADLINE_S
-        while not self._thread.ports:
-            assert time.monotonic() < end_s, self.warnings
-            time.sleep(TICK_S)
-        self.port = self._thread.ports["robot"]
+        self.port = until(lambda: self._thread.ports, lambda: self.warnings)["robot"]
 
     def do(self, function: Callable[[AsebaDevice], T]) -> T:
         """Call a function with the device in its thread, let the device run, and return the value."""
@@ -67,7 +63,7 @@ class ServedRobot:
     def _in_thread(self, function: Callable[[], T]) -> T:
         found: list[T] = []
         done = asyncio.run_coroutine_threadsafe(_call(function, found), self._thread._loop)
-        done.result(DEADLINE_S)
+        done.result(PATIENCE_S)
         return found[0]
 
 

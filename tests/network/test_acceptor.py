@@ -6,9 +6,8 @@ import asyncio
 import errno
 import socket
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.network.acceptor import Acceptor
-
-DEADLINE_S = 20.0
 
 
 class _Listener(socket.socket):
@@ -30,7 +29,7 @@ def test_an_error_is_reported_and_the_client_is_accepted_later() -> None:
     async def connect() -> bytes:
         acceptor = Acceptor([listener], serve, errors.append)
         reader, writer = await asyncio.open_connection(*listener.getsockname())
-        answer = await asyncio.wait_for(reader.read(), DEADLINE_S)  # to the end: it is closed when it has been served
+        answer = await asyncio.wait_for(reader.read(), PATIENCE_S)  # to the end: it is closed when it has been served
         writer.close()
         await writer.wait_closed()
         assert acceptor.count == 0

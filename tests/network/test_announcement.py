@@ -9,10 +9,9 @@ import uuid
 
 import pytest
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.network import announcement
 from thymio_sim_ros.network.announcement import ASEBA, Announcement, Announcer, aseba_properties
-
-DEADLINE_S = 30.0
 
 
 class Browser:
@@ -34,7 +33,7 @@ class Browser:
 
     def wait_for(self, name, *, is_there):
         while (name in self.found) != is_there:
-            if not self.changed.wait(DEADLINE_S):
+            if not self.changed.wait(PATIENCE_S):
                 return False
             self.changed.clear()
         return True

@@ -22,7 +22,8 @@ from aseba_vm.protocol import (
     Variables,
     encode,
 )
-from tests.network.aseba_client import DEADLINE_S, AsebaClient
+from tests.network.aseba_client import AsebaClient
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.network import aseba_server
 from thymio_sim_ros.network.hub import Hub, Network
 from thymio_sim_ros.network.settings import NetworkSettings
@@ -86,7 +87,7 @@ class Bench:
         """Wait until the thread has done all that was asked of it."""
         done = threading.Event()
         self.thread.call(done.set)
-        assert done.wait(DEADLINE_S)
+        assert done.wait(PATIENCE_S)
 
     def client(self, number=1):
         self.clients.append(AsebaClient(self.thread.ports[f"robot{number}"]))
@@ -152,7 +153,7 @@ def test_a_client_that_leaves_is_removed(make):
     client.ask(ListNodes(0, 5), NodePresent)
     client.stream.sendall(b"\x40\x00\x00")  # and half a frame
     client.close()
-    assert bench.nodes[0].left.wait(DEADLINE_S)
+    assert bench.nodes[0].left.wait(PATIENCE_S)
     assert not bench.nodes[0].clients
 
 
@@ -234,7 +235,7 @@ def test_many_messages_at_once_are_handled_in_small_groups_between_those_of_othe
     bench = make(robots=2)
     client, other = bench.client(1), bench.client(2)
     client.ask(ListNodes(0, 5), NodePresent)
-    client.stream.settimeout(DEADLINE_S)
+    client.stream.settimeout(PATIENCE_S)
     client.stream.sendall(encode(Run(0, 99)) * 20_000)
     assert other.ask(ListNodes(0, 5), NodePresent)
     assert client.ask(ListNodes(0, 5), NodePresent)
@@ -251,7 +252,7 @@ def test_a_port_that_is_taken_is_reported(make):
         thread.call(thread.hub.add, Network("anna", Nodes(1)))
         done = threading.Event()
         thread.call(done.set)
-        assert done.wait(DEADLINE_S)
+        assert done.wait(PATIENCE_S)
         thread.close()
     assert warnings == [f"Aseba port of anna: cannot listen on 127.0.0.1:{port}: address already in use"]
 
@@ -265,7 +266,7 @@ def test_clients_that_are_being_accepted_at_the_end_are_disconnected(passes):
         hub.add(Network("robot", Nodes(1)))
         (port,) = server.ports
         await asyncio.sleep(0)
-        clients.extend(socket.create_connection(("127.0.0.1", port), DEADLINE_S) for _ in range(20))
+        clients.extend(socket.create_connection(("127.0.0.1", port), PATIENCE_S) for _ in range(20))
         for _ in range(passes):  # of the loop, which accept them step by step
             await asyncio.sleep(0)
         await server.close()
@@ -315,7 +316,7 @@ def test_anything_may_arrive(make):
     sent = 0
     while sent < FUZZED:
         client = bench.client(1)
-        client.stream.settimeout(DEADLINE_S)
+        client.stream.settimeout(PATIENCE_S)
         try:
             for _ in range(rng.randrange(1, 200)):
                 frame = bytearray(rng.choice(samples))
@@ -336,6 +337,6 @@ def test_anything_may_arrive(make):
     assert witness.ask(GetVariables(0, 1, 5, 1), Variables) == Variables(1, 5, (7,))
     witness.close()
     while bench.nodes[0].clients:
-        assert bench.nodes[0].left.wait(DEADLINE_S)
+        assert bench.nodes[0].left.wait(PATIENCE_S)
         bench.settle()
     assert not [warning for warning in bench.warnings if "internal error" in warning]

@@ -7,7 +7,6 @@ import os
 import pty
 import queue
 import socket
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from random import Random
@@ -15,12 +14,11 @@ from random import Random
 import pytest
 
 from aseba_vm.protocol import ListNodes, NodePresent, Run, UserMessage, encode
+from tests.patience import PATIENCE_S, until
 from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
 from thymio_sim_ros.network import robot_link
 from thymio_sim_ros.network.robot_link import LinkEvent, LinkLost, LinkOpened, LinkReceived, RobotLink
 from thymio_sim_ros.network.robot_target import SerialTarget, Target, TcpTarget
-
-DEADLINE_S = 20.0
 
 
 class Events:
@@ -31,7 +29,7 @@ class Events:
         self.is_full = False
 
     def next(self) -> LinkEvent:
-        return self.queue.get(timeout=DEADLINE_S)
+        return self.queue.get(timeout=PATIENCE_S)
 
 
 @contextmanager
@@ -47,7 +45,7 @@ def linked(target: Target) -> Iterator[tuple[RobotLink, Events]]:
 @pytest.fixture
 def listener() -> Iterator[socket.socket]:
     with socket.create_server(("127.0.0.1", 0)) as server:
-        server.settimeout(DEADLINE_S)
+        server.settimeout(PATIENCE_S)
         yield server
 
 
@@ -56,7 +54,7 @@ def port_of(listener: socket.socket) -> TcpTarget:
 
 
 def received(connection: socket.socket, size: int) -> bytes:
-    connection.settimeout(DEADLINE_S)
+    connection.settimeout(PATIENCE_S)
     data = b""
     while len(data) < size:
         data += connection.recv(size - len(data))
@@ -104,7 +102,7 @@ def test_a_robot_that_is_not_there_is_reported_and_found_later() -> None:
         assert isinstance(lost, LinkLost)
         assert lost.reason
         with socket.create_server(("127.0.0.1", target.port)) as server:
-            server.settimeout(DEADLINE_S)
+            server.settimeout(PATIENCE_S)
             server.accept()[0].close()
             while isinstance(event := events.next(), LinkLost):
                 pass
@@ -144,10 +142,7 @@ def test_a_robot_that_does_not_read_is_given_up(listener: socket.socket, monkeyp
         connection, _ = listener.accept()
         with connection:
             assert events.next() == LinkOpened()
-            end_s = time.monotonic() + DEADLINE_S
-            while events.queue.empty():
-                assert time.monotonic() < end_s
-                link.send(bytes(60_000))
+            until(lambda: link.send(bytes(60_000)) or not events.queue.empty())
             assert isinstance(events.next(), LinkLost)
 
 

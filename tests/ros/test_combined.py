@@ -8,6 +8,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from tests.patience import PATIENCE_S
 from tests.processes import free_port
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
@@ -38,12 +39,12 @@ def test_a_page_opened_from_elsewhere_reaches_the_bridge_if_its_origin_is_allowe
         for host in (here, elsewhere):
             opening = {"subprotocols": SUBPROTOCOLS, "origin": f"http://{host}:{page.port}"}
             if host in hosts:
-                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=10).close()
+                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=PATIENCE_S).close()
                 with connect(f"ws://{host}:{bridge.port}", **opening) as connection:
                     assert connection.subprotocol == SUBPROTOCOLS[0]
                 continue
             with pytest.raises(OSError, match="refused"):
-                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=10)
+                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=PATIENCE_S)
             with pytest.raises(ConnectionRefusedError), connect(f"ws://{host}:{bridge.port}", **opening):
                 pass
 

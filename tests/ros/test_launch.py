@@ -14,6 +14,8 @@ from typing import Any
 import pytest
 import yaml
 
+from tests.patience import PATIENCE_S
+
 pytest.importorskip("rclpy")
 
 from tests.processes import Process, free_port, wait_for_port
@@ -23,8 +25,6 @@ from thymio_sim_ros.device.layout import LAYOUTS
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.simulator import parameters as simulator_params
 from thymio_sim_ros.suite_config import SuiteConfig
-
-START_S = 60.0
 
 ROOT = Path(__file__).parents[2]
 LAUNCH = ROOT / "thymio_sim_ros" / "launch" / "thymio.launch.py"
@@ -211,10 +211,10 @@ def test_the_nodes_run_with_a_namespace_names_and_a_file_of_parameters(ros, desc
             module = f"thymio_sim_ros.ros.{MODULES[node['executable']]}"
             started.append(Process(tmp_path, module, *_command_line(description, node, tmp_path, **arguments)))
         wanted = {f"/lab1/{robot}/{topic}" for robot in ("anna", "bert") for topic in ("odom", "tf", "_aseba/status")}
-        ros.until(lambda: all(map(ros.node.count_publishers, wanted)), START_S, what=f"publishers of {wanted}")
+        ros.until(lambda: all(map(ros.node.count_publishers, wanted)), PATIENCE_S, what=f"publishers of {wanted}")
         assert ros.node.count_publishers("/tf") == 0
         nodes = {(name, "/lab1") for name in MODULES}
-        ros.until(lambda: nodes <= set(ros.node.get_node_names_and_namespaces()), START_S, what="all nodes")
+        ros.until(lambda: nodes <= set(ros.node.get_node_names_and_namespaces()), PATIENCE_S, what="all nodes")
         for port in ("port", "foxglove_port"):
             wait_for_port(int(arguments[port]))
     finally:

@@ -13,6 +13,7 @@ from std_msgs.msg import Int16MultiArray
 from std_srvs.srv import SetBool, Trigger
 
 from tests.bridge.studio import Studio
+from tests.patience import PATIENCE_S
 from tests.processes import Process, free_port
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
 from thymio_sim_ros.bridge.protocol import messages as ms
@@ -21,7 +22,6 @@ from thymio_sim_ros.ros.interface.names import GLOBAL
 
 pytestmark = pytest.mark.process
 
-START_S = 60.0
 OF_ROS = ("/parameter_events", "/rosout")
 
 PROGRAM = """<!DOCTYPE aesl-source>
@@ -52,7 +52,7 @@ def suite(ros, tmp_path) -> Iterator[Callable[..., dict[str, int]]]:
         module = "thymio_sim_ros.ros.combined"
         started.append(Process(folder, module, "--ros-args", "-r", f"__ns:={namespace}", *arguments, *words))
         state = f"{namespace}/simulator/_state"
-        ros.until(lambda: ros.node.count_publishers(state), START_S, what=f"a simulator in {namespace}")
+        ros.until(lambda: ros.node.count_publishers(state), PATIENCE_S, what=f"a simulator in {namespace}")
         return ports
 
     yield start
@@ -80,7 +80,7 @@ FORWARD = Twist(linear=Vector3(x=0.1))
 
 def test_everything_moves_and_works(ros, suite):
     ports = suite("/lab1", "-p", "cmd_vel_timeout:=0.0")
-    ros.until(lambda: ros.node.count_publishers("/lab1/_aseba/status"), START_S, what="the runtime's robot")
+    ros.until(lambda: ros.node.count_publishers("/lab1/_aseba/status"), PATIENCE_S, what="the runtime's robot")
     status = Status(ros, "/lab1")
     outside = [
         name
@@ -120,7 +120,9 @@ def test_two_suites_in_one_domain_do_not_meet(ros, suite):
     suite("/lab1", "-p", "cmd_vel_timeout:=0.0")
     suite("/lab2", "-r", "/clock:=/lab2/clock", "-p", "namespaced_tf:=true")
     for lab in ("/lab1", "/lab2"):
-        ros.until(lambda lab=lab: ros.node.count_publishers(f"{lab}/_aseba/status"), START_S, what=f"robots of {lab}")
+        ros.until(
+            lambda lab=lab: ros.node.count_publishers(f"{lab}/_aseba/status"), PATIENCE_S, what=f"robots of {lab}"
+        )
         assert set_parameters(ros, {"script.source": PROGRAM}, node=f"{lab}/aseba_runtime").successful
     assert ros.node.count_publishers("/clock") == ros.node.count_publishers("/lab2/clock") == 1
     assert ros.node.count_publishers("/tf") == ros.node.count_publishers("/lab2/tf") == 1
@@ -139,7 +141,7 @@ def test_two_suites_in_one_domain_do_not_meet(ros, suite):
 
 def test_several_robots_move_with_their_simulator(ros, suite):
     suite("/robot1", playground="two_robots")
-    ros.until(lambda: ros.node.count_publishers("/robot1/blue/_aseba/status"), START_S, what="the runtime's robots")
+    ros.until(lambda: ros.node.count_publishers("/robot1/blue/_aseba/status"), PATIENCE_S, what="the runtime's robots")
     odometry = {name: ros.collect(Odometry, f"/robot1/{name}/odom") for name in ("red", "blue")}
     said(ros, Twist, "/robot1/red/cmd_vel", FORWARD, lambda: moved(odometry["red"]) > 0.02, "the red robot drives")
     assert moved(odometry["blue"]) == 0.0

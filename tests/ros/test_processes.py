@@ -13,12 +13,11 @@ import pytest
 from nav_msgs.msg import Odometry
 from std_msgs.msg import Int16MultiArray
 
+from tests.patience import PATIENCE_S
 from tests.processes import Process, free_port
 from thymio_sim_ros.ros.interface import convert_readings
 
 pytestmark = pytest.mark.process
-
-START_S = 60.0
 
 
 @pytest.fixture
@@ -62,8 +61,8 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     suite = process("thymio_sim_ros.cli.main", "--program", "line_follower", *ports)
     odometry: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
-    ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
-    ros.until(lambda: len(suite.output.splitlines()) >= 6, START_S)
+    ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, PATIENCE_S, what="a moving robot")
+    ros.until(lambda: len(suite.output.splitlines()) >= 6, PATIENCE_S)
     page, foxglove, layout, access, domain, stop = suite.output.splitlines()[:6]
     assert str(port) in page
     assert str(foxglove_port) in foxglove
@@ -71,7 +70,7 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     assert "this computer only" in access
     assert domain == f"Domain    ROS_DOMAIN_ID {ros.domain}, this computer only"
     assert "Ctrl-C" in stop
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
     connection.request("GET", "/config.json")
     assert str(foxglove_port).encode() in connection.getresponse().read()
     connection.close()
@@ -89,7 +88,7 @@ def test_two_interrupts_at_once_end_it_cleanly(ros, process):
     suite = process("thymio_sim_ros.cli.main", "--headless")
     odometry: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
-    ros.until(lambda: odometry, START_S, what="odometry")
+    ros.until(lambda: odometry, PATIENCE_S, what="odometry")
     suite.signal(signal.SIGINT)
     suite.signal(signal.SIGINT)
     assert suite.wait() == 0, suite.output
@@ -105,8 +104,8 @@ def test_nodes_in_processes_of_their_own_talk(ros, process):
     odometry: list[Odometry] = []
     ros.node.create_subscription(Int16MultiArray, "/_motor/target", targets.append, 10)
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
-    ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
-    ros.until(lambda: targets, START_S, what="wheel targets of the program")
+    ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, PATIENCE_S, what="a moving robot")
+    ros.until(lambda: targets, PATIENCE_S, what="wheel targets of the program")
 
 
 PING = (
@@ -119,14 +118,14 @@ def test_robots_of_runtimes_in_different_processes_hear_each_other(ros, process,
     anna = runtime(PING.replace("onevent ping emit pong", "var got = 0\nonevent pong got ="), robots=["anna"]).robots[0]
     arguments = ["-p", "robots:=[bert]", "-p", "first_id:=2", "-p", f"script.source:={PING}"]
     process("thymio_sim_ros.ros.aseba.node", "--ros-args", "-p", "use_sim_time:=false", *arguments)
-    ros.until(lambda: ros.node.count_subscribers("/_aseba/network") == 2, START_S, what="the other runtime")
+    ros.until(lambda: ros.node.count_subscribers("/_aseba/network") == 2, PATIENCE_S, what="the other runtime")
     publisher = ros.publisher(Int16MultiArray, "/anna/_aseba/emit")
 
     def is_answered():
         publisher.publish(Int16MultiArray(layout=convert_readings.layout([("ping", 1)]), data=[41]))
         return anna.device.variables.get("got") == (42 + 1,)
 
-    ros.until(is_answered, START_S, what="the answer of the other process")
+    ros.until(is_answered, PATIENCE_S, what="the answer of the other process")
 
 
 @pytest.mark.parametrize(
@@ -141,7 +140,7 @@ def test_robots_of_runtimes_in_different_processes_hear_each_other(ros, process,
 def test_each_executable_ends_with_0(ros, process, module, name):
     port = ["-p", f"port:={free_port()}"] if name in ("foxglove_bridge", "web_ui") else []
     node = process(f"thymio_sim_ros.ros.{module}", "--ros-args", "-p", "use_sim_time:=false", *port)
-    ros.until(lambda: name in ros.node.get_node_names(), START_S, what=f"node {name}")
+    ros.until(lambda: name in ros.node.get_node_names(), PATIENCE_S, what=f"node {name}")
     node.signal(signal.SIGINT)
     assert node.wait() == 0, node.output
     assert "Traceback" not in node.output

@@ -11,6 +11,7 @@ from std_msgs.msg import Int16MultiArray, String
 from std_srvs.srv import Trigger
 
 from tests.bridge.studio import Studio, set_and_answer
+from tests.patience import PATIENCE_S
 from tests.processes import Process, free_port, wait_for_port
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros import combined
@@ -19,7 +20,6 @@ from thymio_sim_ros.suite_config import SuiteConfig
 
 pytestmark = pytest.mark.process
 
-START_S = 60.0
 ROBOTS = ("blue", "red")
 NODES = {"simulator", "aseba_runtime", "foxglove_bridge", "web_ui"}
 
@@ -47,7 +47,7 @@ def studio(ros, start):
     """A client of the bridge of a suite with two robots without a program."""
     port = start("--playground", "two_robots", "--program", "none")
     wait_for_port(port)
-    with Studio(port, lambda condition, what="": ros.until(condition, START_S, what=what)) as client:
+    with Studio(port, lambda condition, what="": ros.until(condition, PATIENCE_S, what=what)) as client:
         yield client
 
 
@@ -72,10 +72,10 @@ def test_every_endpoint_of_nodes_that_match_each_other_is_there(ros, start):
         ros.end(life)
     ros.until(lambda: not NODES & set(ros.node.get_node_names()), what="the end of the nodes")
     start("--playground", "two_robots")
-    ros.until(lambda: set(ros.node.get_node_names()) >= NODES, START_S, what="the nodes of the process")
+    ros.until(lambda: set(ros.node.get_node_names()) >= NODES, PATIENCE_S, what="the nodes of the process")
     hidden = {"_aseba_runtime", "_foxglove_subscriber", "_foxglove_publisher"}
-    ros.until(lambda: set(ros.node.get_node_names()) >= hidden, START_S, what="the peers")
-    ros.until(lambda: endpoints(ros, NODES | hidden) >= promised, START_S, what="every endpoint")
+    ros.until(lambda: set(ros.node.get_node_names()) >= hidden, PATIENCE_S, what="the peers")
+    ros.until(lambda: endpoints(ros, NODES | hidden) >= promised, PATIENCE_S, what="every endpoint")
 
 
 def test_programs_drive_all_robots_and_others_see_the_commands(ros, start):
@@ -91,20 +91,20 @@ def test_programs_drive_all_robots_and_others_see_the_commands(ros, start):
         )
     ros.until(
         lambda: len(odometry) == 2 and all(abs(one.twist.twist.linear.x) > 0.01 for one in odometry.values()),
-        START_S,
+        PATIENCE_S,
         what="two robots that drive",
     )
-    ros.until(lambda: targets == set(ROBOTS), START_S, what="commands on the topics of both")
+    ros.until(lambda: targets == set(ROBOTS), PATIENCE_S, what="commands on the topics of both")
 
 
 def test_time_reaches_the_programs(ros, start):
     start("--playground", "line", "--program", "line_follower", "--headless")
     driven: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", driven.append, 10)
-    ros.until(lambda: driven and driven[-1].pose.pose.position.x > 0.02, START_S, what="a robot that drives")
+    ros.until(lambda: driven and driven[-1].pose.pose.position.x > 0.02, PATIENCE_S, what="a robot that drives")
     ros.call(Trigger, "/simulator/reset")
     driven.clear()
-    ros.until(lambda: driven and driven[-1].pose.pose.position.x > 0.02, START_S, what="a program that restarts")
+    ros.until(lambda: driven and driven[-1].pose.pose.position.x > 0.02, PATIENCE_S, what="a program that restarts")
 
 
 def test_a_client_of_the_bridge_reaches_all_nodes_and_other_clients(ros, studio):
@@ -119,7 +119,7 @@ def test_a_client_of_the_bridge_reaches_all_nodes_and_other_clients(ros, studio)
         studio.read()
         return any(isinstance(one, ms.MessageData) and one.payload == text for one in studio.received)
 
-    ros.until(is_heard, START_S, what="the message of a client")
+    ros.until(is_heard, PATIENCE_S, what="the message of a client")
     service = studio.service("/red/reset_odometry")
     studio.send(ms.ServiceRequest(service.id, 5, "cdr", serialize_message(Trigger.Request())))
     assert studio.next(ms.ServiceResponse).call_id == 5

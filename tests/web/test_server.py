@@ -11,11 +11,11 @@ import threading
 
 import pytest
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.web import Content, PageThread, Settings
 from thymio_sim_ros.web import connections as places
 from thymio_sim_ros.web.connections import Phase
 
-DEADLINE_S = 20.0
 SCRIPT = "export {};" * 20_000
 
 
@@ -51,7 +51,7 @@ def serve(folder, warnings):
 
 
 def ask(port, path="/", method="GET", host="127.0.0.1", **headers):
-    connection = http.client.HTTPConnection(host, port, timeout=DEADLINE_S)
+    connection = http.client.HTTPConnection(host, port, timeout=PATIENCE_S)
     connection.request(method, path, headers={name.replace("_", "-"): value for name, value in headers.items()})
     response = connection.getresponse()
     body = response.read()
@@ -61,7 +61,7 @@ def ask(port, path="/", method="GET", host="127.0.0.1", **headers):
 
 def talk(port, *words):
     """The answers of the server to these bytes until it closes the connection."""
-    with socket.create_connection(("127.0.0.1", port), timeout=DEADLINE_S) as connection:
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as connection:
         for word in words:
             connection.sendall(word)
         with contextlib.suppress(ConnectionResetError):
@@ -111,7 +111,7 @@ def test_only_get_and_head_are_answered(serve, method):
 
 
 def test_a_connection_serves_many_requests(serve):
-    connection = http.client.HTTPConnection("127.0.0.1", serve(), timeout=DEADLINE_S)
+    connection = http.client.HTTPConnection("127.0.0.1", serve(), timeout=PATIENCE_S)
     for path in ("/", "/nothing", "/assets/index-DGs6OHeF.js", "/"):
         connection.request("GET", path)
         response = connection.getresponse()
@@ -222,7 +222,7 @@ def test_a_client_that_does_not_read_is_disconnected(serve, folder, monkeypatch)
     monkeypatch.delitem(places.MIN_WAIT_S, Phase.STALLED)
     port = serve(max_connections=1)
     with socket.socket() as connection:
-        connection.settimeout(DEADLINE_S)
+        connection.settimeout(PATIENCE_S)
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         connection.connect(("127.0.0.1", port))
         connection.sendall(b"GET /large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n")
@@ -234,7 +234,7 @@ def test_silent_clients_and_partial_requests_do_not_block_others(serve, warnings
     port = serve(max_connections=20)
     with contextlib.ExitStack() as stack:
         for number in range(60):
-            one = stack.enter_context(socket.create_connection(("127.0.0.1", port), timeout=DEADLINE_S))
+            one = stack.enter_context(socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S))
             if number % 2:
                 one.sendall(b"GET / HTTP/1.1\r\n")
         assert ask(port)[0].status == 200
@@ -253,7 +253,7 @@ def test_closing_ends_the_thread_and_frees_the_port(folder):
     before = threading.active_count()
     server = PageThread(Content(folder, b"{}"), Settings(1), address="localhost", port=0, warn=print)
     assert ask(server.port)[0].status == 200
-    with socket.create_connection(("127.0.0.1", server.port), timeout=DEADLINE_S) as held:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE_S) as held:
         server.close()
         server.close()
         assert held.recv(1) == b""
@@ -266,4 +266,4 @@ def test_closing_before_the_server_has_started_leaves_nothing_behind(folder):
     server = PageThread(Content(folder, b"{}"), Settings(1), address="localhost", port=0, warn=print)
     server.close()
     with pytest.raises(ConnectionRefusedError):
-        socket.create_connection(("127.0.0.1", server.port), timeout=DEADLINE_S)
+        socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE_S)

@@ -11,11 +11,12 @@ from typing import Any
 
 import pytest
 
+from tests.patience import PATIENCE_MS
 from tests.processes import Process, free_port
 from thymio_sim_ros import resources
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-DEADLINE_MS = 60_000
+DEADLINE_MS = PATIENCE_MS
 FLAGS = [
     "--no-sandbox",
     "--enable-unsafe-swiftshader",

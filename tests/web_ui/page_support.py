@@ -11,11 +11,12 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from tests.patience import PATIENCE_MS
 from tests.processes import wait_for_port
 
 DROPS = 3
 STEPS = 12
-STEP_MS = 5000
+STEP_MS = PATIENCE_MS / STEPS
 
 MARKS = [pytest.mark.browser, pytest.mark.process]
 

@@ -21,6 +21,7 @@ from typing import Any
 from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from tests.patience import Deadline
 from tests.processes import SUITE, Process, free_port
 from tests.web_ui.conftest import CHROMIUM, FLAGS
 from tests.web_ui.page_support import open_page
@@ -73,8 +74,9 @@ def opened(browser: Browser, *arguments: str) -> Iterator[Page]:
 def film(page: Page, seconds: float, act: Callable[[], Any] = lambda: None) -> Frames:
     """Take pictures for some seconds of simulated time; `act` is called between them."""
     frames: Frames = []
-    end_s = time.monotonic() + seconds / PACE
-    while (now_s := time.monotonic()) < end_s:
+    end = Deadline(seconds / PACE)
+    while not end.is_over:
+        now_s = time.monotonic()
         picture = Image.open(io.BytesIO(page.screenshot(type="png"))).convert("RGB")
         frames.append((picture, now_s))
         act()

@@ -7,6 +7,7 @@ import pytest
 
 from aseba_vm.cli.main import main
 from tests.aseba_vm.cli.samples import AESL
+from tests.patience import PATIENCE_S
 
 
 def test_a_missing_file_is_code_2(tmp_path, capsys):
@@ -102,5 +103,5 @@ def test_closed_standard_streams_are_opened_to_the_null_device(tmp_path, argumen
     program = tmp_path / "program.aseba"
     program.write_text("var n = 1\n")
     command = f'"{sys.executable}" -m aseba_vm {arguments.format(program)} {closed}'
-    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (code, "", "")

@@ -9,6 +9,7 @@ import pytest
 
 from aseba_vm.cli.main import main
 from tests.aseba_vm.cli.samples import ASCII, ASEBA, GOOD
+from tests.patience import PATIENCE_S
 
 
 def test_a_program_is_run(file, capsys):
@@ -86,7 +87,7 @@ def test_ctrl_c_ends_a_run_silently(file):
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
         running.stdout.readline()  # it runs
         running.send_signal(signal.SIGINT)
-        _, errors = running.communicate(timeout=60)
+        _, errors = running.communicate(timeout=PATIENCE_S)
     assert (running.returncode, errors) == (-signal.SIGINT, b"")
 
 
@@ -103,7 +104,7 @@ def test_definitions_of_the_command_line_obey_the_rules_of_files(arguments, file
 def test_a_closed_output_pipe_causes_no_traceback(file):
     name = file("var a\nwhile a < 30000 do a++ end")
     command = f"{sys.executable} -m aseba_vm run {name} --trace | head -1"
-    ended = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120, check=False)
+    ended = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     assert len(ended.stdout.splitlines()) == 1
     assert ended.stderr == ""
 

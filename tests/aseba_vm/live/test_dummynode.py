@@ -14,7 +14,6 @@ import pytest
 from aseba_vm import TargetDescription, Variable, VirtualMachine, compile
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.live.wire import (
-    DEADLINE,
     GET_VARIABLES,
     LIST_NODES,
     PRESENT,
@@ -24,6 +23,7 @@ from tests.aseba_vm.live.wire import (
     VARIABLES,
     Wire,
 )
+from tests.patience import PATIENCE_S
 
 pytestmark = [
     pytest.mark.process,
@@ -59,7 +59,7 @@ def node() -> Iterator[tuple[Wire, int]]:
         try:
             assert process.stdout is not None
             port = int(re.search(r"port=(\d+)", process.stdout.readline()).group(1))
-            with socket.create_connection(("127.0.0.1", port), DEADLINE) as stream:
+            with socket.create_connection(("127.0.0.1", port), PATIENCE_S) as stream:
                 wire = Wire(stream)
                 wire.send_words(0, LIST_NODES, 5)
                 yield wire, wire.wait_for(PRESENT).source

@@ -14,7 +14,6 @@ import pytest
 from aseba_vm import aesl, compile
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.live.wire import (
-    DEADLINE,
     GET_NODE_DESCRIPTION,
     LIST_NODES,
     PRESENT,
@@ -24,6 +23,7 @@ from tests.aseba_vm.live.wire import (
     describe,
 )
 from tests.aseba_vm.vectors import load
+from tests.patience import PATIENCE_S
 
 LOCALE = Path("/usr/lib/locale/C.utf8")
 
@@ -71,7 +71,7 @@ def _load(job):
     node = aesl.Node(THYMIO_II.name, NODE, vector["source"])
     path.write_text(aesl.dumps(aesl.Network(events, constants, nodes=(node,))), "utf-8")
     with socket.create_server(("127.0.0.1", 0)) as server:
-        server.settimeout(DEADLINE)
+        server.settimeout(PATIENCE_S)
         command = ["asebamassloader", "--once", str(path), f"tcp:host=127.0.0.1;port={server.getsockname()[1]}"]
         environment = os.environ | {"LOCPATH": str(locales)}
         quiet = subprocess.DEVNULL

@@ -10,9 +10,7 @@ import struct
 from typing import NamedTuple
 
 from aseba_vm import TargetDescription
-
-DEADLINE = 30.0
-"""Time-out of any answer in seconds, generous for loaded computers."""
+from tests.patience import PATIENCE_S
 
 DESCRIPTION, VARIABLE, EVENT, NATIVE = 0x9000, 0x9001, 0x9002, 0x9003
 VARIABLES, STATE, PRESENT = 0x9005, 0x900A, 0x900C
@@ -37,7 +35,7 @@ class Wire:
 
     def __init__(self, stream: socket.socket) -> None:
         self.stream = stream
-        stream.settimeout(DEADLINE)
+        stream.settimeout(PATIENCE_S)
         stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def send(self, source: int, kind: int, payload: bytes = b"") -> None:

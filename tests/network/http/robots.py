@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from aseba_vm.protocol import Message
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
@@ -82,7 +83,7 @@ class ServerThread:
         self._is_ready = threading.Event()
         self._thread = threading.Thread(target=self._loop.run_until_complete, args=(self._serve(),), daemon=True)
         self._thread.start()
-        assert self._is_ready.wait(20)
+        assert self._is_ready.wait(PATIENCE_S)
 
     async def _serve(self) -> None:
         self.hub = Hub()
@@ -104,12 +105,12 @@ class ServerThread:
         async def called() -> Any:
             return function()
 
-        return asyncio.run_coroutine_threadsafe(called(), self._loop).result(20)
+        return asyncio.run_coroutine_threadsafe(called(), self._loop).result(PATIENCE_S)
 
     def end(self) -> None:
         """End server and thread; a second call has no effect."""
         if not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self._stop.set)
-            self._thread.join(20)
+            self._thread.join(PATIENCE_S)
             assert not self._thread.is_alive()
             self._loop.close()

@@ -11,13 +11,13 @@ import shutil
 import socket
 import subprocess
 import threading
-import time
 from pathlib import Path
 
 import pytest
 
 from aseba_vm.protocol import UserMessage
 from tests.network.http.robots import ServerThread
+from tests.patience import PATIENCE_S, until
 from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.network.http import server as limits
 from thymio_sim_ros.network.settings import OFF
@@ -25,7 +25,6 @@ from thymio_sim_ros.network.settings import OFF
 DATA = Path(__file__).parents[2] / "data" / "network"
 PROGRAM = (DATA / "http.aesl").read_bytes()
 N = "/nodes/thymio-II"
-DEADLINE_S = 20.0
 MUTATED = int(os.environ.get("THYMIO_SIM_FUZZ", "1200"))
 """Requests of the test with mutated ones."""
 
@@ -37,7 +36,8 @@ def serve():
         def start(*names, **settings):
             server = ServerThread(names or ("",), **settings)
             stack.callback(server.end)
-            until(lambda: len(json.loads(ask(server, "GET", "/nodes").body)) == len(server.names), settings)
+            if "tokens" not in settings:
+                until(lambda: len(json.loads(ask(server, "GET", "/nodes").body)) == len(server.names))
             return server
 
         yield start
@@ -53,15 +53,8 @@ class Answer:
         self.status, self.headers, self.body = response.status, response.headers, response.read()
 
 
-def until(condition, settings=()):
-    deadline = time.monotonic() + DEADLINE_S
-    while "tokens" not in settings and not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
-
-
 def ask(server, method, target, body=None, **headers):
-    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=DEADLINE_S)
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=PATIENCE_S)
     connection.request(method, target, body, {name.replace("_", "-"): value for name, value in headers.items()})
     with contextlib.closing(connection):
         return Answer(connection.getresponse())
@@ -71,7 +64,7 @@ class EventSource:
     """A client of server-sent events, as a browser is one (HTML Living Standard, section 9.2)."""
 
     def __init__(self, server, target):
-        self.connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=DEADLINE_S)
+        self.connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=PATIENCE_S)
         self.connection.request("GET", target, headers={"Accept": "text/event-stream"})
         self.response = self.connection.getresponse()
 
@@ -113,7 +106,7 @@ def test_a_course_in_requests(server):
 def test_curl_needs_no_options(server, tmp_path):
     def curl(target, *options):
         words = ["curl", "-s", "-w", "%{http_code}", *options, f"http://localhost:{server.port}{target}"]
-        return subprocess.run(words, capture_output=True, text=True, check=True, timeout=DEADLINE_S).stdout
+        return subprocess.run(words, capture_output=True, text=True, check=True, timeout=PATIENCE_S).stdout
 
     # more than 1024 bytes, for which curl expects "100 Continue" before it sends them
     program = tmp_path / "program.aesl"
@@ -147,7 +140,7 @@ def test_the_bridge_of_vpl_3(server):
 
 
 def test_one_connection_serves_many_requests(server):
-    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=DEADLINE_S)
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=PATIENCE_S)
     for method, target, body in [("GET", "/nodes", None), ("PUT", N, PROGRAM), ("GET", f"{N}/list", None)] * 3:
         connection.request(method, target, body)
         response = connection.getresponse()
@@ -179,7 +172,7 @@ def test_a_server_that_ends_closes_its_streams(serve):
 def test_a_client_that_does_not_read_its_stream_is_closed_and_others_get_theirs(server, monkeypatch):
     monkeypatch.setattr(limits, "MAX_QUEUED_EVENTS", 50)
     ask(server, "PUT", N, b"<network><event name='big' size='256'/><node name='thymio-II'></node></network>")
-    slow = socket.create_connection(("127.0.0.1", server.port), timeout=DEADLINE_S)
+    slow = socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE_S)
     slow.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
     slow.sendall(b"GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n")
     other = EventSource(server, "/events")
@@ -265,7 +258,7 @@ def talk(server, *parts, is_whole=False):
     """The bytes of the server until it closes the connection; this side closes after the parts of a whole request."""
     found = b""
     address = ("127.0.0.1", server.port)
-    with socket.create_connection(address, timeout=DEADLINE_S) as connection, contextlib.suppress(ConnectionError):
+    with socket.create_connection(address, timeout=PATIENCE_S) as connection, contextlib.suppress(ConnectionError):
         for part in parts:
             connection.sendall(part)
         if is_whole:

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import socket
-import time
 from collections.abc import Callable
 from typing import TypeVar
 
+from tests.patience import PATIENCE_S, Deadline
 from thymio_sim_ros.network.tdm.protocol import messages as m
 from thymio_sim_ros.network.tdm.protocol.codec import StreamReader, decode, encode, framed
 
 T = TypeVar("T", bound=m.Message)
-
-DEADLINE_S = 10.0
 
 
 class RawClient:
     """Sends messages and waits for those that are expected."""
 
     def __init__(self, port: int, *, greet: bool = True) -> None:
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=DEADLINE_S)
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S)
         self._stream = StreamReader()
         self.received: list[m.Message] = []
         if greet:
@@ -47,8 +45,8 @@ class RawClient:
 
     def wait_for(self, kind: type[T], accept: Callable[[T], bool] = lambda message: True) -> T:
         """Wait for a message, and forget those before it."""
-        end_s = time.monotonic() + DEADLINE_S
-        while time.monotonic() < end_s:
+        deadline = Deadline()
+        while not deadline.is_over:
             for index, message in enumerate(self.received):
                 if isinstance(message, kind) and accept(message):
                     del self.received[: index + 1]
@@ -58,6 +56,6 @@ class RawClient:
 
     def wait_for_end(self) -> None:
         """Wait until the server closes the connection."""
-        end_s = time.monotonic() + DEADLINE_S
+        deadline = Deadline()
         while self.read():
-            assert time.monotonic() < end_s
+            assert not deadline.is_over

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from aseba_vm.protocol.messages import Message
 from tests.network.tdm.machine_node import MachineNode
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.network.hub import Hub, Network
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.network.tdm_server import TdmServer
@@ -86,10 +87,10 @@ def served(*nodes: MachineNode, allowed_origins: tuple[str, ...] = (), **limits:
 
     thread = threading.Thread(target=lambda: asyncio.run(serve()), name="tdm")
     thread.start()
-    assert ready.wait(10)
+    assert ready.wait(PATIENCE_S)
     try:
         yield found[0]
     finally:
         found[0].loop.call_soon_threadsafe(stop.set)
-        thread.join(10)
+        thread.join(PATIENCE_S)
         assert not thread.is_alive()

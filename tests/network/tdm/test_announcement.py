@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import socket
-import time
 
 import pytest
 
 zeroconf = pytest.importorskip("zeroconf", reason="needs zeroconf (pip install zeroconf)")
 
+from tests.patience import until
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.thread import NetworkThread
 
@@ -22,13 +22,9 @@ def test_a_program_of_this_computer_finds_the_device_manager() -> None:
     name = f"Thymio Device Manager on {socket.gethostname()}".replace(".", "-").encode()[:63].decode(errors="ignore")
     try:
         with zeroconf.Zeroconf(interfaces=["127.0.0.1"]) as listener:
-            end_s = time.monotonic() + 20
-            found = None
-            while found is None and not warnings and time.monotonic() < end_s:
-                found = listener.get_service_info(KIND, f"{name}.{KIND}", timeout=1000)
+            found = until(lambda: warnings or listener.get_service_info(KIND, f"{name}.{KIND}", timeout=1000))
         if warnings:
             pytest.skip(warnings[0])
-        assert found is not None
         tcp_port, ws_port = thread.tdm_ports
         assert OFF not in (tcp_port, ws_port)
         assert (found.port, found.parsed_addresses()) == (tcp_port, ["127.0.0.1"])

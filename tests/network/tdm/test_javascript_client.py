@@ -16,6 +16,7 @@ import pytest
 
 from tests.network.tdm.machine_node import MachineNode
 from tests.network.tdm.served import served
+from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).parents[3]
 SCRIPT = ROOT / "tests" / "data" / "network" / "tdm_client.js"
@@ -51,7 +52,7 @@ def test_the_javascript_client_uses_a_robot(tmp_path: Path) -> None:
     with served(MachineNode(), MachineNode()) as found:
         environment = {**os.environ, "TDM_URL": f"ws://127.0.0.1:{found.ws_port}", "DOUBLE": PROGRAM}
         done = subprocess.run(
-            ["node", str(bundle)], env=environment, capture_output=True, text=True, timeout=60, check=False
+            ["node", str(bundle)], env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
         )
         said = [json.loads(line[1:]) for line in done.stdout.splitlines() if line.startswith("#")]
         assert said == [

@@ -5,11 +5,12 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from tests.patience import PATIENCE_S, until
 
 tdmclient = pytest.importorskip("tdmclient", reason="needs tdmclient (pip install tdmclient)")
 
@@ -19,7 +20,6 @@ from tests.network.tdm.served import Served, served
 
 pytestmark = pytest.mark.process
 
-DEADLINE_S = 60.0
 TIMER = targets.THYMIO_II.local_event_number("timer0")
 
 
@@ -51,14 +51,14 @@ class Command:
 
     def finish(self) -> str:
         """Wait for the end with exit code 0, and return the rest of the output."""
-        output, _ = self._popen.communicate(timeout=DEADLINE_S)
+        output, _ = self._popen.communicate(timeout=PATIENCE_S)
         assert self._popen.returncode == 0, output
         return output
 
     def stop(self) -> None:
         """End a command that runs forever."""
         self._popen.send_signal(signal.SIGINT)
-        self._popen.communicate(timeout=DEADLINE_S)
+        self._popen.communicate(timeout=PATIENCE_S)
 
 
 def test_list_shows_the_robots_and_ends(two: Served) -> None:
@@ -81,10 +81,7 @@ def test_run_translates_python_prints_and_is_stopped(two: Served, tmp_path: Path
     )
     command = Command(two, "run", "--robotname=thymio_1", str(script))
     node = two.networks[1].node
-    end_s = time.monotonic() + DEADLINE_S
-    while node.value("motor.left.target") != (200,):
-        assert time.monotonic() < end_s
-        time.sleep(0.02)
+    until(lambda: node.value("motor.left.target") == (200,))
     two.start_event(1, TIMER)
     assert command.read_until("tick") == "tick 42 200\n"
     command.stop()
@@ -144,7 +141,7 @@ client.disconnect()
 
 def test_a_script_like_a_notebook_drives_a_robot(two: Served) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", NOTEBOOK, str(two.tcp_port)], capture_output=True, text=True, timeout=DEADLINE_S
+        [sys.executable, "-c", NOTEBOOK, str(two.tcp_port)], capture_output=True, text=True, timeout=PATIENCE_S
     )
     assert done.stdout.splitlines() == [
         """{'error_msg': "no variable is called 'nonsense'", 'error_line': 0, 'error_col': 0}""",

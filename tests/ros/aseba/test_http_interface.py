@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from std_msgs.msg import Int16MultiArray, String
 
+from tests.patience import PATIENCE_S
 from tests.processes import free_port
 from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams
@@ -16,7 +17,6 @@ from thymio_sim_ros.ros.aseba.parameters import NetworkParams
 FILE = '<network><event size="1" name="ping"/><event size="1" name="pong"/><node name="thymio-II">{}</node></network>'
 OWN = FILE.format("var own = 5\nonevent ping\nown = event.args[0]\nemit pong own\n")
 BY_HTTP = FILE.format("# doubled\nvar n = 3\nonevent ping\nn = event.args[0] * 2\nemit pong n\n")
-DEADLINE_S = 20.0
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def ask(ros, runtime):
     pool = ThreadPoolExecutor(1)
 
     def request(method, target, body=None):
-        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=DEADLINE_S)
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
         try:
             connection.request(method, target, body)
             response = connection.getresponse()

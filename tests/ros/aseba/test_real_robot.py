@@ -33,6 +33,7 @@ from aseba_vm.protocol import (
 )
 from tests.network.aseba_client import AsebaClient
 from tests.network.served_robot import ServedRobot
+from tests.patience import PATIENCE_S
 from tests.processes import free_port
 from tests.ros.aseba.conftest import wait_until_it_runs
 from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
@@ -41,8 +42,6 @@ from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.sim.commands import PlayTone, SetLeds, StopSound
-
-START_S = 60.0
 
 TALK = """<network><event size="2" name="pong"/><event size="1" name="ping"/><node name="thymio-II">
 var n = 0
@@ -305,7 +304,9 @@ def test_a_simulated_robot_behind_a_network_moves_as_one_in_the_process(ros, tmp
         try:
             near = AsebaRuntime(ros.context, RuntimeParams(source=TALK, robot=f"tcp:127.0.0.1:{port}", robots=["near"]))
             ros.live(near)
-            ros.until(lambda: near.robots[0].device.status.state == "running", START_S, what="the robot is connected")
+            ros.until(
+                lambda: near.robots[0].device.status.state == "running", PATIENCE_S, what="the robot is connected"
+            )
             poses = ros.collect(Odometry, "/near/odom")
             drive = ros.publisher(Twist, "/near/cmd_vel")
 
@@ -323,7 +324,7 @@ def test_a_simulated_robot_behind_a_network_moves_as_one_in_the_process(ros, tmp
             ros.until(lambda: pongs and list(pongs[0].data) == [12, 7])
         finally:
             far.terminate()
-            assert far.wait(START_S) == 0
+            assert far.wait(PATIENCE_S) == 0
 
 
 def test_a_real_robot_is_a_node_for_other_programs_too(ros, remote_runtime):

@@ -16,13 +16,13 @@ from sensor_msgs.msg import Range
 from std_msgs.msg import ColorRGBA, Int16MultiArray
 from std_srvs.srv import Trigger
 
+from tests.patience import PATIENCE_S
 from tests.processes import free_port
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 
 pytestmark = pytest.mark.process
 
-START_S = 60.0
 WORLD = """<aseba-playground>
 <color name="white" r="0.9" g="0.9" b="0.9"/>
 <world w="100" h="80" color="white"/>
@@ -62,7 +62,7 @@ def test_a_student_node_drives_the_robot_of_aseba_playground(ros, tmp_path):
         address = f"tcp:127.0.0.1:{port}"
         node = ros.live(AsebaRuntime(ros.context, RuntimeParams(source=PROGRAM, robot=address, cmd_vel_timeout=0.5)))
         status = Status(ros)
-        ros.until(lambda: status["state"] == "running", START_S, what="the playground has started")
+        ros.until(lambda: status["state"] == "running", PATIENCE_S, what="the playground has started")
         assert node.robots[0].device.layout.startswith("thymio-II/")
         ros.until(lambda: ros.node.count_publishers("/odom"))
         poses, ranges = ros.collect(Odometry, "/odom"), ros.collect(Range, "/proximity/center")

@@ -9,6 +9,7 @@ import time
 
 import pytest
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.ros.compat import shm_cleanup
 
 HOLD = "import mmap, sys; f = open(sys.argv[1], 'r+b'); m = mmap.mmap(f.fileno(), 4096); print(1, flush=True); input()"
@@ -81,5 +82,5 @@ def test_a_node_starts_at_a_port_with_an_incomplete_file():
         age(port, 60)
         arguments = ["--ros-args", "-p", "playground:=nowhere"]
         command = [sys.executable, "-c", "from thymio_sim_ros.ros.simulator.node import main; main()", *arguments]
-        ended = subprocess.run(command, timeout=60, capture_output=True, text=True, check=False)
+        ended = subprocess.run(command, timeout=PATIENCE_S, capture_output=True, text=True, check=False)
     assert "nowhere" in ended.stderr

@@ -8,6 +8,7 @@ import pytest
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
+from tests.patience import Deadline
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 
@@ -41,8 +42,10 @@ def test_a_posted_value_wakes_the_executor(executor):
     mailbox = Mailbox(node, handled.append)
     rotate.spin_once(timeout_sec=0)
     threading.Timer(0, mailbox.post, ["bell"]).start()
+    deadline = Deadline()
     while not handled:
-        rotate.spin_once(timeout_sec=20.0)
+        rotate.spin_once(timeout_sec=deadline.left_s)
+        assert not deadline.is_over
     assert handled == ["bell"]
 
 

@@ -10,9 +10,8 @@ from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomic
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.ros.simulator.deferred_load import MAX_WAITING, DeferredLoad
-
-DEADLINE_S = 30.0
 
 
 class Loading:
@@ -30,7 +29,7 @@ class Loading:
 
     def _load(self, value: str) -> str:
         self.threads.append(threading.current_thread())
-        assert self.gate.wait(DEADLINE_S)
+        assert self.gate.wait(PATIENCE_S)
         if value == "bad":
             raise ValueError("no such map")
         return value.upper()

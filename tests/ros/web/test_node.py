@@ -9,6 +9,7 @@ import socket
 
 import pytest
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros import addresses, resources
 from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
@@ -27,7 +28,7 @@ def built_page(tmp_path, monkeypatch):
 
 
 def get(port, path, **headers):
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
     connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
     response = connection.getresponse()
     body = response.read()
@@ -120,7 +121,7 @@ def test_nothing_outside_the_page_is_served(ros, built_page, path):
 @pytest.mark.parametrize("path", ["/", "/config.json", "/playgrounds/line.json", "/assets/main.js"])
 def test_head_is_get_without_the_body(ros, built_page, path):
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
-    connection = http.client.HTTPConnection("127.0.0.1", page.port, timeout=10)
+    connection = http.client.HTTPConnection("127.0.0.1", page.port, timeout=PATIENCE_S)
     connection.request("HEAD", path)
     response = connection.getresponse()
     assert (response.status, response.read()) == (200, b"")

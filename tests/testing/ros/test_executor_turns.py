@@ -11,6 +11,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from tests.patience import PATIENCE_S
 from tests.testing.ros.test_graph import Echo
 from thymio_sim_ros.testing.ros import Ros
 from thymio_sim_ros.testing.ros.student import StudentError, spinning_forbidden
@@ -84,7 +85,7 @@ def test_callbacks_may_be_coroutines(ros):
     assert said.next().data == "open"
     heard.publish(String(data="bang"))
     with pytest.raises(ValueError, match="I fell over"):
-        ros.until(lambda: False, 5.0)
+        ros.until(lambda: False)
 
 
 def test_nodes_that_answer_each_other_do_not_keep_time_from_passing(ros, simulation):
@@ -127,7 +128,7 @@ def test_spinning_where_nothing_can_arrive_is_an_error(ros, at_once):
     def ask():
         ros.start(Spinning, arguments={"at_once": at_once})
         ros.publisher(String, "heard").publish(String())
-        ros.until(lambda: False, 5.0)
+        ros.until(lambda: False)
 
     with pytest.raises(StudentError, match=r"rclpy.spin_until_future_complete\(\) in a constructor or callback waits"):
         ask()
@@ -151,5 +152,5 @@ def test_a_spin_with_a_time_limit_or_in_a_thread_is_its_own_affair(ros):
         thread = threading.Thread(target=rclpy.spin_once, args=(node,), daemon=True)
         thread.start()
         ros.publisher(String, "heard").publish(String(data="x"))
-        thread.join(20.0)
+        thread.join(PATIENCE_S)
     assert not thread.is_alive()

@@ -89,14 +89,14 @@ def test_what_a_callback_raises_is_raised_in_the_test(ros):
     ros.start(Echo)
     ros.publisher(String, "heard").publish(String(data="bang"))
     with pytest.raises(ValueError, match="I fell over"):
-        ros.until(lambda: False, 5.0)
+        ros.until(lambda: False)
 
 
 def test_a_node_that_shuts_ros_down_is_an_error(ros):
     ros.start(Echo)
     ros.publisher(String, "heard").publish(String(data="bye"))
     with pytest.raises(pytest.fail.Exception, match=r"rclpy.shutdown\(\) belongs to main"):
-        ros.until(lambda: False, 5.0)
+        ros.until(lambda: False)
 
 
 def test_a_node_that_shuts_ros_down_at_its_start_is_an_error_too(ros):
