@@ -11,14 +11,15 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_srvs.srv import Trigger
 
+from tests.patience import PATIENCE_S
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
 from thymio_sim_ros.ros.aseba.bus import SLICE_S
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.ros.rclpy_ext.node_runner import run_node
 
 PROGRAMS = sorted((Path(__file__).parent.parent / "data" / "runaway").glob("*.aesl"))
-ANSWER_S = 10.0
-"""Far more than the second that a user waits: other tests use the machine too."""
+ANSWER_CPU_S = 1.0
+"""Processor time of the node's thread until it has answered six requests: the programs take all that it gets."""
 FLOOD = "var i\nvar k = 0\nwhile k == 0 do\ni = (i + 1) % 32\ncall leds.top(i, 0, 0)\nend"
 
 
@@ -32,12 +33,13 @@ def threaded(ros):
         thread = threading.Thread(target=run_node, args=(runnable, ros.context, stop.is_set))
         threads.append((runnable, thread))
         thread.start()
+        runnable.processor_s = partial(time.clock_gettime, time.pthread_getcpuclockid(thread.ident))
         return runnable
 
     yield make
     stop.set()
     for runnable, thread in threads:
-        thread.join(ANSWER_S)
+        thread.join(PATIENCE_S)
         assert not thread.is_alive()
         runnable.close()
 
@@ -50,10 +52,10 @@ def test_there_are_twenty_programs():
 def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
     robots = ["anna", "bert"]
     folders = {"card": str(tmp_path / "card"), "settings": str(tmp_path / "settings")}
-    threaded(robots=robots, path=str(program), **folders)
+    node = threaded(robots=robots, path=str(program), **folders)
     status = Status(ros, "/anna")
     ros.until(lambda: status.messages)
-    begun = time.monotonic()
+    began_s = node.processor_s()
     for robot in robots:
         assert get_variables(ros, "motor.left.target", robot=f"/{robot}") != [None]
     assert set_parameters(ros, {"robots.bert.script.source": "motor.left.target = 7"}).successful
@@ -61,7 +63,7 @@ def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
     assert answer.success
     ros.until(lambda: status["state"] == "stopped")
     assert get_variables(ros, "motor.left.target", robot="/anna") == [[0]]
-    assert time.monotonic() - begun < ANSWER_S
+    assert node.processor_s() - began_s < ANSWER_CPU_S
     assert all(path.name.startswith(("u", "r")) for path in (tmp_path / "card").rglob("*") if path.is_file())
 
 
