@@ -127,7 +127,7 @@ def ros_node(ros: Ros) -> Any:
 
 @pytest.fixture
 def spin_until(ros: Ros) -> Callable[..., Any]:
-    """`spin_until(condition, timeout=20.0, sim_time=None)`: `Ros.until`."""
+    """`spin_until(condition, timeout=None, sim_time=None)`: `Ros.until`."""
     return ros.until
 
 

@@ -179,6 +179,14 @@ def test_time_that_stood_still_is_reported(ros, simulation):
         ros.until(lambda: False, timeout=0.0)
 
 
+def test_waits_have_the_deadline_of_the_graph(ros):
+    messages = ros.collect(Bool, "light", qos=BEST_EFFORT)
+    ros.deadline_s = 0.0
+    for wait in (lambda: ros.until(lambda: False), messages.next, messages.wait, lambda: ros.publisher(Bool, "dark")):
+        with pytest.raises(pytest.fail.Exception, match="not within 0 s"):
+            wait()
+
+
 def test_incompatible_qos_is_reported(ros):
     ros.node.create_publisher(Bool, "light", BEST_EFFORT)
     ros.make_node("viewer").create_subscription(Bool, "light", lambda _: None, 10)

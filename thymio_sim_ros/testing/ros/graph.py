@@ -38,7 +38,7 @@ from thymio_sim_ros.testing.sources import beside
 __all__ = ["DEADLINE_S", "Ros"]
 
 DEADLINE_S = 20.0
-"""Default deadline of waits in which simulated time does not pass, in s of real time on an idle machine."""
+"""Initial `Ros.deadline_s`."""
 
 SLICE_S = 0.005
 """Longest wait of the executors in one turn, in s of real time."""
@@ -80,6 +80,11 @@ class Ros:
         self.domain = domain
         self.simulation: Stepped | None = None
         """The simulation of this test, if there is one; it owns simulated time."""
+        self.deadline_s = DEADLINE_S
+        """Default deadline of waits in which simulated time does not pass, in s of real time on an idle machine.
+
+        A wait for nodes in another process may need more on a machine that is busy.
+        """
         self._folder = folder
         self._threads = set(threading.enumerate())
         # Code under test may use the default context (`rclpy.ok()`). If it is in use already, it is left alone.
@@ -265,7 +270,7 @@ class Ros:
     def until(
         self,
         condition: Callable[[], Any],
-        timeout: float = DEADLINE_S,
+        timeout: float | None = None,
         *,
         sim_time: float | None = None,
         what: str = "",
@@ -273,14 +278,15 @@ class Ros:
         """Spin until the condition is true and return its value; fails the test with a report otherwise.
 
         With `sim_time`, the simulation is stepped by at most that many simulated seconds, however long that takes.
-        Without it, the wait lasts at most `timeout` seconds of real time on an idle machine, and simulated time does
-        not pass. A condition that needs the first message of a topic waits for it (`Recorder.latest`). Raises
-        LookupError for `sim_time` without a simulation.
+        Without it, the wait lasts at most `timeout` seconds (`deadline_s` if None) of real time on an idle machine, and
+        simulated time does not pass. A condition that needs the first message of a topic waits for it
+        (`Recorder.latest`). Raises LookupError for `sim_time` without a simulation.
         """
         __tracebackhide__ = True
         if sim_time is not None:
             return self._simulated().until(condition, sim_time, what=what)
         hint = "" if self.simulation is None else "\n(simulated time stood still meanwhile: sim_time= lets it pass)"
+        timeout = self.deadline_s if timeout is None else timeout
         return self.spin_until(
             condition, timeout, lambda: f"not within {timeout:g} s: {what or describe_condition(condition)}{hint}"
         )

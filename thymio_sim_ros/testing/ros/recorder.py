@@ -50,7 +50,7 @@ class Recorder(Sequence[Any]):
         self,
         where: Callable[[Any], Any] = lambda _: True,
         *,
-        timeout: float = 20.0,
+        timeout: float | None = None,
         sim_time: float | None = None,
     ) -> Any:
         """Wait for the next message that satisfies a condition; `timeout` and `sim_time` are those of `Ros.until`."""
@@ -62,7 +62,7 @@ class Recorder(Sequence[Any]):
 
         return self._until(found, timeout, sim_time=sim_time, what=f"the next message on {self.topic}")[0]
 
-    def wait(self, count: int = 1, *, timeout: float = 20.0, sim_time: float | None = None) -> None:
+    def wait(self, count: int = 1, *, timeout: float | None = None, sim_time: float | None = None) -> None:
         """Wait until so many messages are there."""
         __tracebackhide__ = True
         self._until(lambda: len(self) >= count, timeout, sim_time=sim_time, what=f"{count} messages on {self.topic}")
