@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, until
 from thymio_sim_ros.bridge.fair_lock import FairLock
 
 
@@ -35,29 +35,22 @@ def test_one_thread_at_a_time_has_the_lock() -> None:
 
 def test_a_waiting_thread_gets_the_lock_before_the_thread_that_released_it() -> None:
     lock = FairLock()
-    has_had_it, is_enough = threading.Event(), threading.Event()
+    order: list[str] = []
 
-    def take_it_again_and_again() -> None:
-        while not is_enough.is_set():
-            with lock:
-                pass
+    def wait_for_it() -> None:
+        with lock:
+            order.append("the one that waited")
 
-    restless = threading.Thread(target=take_it_again_and_again)
-    restless.start()
-
-    def take_it_once() -> None:
-        for _ in range(50):
-            with lock:
-                pass
-        has_had_it.set()
-
-    patient = threading.Thread(target=take_it_once)
-    patient.start()
-    came = has_had_it.wait(PATIENCE_S)
-    is_enough.set()
-    patient.join()
-    restless.join()
-    assert came
+    for _ in range(50):
+        lock.acquire()
+        waiting = threading.Thread(target=wait_for_it)
+        waiting.start()
+        until(lambda: lock._is_awaited, every_s=0.001)
+        lock.release()
+        with lock:
+            order.append("the one that released it")
+        waiting.join(PATIENCE_S)
+    assert order == ["the one that waited", "the one that released it"] * 50
 
 
 def test_an_error_releases_the_lock() -> None:
