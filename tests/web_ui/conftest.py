@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import shutil
 from collections.abc import Iterator
@@ -13,10 +12,11 @@ import pytest
 
 from tests.patience import PATIENCE_MS
 from tests.processes import Process, free_port
+from tests.web_ui.shared_world import SharedWorld
+from tests.web_ui.tabs import Tabs, checked_page
 from thymio_sim_ros import resources
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-DEADLINE_MS = PATIENCE_MS
 FLAGS = [
     "--no-sandbox",
     "--enable-unsafe-swiftshader",
@@ -25,7 +25,6 @@ FLAGS = [
     "--disable-sync",
     "--no-first-run",
 ]
-LOCAL = ("http://127.0.0.1:", "ws://127.0.0.1:", "data:", "blob:")
 
 
 @pytest.fixture(scope="session")
@@ -37,7 +36,7 @@ def browser() -> Iterator[Any]:
         pytest.skip("no Chromium on this machine")
     if resources.page() is None:
         pytest.skip("the page is not built: make web")
-    api.expect.set_options(timeout=DEADLINE_MS)
+    api.expect.set_options(timeout=PATIENCE_MS)
     with api.sync_playwright() as playing:
         browser = playing.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield browser
@@ -63,91 +62,32 @@ class Suites:
             self._running.pop().end()
 
 
-SHARED = ("at_rest", "exploring", "greeting", "twenty_robots")
-"""Fixtures with a suite that is shared by tests, which leave it as it is."""
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run the tests that share a suite one after another, so that it is started once; the others in their order."""
-
-    def turn(item: pytest.Item) -> int:
-        names = getattr(item, "fixturenames", ())
-        return next((at for at, name in enumerate(SHARED) if name in names), len(SHARED))
-
-    ours = [at for at, item in enumerate(items) if Path(__file__).parent in item.path.parents]
-    for at, item in zip(ours, sorted((items[at] for at in ours), key=turn), strict=True):
-        items[at] = item
-
-
-class SharedSuite:
-    """A suite for many tests that do not change it; one at a time, and none beside the suite of a test."""
-
-    UNCHANGED = """([playground, program]) => {
-        if (!window.thymio?.connected || window.thymio.state().simulator === null) return true;
-        const {simulator, programs} = window.thymio.state();
-        const isSame = ({name, state}) => name.split(".")[0] === program && !["stopped", "paused"].includes(state);
-        return simulator.playground === playground && !simulator.paused && Object.values(programs).every(isSame);
-    }"""
-
-    def __init__(self, folder: Path) -> None:
-        self._suites = Suites(folder)
-        self._resources = contextlib.ExitStack()
-        self._world: tuple[str, str] | None = None
-        self._address = ""
-
-    def start(self, playground: str, program: str) -> str:
-        """The address of its page; it is started unless it runs."""
-        if self._world != (playground, program):
-            from thymio_sim_ros.testing.ros.domain import reserved
-
-            self.end()
-            self._resources.enter_context(reserved())
-            self._resources.callback(self._suites.end)
-            self._address = self._suites("--playground", playground, "--program", program)
-            self._world = playground, program
-        return self._address
-
-    def check(self, page: Any) -> None:
-        """Fail, and start anew for the next test, if the world of this page has changed."""
-        assert self._world is not None
-        playground, program = self._world
-        if page.evaluate(self.UNCHANGED, [Path(playground).stem, program]):
-            return
-        self.end()
-        pytest.fail("this test has changed what it shares with others: it needs a suite of its own (fixture suite)")
-
-    def end(self) -> None:
-        """End it if it runs."""
-        self._world = None
-        self._resources.close()
+@pytest.fixture
+def suite(ros_domain, tmp_path) -> Iterator[Suites]:
+    """Start a suite with arguments, and return the address of its page: for tests of how a suite starts or ends."""
+    suites = Suites(tmp_path)
+    yield suites
+    suites.end()
 
 
 @pytest.fixture(scope="session")
-def _shared(tmp_path_factory) -> Iterator[SharedSuite]:
-    shared = SharedSuite(tmp_path_factory.mktemp("shared"))
+def _shared(browser, tmp_path_factory) -> Iterator[SharedWorld]:
+    shared = SharedWorld(tmp_path_factory.mktemp("shared"))
     yield shared
     shared.end()
 
 
 @pytest.fixture
-def at_rest(_shared, page) -> Iterator[str]:
-    """The address of a shared suite: a robot without a program in the playground "base"."""
-    yield _shared.start("base", "none")
-    _shared.check(page)
+def world(_shared) -> Iterator[SharedWorld]:
+    """Restart the world of the shared suite with a playground and a program, and return the address of its page."""
+    yield _shared
+    _shared.rest()
 
 
 @pytest.fixture
-def exploring(_shared, page) -> Iterator[str]:
-    """The address of a shared suite: a robot that drives about in the playground "base"."""
-    yield _shared.start("base", "explorer")
-    _shared.check(page)
-
-
-@pytest.fixture
-def greeting(_shared, page) -> Iterator[str]:
-    """The address of a shared suite: a robot that waits for a first visitor."""
-    yield _shared.start("line", "welcome")
-    _shared.check(page)
+def at_rest(world) -> str:
+    """The address of the page of a robot without a program in the playground "base"."""
+    return world("base")
 
 
 CLASS_NAMES = [f"thymio_{number}" for number in range(1, 21)]
@@ -163,30 +103,20 @@ def class_world(tmp_path_factory) -> Path:
     return world
 
 
-@pytest.fixture
-def twenty_robots(_shared, page, class_world) -> Iterator[str]:
-    """The address of a shared suite: twenty robots that wait."""
-    yield _shared.start(str(class_world), "welcome")
-    _shared.check(page)
+@pytest.fixture(scope="session")
+def _tabs(browser) -> Tabs:
+    return Tabs(browser)
 
 
 @pytest.fixture
-def _alone(_shared) -> None:
-    """One suite at a time: two processors are enough for no more."""
-    _shared.end()
-
-
-@pytest.fixture
-def suite(_alone, ros_domain, tmp_path) -> Iterator[Suites]:
-    """Start a suite with arguments; returns the address of its page."""
-    suites = Suites(tmp_path)
-    yield suites
-    suites.end()
-
-
-@pytest.fixture
-def page(browser) -> Iterator[Any]:
+def page(_tabs) -> Iterator[Any]:
     """A page that fails the test if a script on it fails or if it requests another host."""
+    yield from _tabs.lend()
+
+
+@pytest.fixture
+def own_page(browser) -> Iterator[Any]:
+    """Such a page with a browser profile of its own, for tests that change more of the browser than its storage."""
     yield from checked_page(browser)
 
 
@@ -196,19 +126,7 @@ def other_page(browser) -> Iterator[Any]:
     yield from checked_page(browser)
 
 
-def checked_page(browser: Any, **options: Any) -> Iterator[Any]:
-    """A page with its own browser profile; asserts at the end that there were no problems.
-
-    A pixel covers two by two of CSS, because the 3D view is drawn by software here; tests that compare pictures need
-    `device_scale_factor=1`.
-    """
-    size = {"viewport": {"width": 1024, "height": 768}, "device_scale_factor": 0.5}
-    options = size | {"bypass_csp": True} | options  # waiting evaluates
-    page = browser.new_page(**options)
-    page.set_default_timeout(DEADLINE_MS)
-    problems: list[str] = []
-    page.on("pageerror", lambda error: problems.append(f"script: {error}"))
-    page.on("request", lambda request: problems.append(request.url) if not request.url.startswith(LOCAL) else None)
-    yield page
-    page.close()
-    assert not problems
+@pytest.fixture
+def touch_page(_tabs) -> Iterator[Any]:
+    """Such a page on a touch screen."""
+    yield from _tabs.lend(has_touch=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import math
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -13,6 +12,8 @@ import pytest
 
 from tests.patience import PATIENCE_MS
 from tests.processes import wait_for_port
+from tests.web_ui.shared_world import SharedWorld
+from thymio_sim_ros.bridge.protocol import messages as ms
 
 DROPS = 3
 STEPS = 12
@@ -236,29 +237,21 @@ def wait_for_position(page: Any, part: str) -> dict[str, float]:
     return place
 
 
-def watch_it_avoid(page: Any, ros: Any) -> None:
+def watch_it_avoid(page: Any, world: SharedWorld) -> None:
     """Wait until the robot has driven from the middle of "base" to the wall, turned there and driven on.
 
     It must touch nothing on its way. The playground is reset first; then time is five times as fast.
     """
-    from std_msgs.msg import Bool
-
-    def pose() -> dict[str, float]:
-        found: dict[str, float] = page.evaluate("() => window.thymio.state().robot.latest.pose")
-        return found
-
-    def is_far_from(place: dict[str, float]) -> bool:
-        now = pose()
-        return math.hypot(now["x"] - place["x"], now["y"] - place["y"]) > 0.1
-
-    touched: list[bool] = []
-    ros.node.create_subscription(Bool, "/_collision", lambda message: touched.append(message.data), 10)
-    page.click("#time [data-verb=reset]")
-    ros.until(lambda: not is_far_from({"x": 0.0, "y": 0.0}), what="the robot in the middle")
-    page.select_option("#speed", "5")
-    ros.until(lambda: is_far_from({"x": 0.0, "y": 0.0}), what="a robot that drives")
-    ros.until(lambda: abs(pose()["yaw"]) > 0.5, what="a robot that turns")
-    turned = pose()
-    ros.until(lambda: is_far_from(turned), what="a robot that drives on")
+    pose = "window.thymio.state().robot.latest.pose"
+    is_far = f"([x, y]) => Math.hypot({pose}.x - x, {pose}.y - y) > 0.1"
+    with world.client() as client:
+        client.subscribe(1, "/_collision")
+        page.click("#time [data-verb=reset]")
+        page.wait_for_function(f"() => Math.hypot({pose}.x, {pose}.y) <= 0.1")
+        page.select_option("#speed", "5")
+        page.wait_for_function(is_far, arg=[0, 0])
+        page.wait_for_function(f"() => Math.abs({pose}.yaw) > 0.5")
+        page.wait_for_function(is_far, arg=page.evaluate(f"[{pose}.x, {pose}.y]"))
+        touched = [message.payload[-1] for message in client.read().received if isinstance(message, ms.MessageData)]
     assert not any(touched)
     page.select_option("#speed", "1")

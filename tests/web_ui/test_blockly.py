@@ -123,16 +123,16 @@ def choose(page, kind: str, field: int, option: str) -> None:
 
 
 @pytest.fixture
-def blocks(suite, page):
+def blocks(world, page):
     """The tab of a robot at rest."""
     page.set_viewport_size({"width": 1280, "height": 800})
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, world("base"))
     open_tab(page, "program")
     wait_for_service(page, "/aseba_runtime/check", "/aseba/step_line")
     return page
 
 
-def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(blocks, ros):
+def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(blocks, world):
     page = blocks
     begin(page, "blocks-empty")
     expect(page, ".blocks-hint").to_be_visible()
@@ -180,7 +180,7 @@ def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(bl
     choose(page, "thymio_motors_start", 0, "turning right on the spot")
     expect(page, VERDICT).to_have_text("No mistakes")
     page.click("[data-verb=run]")
-    watch_it_avoid(page, ros)
+    watch_it_avoid(page, world)
     expect(page, "#program-state").to_have_text("running")
 
     begin(page, "blocks-scratch_start")
@@ -193,7 +193,7 @@ def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(bl
     add(page, "Motion", "thymio_setMotor", below(page, "thymio_notouching", 4, 46))
     expect(page, VERDICT).to_have_text("No mistakes")
     page.click("[data-verb=run]")
-    watch_it_avoid(page, ros)
+    watch_it_avoid(page, world)
 
 
 def test_blocks_are_put_together_by_keys_and_run_one_by_one(blocks):

@@ -19,20 +19,11 @@ FAULTY = "var list[3]\nvar at = 7\nlist[at] = 1\n"
 
 
 @pytest.fixture
-def class_page(suite, page, class_world) -> Any:
+def class_page(world, page, class_world) -> Any:
     """Twenty robots that wait, and the tab with them."""
-    return opened(page, suite("--playground", str(class_world), "--program", "welcome"))
 
-
-@pytest.fixture
-def seen_class(twenty_robots, page) -> Any:
-    """The same for tests that only look."""
-    return opened(page, twenty_robots)
-
-
-def opened(page: Any, address: str) -> Any:
     page.set_viewport_size({"width": 1280, "height": 800})
-    open_page(page, address)
+    open_page(page, world(class_world, "welcome"))
     page.wait_for_function(RUN, arg="welcome")
     open_tab(page, "class")
     page.locator(".class-tile").nth(19).wait_for()
@@ -86,8 +77,8 @@ def test_a_program_for_all_and_one_pupil_in_trouble(class_page, tmp_path):
     page.wait_for_function("(before) => window.thymio.state().timeNs < before", arg=before)
 
 
-def test_names_are_given_by_keys_shown_everywhere_and_kept(seen_class):
-    page = seen_class
+def test_names_are_given_by_keys_shown_everywhere_and_kept(class_page):
+    page = class_page
     page.click("[data-names=edit]")
     fields = page.locator(".class-field")
     playwright.expect(fields).to_have_count(20)
@@ -104,8 +95,8 @@ def test_names_are_given_by_keys_shown_everywhere_and_kept(seen_class):
     playwright.expect(page.locator(".class-name").nth(1)).to_have_text("Ben")
 
 
-def test_it_is_accessible_in_both_themes_and_every_language(seen_class):
-    page = seen_class
+def test_it_is_accessible_in_both_themes_and_every_language(class_page):
+    page = class_page
     page.emulate_media(reduced_motion="reduce")
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)

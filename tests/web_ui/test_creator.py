@@ -34,8 +34,8 @@ pytestmark = MARKS
 BASE = ("--playground", "base", "--program", "none")
 
 
-def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, page, tmp_path):
-    open_creator(page, suite(*BASE))
+def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(world, page, tmp_path):
+    open_creator(page, world("base"))
     page.click("[data-tool=box]")
     click(page, 0.3, 0.3)
     click(page, 0.3, -0.3)
@@ -92,8 +92,8 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, 
     )
 
 
-def test_everything_is_built_by_keys_alone(suite, page):
-    open_page(page, suite(*BASE))
+def test_everything_is_built_by_keys_alone(world, page):
+    open_page(page, world("base"))
     page.locator("#tab-playground").press("Enter")
     page.locator(".current [data-new]").press("Enter")
     page.locator("[data-tool=box]").press("Enter")
@@ -134,8 +134,8 @@ def test_everything_is_built_by_keys_alone(suite, page):
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
 
 
-def test_a_playground_with_a_door_is_built_in_twelve_clicks_by_names_only(suite, page):
-    open_page(page, suite(*BASE))
+def test_a_playground_with_a_door_is_built_in_twelve_clicks_by_names_only(world, page):
+    open_page(page, world("base"))
     page.get_by_role("tab", name="Playground").click()
     page.get_by_role("button", name="New playground").click()
     page.get_by_role("button", name="Door", exact=True).click()
@@ -149,12 +149,12 @@ def test_a_playground_with_a_door_is_built_in_twelve_clicks_by_names_only(suite,
     assert page.evaluate("window.thymio.state().objects.length") > 0
 
 
-def test_an_image_is_placed_on_the_ground(suite, page, tmp_path):
+def test_an_image_is_placed_on_the_ground(world, page, tmp_path):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10"><circle r="5" cx="8" cy="5"/></svg>'
     )
-    open_creator(page, suite(*BASE))
+    open_creator(page, world("base"))
     page.set_input_files("#creator-picture", str(drawing))
     page.wait_for_function("window.thymio.built().placing?.kind === 'picture'")
     click(page, 0.2, 0.2)

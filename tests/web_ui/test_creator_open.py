@@ -35,14 +35,14 @@ def test_a_copy_of_a_shipped_playground_is_edited(at_rest, page):
     page.wait_for_function("window.thymio.built().playground.title === 'My playground'")
 
 
-def test_a_running_aseba_playground_is_edited(suite, page, tmp_path):
+def test_a_running_aseba_playground_is_edited(world, page, tmp_path):
     foreign = tmp_path / "arena.playground"
     wall = '<wall x="20" y="80" l1="20" l2="4" h="10" color="gray"/>'
     foreign.write_text(
         '<aseba-playground><color name="gray" r="0.5" g="0.5" b="0.5"/><world w="100" h="100" color="gray"/>'
         f'{wall}<robot x="50" y="50"/></aseba-playground>'
     )
-    open_page(page, suite("--playground", str(foreign), "--program", "none"))
+    open_page(page, world(foreign))
     wait_for_service(page, "/simulator/get_playground")
     open_tab(page, "playground")
     page.click("#playground-change")

@@ -8,7 +8,6 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.conftest import DEADLINE_MS, LOCAL
 from tests.web_ui.creator_support import (
     built,
     click,
@@ -151,7 +150,8 @@ def test_the_bar_over_the_selected_item_turns_copies_and_removes_it(at_rest, pag
     assert page.evaluate("document.activeElement.id") == "view"
 
 
-def test_ten_thousand_moves_leave_one_animation_loop(at_rest, page):
+def test_ten_thousand_moves_leave_one_animation_loop(at_rest, own_page):
+    page = own_page
     page.add_init_script(f"({ONE_LOOP})()")
     open_creator(page, at_rest)
     page.click("[data-tool=u_figure]")
@@ -163,10 +163,8 @@ def test_ten_thousand_moves_leave_one_animation_loop(at_rest, page):
     assert frames < 2_000, "moves do not draw, frames do"
 
 
-def test_items_are_placed_and_dragged_by_touch(at_rest, browser):
-    page = browser.new_page(viewport={"width": 1024, "height": 768}, bypass_csp=True, has_touch=True)
-    page.set_default_timeout(DEADLINE_MS)
-    page.on("request", lambda request: None if request.url.startswith(LOCAL) else pytest.fail(request.url))
+def test_items_are_placed_and_dragged_by_touch(at_rest, touch_page):
+    page = touch_page
     open_creator(page, at_rest)
     page.locator("[data-tool=robot]").tap()
     page.wait_for_function("window.thymio.built().placing?.kind === 'robot'")  # a tap becomes a click only later
@@ -185,13 +183,12 @@ def test_items_are_placed_and_dragged_by_touch(at_rest, browser):
     assert len(items(page)) == 3, "two fingers move the camera and place nothing"
     page.locator(".cancel").tap()
     page.wait_for_function("window.thymio.built().placing === null")
-    page.close()
 
 
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768)])
-def test_all_tools_are_reached_by_touch(at_rest, browser, size):
-    page = browser.new_page(viewport={"width": size[0], "height": size[1]}, bypass_csp=True, has_touch=True)
-    page.set_default_timeout(DEADLINE_MS)
+def test_all_tools_are_reached_by_touch(at_rest, touch_page, size):
+    page = touch_page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
     open_creator(page, at_rest)
     groups = page.locator(".tool-group")
     playwright.expect(groups.locator("h3")).to_have_text(["Ground", "Things", "Doors and robots"])
@@ -210,4 +207,3 @@ def test_all_tools_are_reached_by_touch(at_rest, browser, size):
     with page.expect_file_chooser():
         page.locator("[data-tool=picture]").tap()
     page.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
-    page.close()

@@ -42,19 +42,9 @@ end
 
 
 @pytest.fixture
-def editor(suite, page):
+def editor(at_rest, page):
     """The editor, open and empty, of a robot at rest."""
-    return opened(page, suite("--playground", "base", "--program", "none"))
-
-
-@pytest.fixture
-def writing(at_rest, page):
-    """The same for tests that only write: they load nothing into the robot, which others share."""
-    return opened(page, at_rest)
-
-
-def opened(page, address):
-    open_page(page, address)
+    open_page(page, at_rest)
     open_editor(page)
     wait_for_service(page, "/aseba_runtime/check", "/aseba/set_variables", "/aseba/step_line")
     return page
@@ -92,7 +82,7 @@ def edit_variable(page, name, text):
     return value
 
 
-def test_a_broken_program_is_marked_while_it_is_typed_and_one_that_avoids_runs(editor, ros):
+def test_a_broken_program_is_marked_while_it_is_typed_and_one_that_avoids_runs(editor, world):
     write(editor, "onevent prox\nmotor.left.targt = 1\n")
     expect(editor, ".verdict").to_have_text("1 mistake, line 2")
     expect(editor, CARD).to_contain_text("motor.left.target")
@@ -110,7 +100,7 @@ def test_a_broken_program_is_marked_while_it_is_typed_and_one_that_avoids_runs(e
     write(editor, AVOIDER)
     expect(editor, ".verdict").to_contain_text("No mistakes")
     editor.get_by_role("button", name="Run program").click()
-    watch_it_avoid(editor, ros)
+    watch_it_avoid(editor, world)
 
 
 def test_a_breakpoint_stops_the_program_and_it_is_stepped_by_lines(editor):
@@ -144,9 +134,9 @@ def test_a_variable_is_edited_within_its_range(editor):
     playwright.expect(value).to_have_text("120")
 
 
-def test_a_long_array_takes_at_most_three_lines(writing):
-    writing.click(".values-all")
-    value = writing.locator("[data-variable='event.args']")
+def test_a_long_array_takes_at_most_three_lines(editor):
+    editor.click(".values-all")
+    value = editor.locator("[data-variable='event.args']")
     playwright.expect(value).to_contain_text("0 0 0 0")
     height, line = value.evaluate("(cell) => [cell.clientHeight, parseFloat(getComputedStyle(cell).lineHeight)]")
     assert 2 < height / line < 4
@@ -168,137 +158,137 @@ def test_an_event_is_defined_sent_and_logged(editor):
     expect(editor, ".log p").to_contain_text("pong 42")
 
 
-def test_tab_moves_on_from_a_constant_and_event_values_stay_when_events_are_added(writing):
-    writing.click(".constants > summary")
+def test_tab_moves_on_from_a_constant_and_event_values_stay_when_events_are_added(editor):
+    editor.click(".constants > summary")
     for name in ("FAR", "NEAR"):
-        writing.fill("[data-new=constant]", name)
-        writing.keyboard.press("Enter")
-        writing.locator(f"[data-constant={name}]").wait_for()
-    writing.fill("[data-constant=FAR]", "7")
-    writing.keyboard.press("Tab")
-    writing.wait_for_function("() => document.querySelector('[data-constant=FAR]').getAttribute('value') === '7'")
-    playwright.expect(writing.get_by_label("Remove FAR")).to_be_focused()
-    writing.click("#tool-tab-events")
+        editor.fill("[data-new=constant]", name)
+        editor.keyboard.press("Enter")
+        editor.locator(f"[data-constant={name}]").wait_for()
+    editor.fill("[data-constant=FAR]", "7")
+    editor.keyboard.press("Tab")
+    editor.wait_for_function("() => document.querySelector('[data-constant=FAR]').getAttribute('value') === '7'")
+    playwright.expect(editor.get_by_label("Remove FAR")).to_be_focused()
+    editor.click("#tool-tab-events")
     for name in ("ping", "pong"):
-        writing.fill("[data-new=event]", name)
-        writing.fill(".events .entry .number", "1")
-        writing.keyboard.press("Enter")
-        writing.locator(f"[data-send={name}]").wait_for()
-        writing.get_by_label(f"Values of {name}: 1").fill("41")
-    playwright.expect(writing.get_by_label("Values of ping: 1")).to_have_value("41")
+        editor.fill("[data-new=event]", name)
+        editor.fill(".events .entry .number", "1")
+        editor.keyboard.press("Enter")
+        editor.locator(f"[data-send={name}]").wait_for()
+        editor.get_by_label(f"Values of {name}: 1").fill("41")
+    playwright.expect(editor.get_by_label("Values of ping: 1")).to_have_value("41")
 
 
-def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the_page(writing, tmp_path):
+def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the_page(editor, tmp_path):
     head = '<!DOCTYPE aesl-source>\n<network>\n<constant value="4" name="SIZE"/>\n<!-- mine -->\n'
     plugins = '<toolsPlugins><X y="1"/></toolsPlugins>'
     text = f'{head}<node nodeId="1" name="thymio-II">var a = SIZE{plugins}</node>\n</network>\n'
     file = tmp_path / "my maze.aesl"
     file.write_text(text)
-    writing.set_input_files("#editor-file", str(file))
-    expect(writing, ".cm-content").to_have_text("var a = SIZE")
-    writing.focus(".cm-content")
-    writing.keyboard.press("Control+End")
-    writing.keyboard.type("_")
-    playwright.expect(writing.get_by_label("Not saved to a file")).to_be_visible()
-    writing.reload()
-    writing.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
-    open_editor(writing)
-    writing.click("[data-draft=restore]")
-    expect(writing, ".cm-line").to_have_text("var a = SIZE_")
-    with writing.expect_download() as saved:
-        choose_in_file_menu(writing, "save")
+    editor.set_input_files("#editor-file", str(file))
+    expect(editor, ".cm-content").to_have_text("var a = SIZE")
+    editor.focus(".cm-content")
+    editor.keyboard.press("Control+End")
+    editor.keyboard.type("_")
+    playwright.expect(editor.get_by_label("Not saved to a file")).to_be_visible()
+    editor.reload()
+    editor.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
+    open_editor(editor)
+    editor.click("[data-draft=restore]")
+    expect(editor, ".cm-line").to_have_text("var a = SIZE_")
+    with editor.expect_download() as saved:
+        choose_in_file_menu(editor, "save")
     assert saved.value.suggested_filename == "my maze.aesl"
     assert saved.value.path().read_text() == text.replace("= SIZE", "= SIZE_")
     broken = tmp_path / "broken.aesl"
     broken.write_text("<network>\n<node>a < b</node></network>")
-    writing.set_input_files("#editor-file", str(broken))
-    expect(writing, ".verdict").to_contain_text("line 2, column 9")
-    expect(writing, ".cm-line").to_have_text("var a = SIZE_")
+    editor.set_input_files("#editor-file", str(broken))
+    expect(editor, ".verdict").to_contain_text("line 2, column 9")
+    expect(editor, ".cm-line").to_have_text("var a = SIZE_")
 
 
-def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(writing, tmp_path):
+def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
     declared = '<?xml version="1.0" encoding="{}"?>\n'
     text = declared + '<network><node nodeId="1" name="thymio-II">var a # größer</node></network>'
     old, broken = tmp_path / "old.aesl", tmp_path / "broken.aesl"
     old.write_bytes(text.format("iso-8859-1").encode("iso-8859-1"))
     broken.write_bytes("var b # größer".encode("iso-8859-1"))
-    writing.set_input_files("#editor-file", str(old))
-    expect(writing, ".cm-content").to_have_text("var a # größer")
-    with writing.expect_download() as saved:
-        choose_in_file_menu(writing, "save")
+    editor.set_input_files("#editor-file", str(old))
+    expect(editor, ".cm-content").to_have_text("var a # größer")
+    with editor.expect_download() as saved:
+        choose_in_file_menu(editor, "save")
     assert saved.value.path().read_bytes() == text.format("UTF-8").encode()
-    writing.set_input_files("#editor-file", str(broken))
-    expect(writing, ".verdict").to_contain_text("broken.aesl cannot be read as text")
-    expect(writing, ".cm-content").to_have_text("var a # größer")
+    editor.set_input_files("#editor-file", str(broken))
+    expect(editor, ".verdict").to_contain_text("broken.aesl cannot be read as text")
+    expect(editor, ".cm-content").to_have_text("var a # größer")
 
 
-def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(writing, tmp_path):
-    write(writing, "var mine = 1")
+def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path):
+    write(editor, "var mine = 1")
     playground = tmp_path / "mine.json"
     playground.write_text('{"format": 1}')
-    drop_file(writing, playground, ".cm-content")
-    expect(writing, ".message-at .headline").to_contain_text("mine.json")
+    drop_file(editor, playground, ".cm-content")
+    expect(editor, ".message-at .headline").to_contain_text("mine.json")
     program = tmp_path / "dropped.aesl"
     program.write_text('<network><node nodeId="1" name="thymio-II">var other = 1</node></network>')
-    drop_file(writing, program, ".cm-content")
-    expect(writing, ".cm-content").to_have_text("var other = 1")
-    choose_in_file_menu(writing, "new")
-    expect(writing, RECENT).to_have_count(2)
-    writing.locator(RECENT).nth(1).click()  # below the file
-    expect(writing, ".cm-content").to_have_text("var mine = 1")
+    drop_file(editor, program, ".cm-content")
+    expect(editor, ".cm-content").to_have_text("var other = 1")
+    choose_in_file_menu(editor, "new")
+    expect(editor, RECENT).to_have_count(2)
+    editor.locator(RECENT).nth(1).click()  # below the file
+    expect(editor, ".cm-content").to_have_text("var mine = 1")
 
 
-def test_an_overwritten_draft_is_added_to_the_recent_files(writing):
-    write(writing, "var first = 1")
-    writing.reload()
-    writing.wait_for_function("window.thymio && window.thymio.connected")
-    open_editor(writing)
-    expect(writing, ".program-draft:not(#program-foreign)").to_contain_text("program.aesl")
-    write(writing, "var second = 2")
-    expect(writing, ".program-draft:not(#program-foreign)").to_be_hidden()
-    choose_in_file_menu(writing, "new")
-    expect(writing, RECENT).to_have_count(1)
-    writing.click(RECENT)
-    expect(writing, ".cm-content").to_have_text("var first = 1")
-    playwright.expect(writing.get_by_label("Not saved to a file")).to_be_visible()
+def test_an_overwritten_draft_is_added_to_the_recent_files(editor):
+    write(editor, "var first = 1")
+    editor.reload()
+    editor.wait_for_function("window.thymio && window.thymio.connected")
+    open_editor(editor)
+    expect(editor, ".program-draft:not(#program-foreign)").to_contain_text("program.aesl")
+    write(editor, "var second = 2")
+    expect(editor, ".program-draft:not(#program-foreign)").to_be_hidden()
+    choose_in_file_menu(editor, "new")
+    expect(editor, RECENT).to_have_count(1)
+    editor.click(RECENT)
+    expect(editor, ".cm-content").to_have_text("var first = 1")
+    playwright.expect(editor.get_by_label("Not saved to a file")).to_be_visible()
 
 
-def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_changes(writing):
-    write(writing, PROGRAM)
-    writing.locator(".cm-line", has_text="count = count + 1").click()
-    writing.keyboard.press("End")
-    writing.keyboard.press("Control+b")
-    expect(writing, ".breakpoints .breakpoint:visible").to_have_count(1)
-    writing.keyboard.insert_text("0")
-    open_tab(writing, "robot")
-    expect(writing, ".cm-content").to_be_hidden()
-    open_editor(writing)
-    choose_language(writing, "de")
-    expect(writing, ".program").to_have_attribute("aria-label", "Programm")
-    expect(writing, ".breakpoints .breakpoint:visible").to_have_count(1)
-    expect(writing, ".cm-content").to_be_focused()
-    expect(writing, ".cm-activeLine").to_have_text("count = count + 10")
-    writing.keyboard.press("Control+z")
-    expect(writing, ".cm-activeLine").to_have_text("count = count + 1")
+def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_changes(editor):
+    write(editor, PROGRAM)
+    editor.locator(".cm-line", has_text="count = count + 1").click()
+    editor.keyboard.press("End")
+    editor.keyboard.press("Control+b")
+    expect(editor, ".breakpoints .breakpoint:visible").to_have_count(1)
+    editor.keyboard.insert_text("0")
+    open_tab(editor, "robot")
+    expect(editor, ".cm-content").to_be_hidden()
+    open_editor(editor)
+    choose_language(editor, "de")
+    expect(editor, ".program").to_have_attribute("aria-label", "Programm")
+    expect(editor, ".breakpoints .breakpoint:visible").to_have_count(1)
+    expect(editor, ".cm-content").to_be_focused()
+    expect(editor, ".cm-activeLine").to_have_text("count = count + 10")
+    editor.keyboard.press("Control+z")
+    expect(editor, ".cm-activeLine").to_have_text("count = count + 1")
 
 
-def test_common_names_come_first_in_completion_and_help(writing):
-    write(writing, "")
+def test_common_names_come_first_in_completion_and_help(editor):
+    write(editor, "")
     for typed, first in (("motor.", "motor.left.target"), ("call l", "leds.top"), ("onevent b", "button.center")):
-        write(writing, "")
-        writing.keyboard.type(typed)
-        offered = writing.locator(".cm-tooltip-autocomplete li .cm-completionLabel")
+        write(editor, "")
+        editor.keyboard.type(typed)
+        offered = editor.locator(".cm-tooltip-autocomplete li .cm-completionLabel")
         playwright.expect(offered.first).to_have_text(first)
-        writing.keyboard.press("Escape")
-    writing.get_by_role("tab", name="Help").click()
-    topics = writing.locator(".reference h3")
+        editor.keyboard.press("Escape")
+    editor.get_by_role("tab", name="Help").click()
+    topics = editor.locator(".reference h3")
     playwright.expect(topics.nth(3)).to_be_visible()
     assert topics.all_inner_texts()[:4] == ["Motors", "Lights", "Sound", "Sensors"]
-    playwright.expect(writing.locator(".reference .entry-help button").first).to_have_text("motor.left.target")
+    playwright.expect(editor.locator(".reference .entry-help button").first).to_have_text("motor.left.target")
 
 
-def test_each_of_two_robots_has_its_program(suite, page):
-    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+def test_each_of_two_robots_has_its_program(world, page):
+    open_page(page, world("two_robots"))
     open_editor(page)
     page.wait_for_function("Object.keys(window.thymio.state().robots).length === 2")
     wait_for_service(page, "/aseba_runtime/check")
@@ -337,45 +327,45 @@ def text_of(page):
     return page.locator(".cm-content .cm-line").all_inner_texts()
 
 
-def test_a_mistake_is_explained_and_corrected_by_its_button(writing):
+def test_a_mistake_is_explained_and_corrected_by_its_button(editor):
     for source, words, repaired in MISTAKES:
-        write(writing, source)
-        button = writing.locator(".mistake-card .correct")
+        write(editor, source)
+        button = editor.locator(".mistake-card .correct")
         playwright.expect(button).to_have_text(words)
-        expect(writing, ".verdict").to_have_attribute("data-kind", "error")
+        expect(editor, ".verdict").to_have_attribute("data-kind", "error")
         button.click()
-        expect(writing, ".verdict").to_contain_text("No mistakes")
-        expect(writing, CARD).to_have_count(0)
-        assert [line.strip("\n") for line in text_of(writing)] == repaired.split("\n")
+        expect(editor, ".verdict").to_contain_text("No mistakes")
+        expect(editor, CARD).to_have_count(0)
+        assert [line.strip("\n") for line in text_of(editor)] == repaired.split("\n")
 
 
-def test_a_mistake_is_corrected_by_keyboard_and_the_correction_can_be_undone(writing):
-    write(writing, "var a\na == 3\n")
-    expect(writing, CARD).to_contain_text("Two “=” compare. One stores.")
-    writing.focus(".mistake-card .correct")
-    writing.keyboard.press("Enter")
-    expect(writing, ".verdict").to_contain_text("No mistakes")
-    writing.keyboard.press("Control+z")
-    expect(writing, ".mistake-card .correct").to_have_text("Change it to =")
-    writing.focus(".cm-content")
-    writing.keyboard.press("Control+.")
-    expect(writing, ".verdict").to_contain_text("No mistakes")
+def test_a_mistake_is_corrected_by_keyboard_and_the_correction_can_be_undone(editor):
+    write(editor, "var a\na == 3\n")
+    expect(editor, CARD).to_contain_text("Two “=” compare. One stores.")
+    editor.focus(".mistake-card .correct")
+    editor.keyboard.press("Enter")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
+    editor.keyboard.press("Control+z")
+    expect(editor, ".mistake-card .correct").to_have_text("Change it to =")
+    editor.focus(".cm-content")
+    editor.keyboard.press("Control+.")
+    expect(editor, ".verdict").to_contain_text("No mistakes")
 
 
-def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the_page(writing):
-    write(writing, "var a = 1.5\n")
-    expect(writing, CARD).to_contain_text("Aseba has whole numbers only")
-    expect(writing, ".mistake-card .correct").to_have_count(0)
-    choose_language(writing, "fr")
-    expect(writing, CARD).to_contain_text("Aseba n’a que des nombres entiers")
+def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the_page(editor):
+    write(editor, "var a = 1.5\n")
+    expect(editor, CARD).to_contain_text("Aseba has whole numbers only")
+    expect(editor, ".mistake-card .correct").to_have_count(0)
+    choose_language(editor, "fr")
+    expect(editor, CARD).to_contain_text("Aseba n’a que des nombres entiers")
 
 
-def test_the_mark_in_the_text_offers_the_correction_too(writing):
-    write(writing, "var a\nif a = 1 then\nend\n")
-    writing.locator(".cm-lintRange-error").hover()
-    expect(writing, ".cm-tooltip-lint .cm-diagnosticText").to_contain_text("to compare two values write '=='")
-    writing.locator(".cm-tooltip-lint .cm-diagnosticAction").click()
-    expect(writing, ".verdict").to_contain_text("No mistakes")
+def test_the_mark_in_the_text_offers_the_correction_too(editor):
+    write(editor, "var a\nif a = 1 then\nend\n")
+    editor.locator(".cm-lintRange-error").hover()
+    expect(editor, ".cm-tooltip-lint .cm-diagnosticText").to_contain_text("to compare two values write '=='")
+    editor.locator(".cm-tooltip-lint .cm-diagnosticAction").click()
+    expect(editor, ".verdict").to_contain_text("No mistakes")
 
 
 def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(editor, tmp_path):

@@ -40,8 +40,8 @@ def place_cursor(page, line, column):
         page.keyboard.press("ArrowRight")
 
 
-def test_writing_a_program_as_one_is_used_to(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_writing_a_program_as_one_is_used_to(world, page):
+    open_page(page, world("base"))
     open_editor(page)
     wait_for_service(page, "/aseba_runtime/check")
     page.wait_for_function("Object.values(window.thymio.state().robots).length === 1")

@@ -17,8 +17,8 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
-from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import MARKS, wait_for_program, wait_until_still
+from tests.web_ui.tabs import checked_page
 from tests.web_ui.test_welcome import MOVES, READY, RESTS
 
 pytestmark = MARKS

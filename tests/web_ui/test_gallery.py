@@ -8,14 +8,13 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.conftest import DEADLINE_MS
+from tests.patience import PATIENCE_MS
 from tests.web_ui.page_support import MARKS, choose_language, drop_file, go_on_building, open_page, open_tab
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros import resources
 
 pytestmark = MARKS
 
-BASE = ("--playground", "base", "--program", "none")
 
 COLORS = """(image) => {
     const canvas = Object.assign(document.createElement("canvas"), {width: 60, height: 40});
@@ -37,7 +36,7 @@ def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(at_res
         card = page.locator(f"[data-playground={name}]")
         card.scroll_into_view_if_needed()
         picture = card.locator("img:not([hidden])")
-        picture.wait_for(timeout=3 * DEADLINE_MS)  # each is a rendered scene
+        picture.wait_for(timeout=3 * PATIENCE_MS)  # each is a rendered scene
         picture.evaluate("(image) => image.decode()")
         assert picture.evaluate(COLORS) > 8, name
     playwright.expect(page.locator("[data-playground=classroom] .count")).to_have_text("20 robots")
@@ -55,8 +54,8 @@ def test_thumbnails_are_drawn_when_they_come_into_sight(at_rest, page):
     assert page.locator(".gallery .sample").last.locator("img").is_hidden()
 
 
-def test_one_is_chosen_by_keys_in_another_language(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_one_is_chosen_by_keys_in_another_language(world, page):
+    open_page(page, world("base"))
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
     open_tab(page, "playground")
     choose_language(page, "de")
@@ -67,8 +66,8 @@ def test_one_is_chosen_by_keys_in_another_language(suite, page):
     playwright.expect(page.locator("[data-playground=maze]")).to_have_attribute("aria-current", "true")
 
 
-def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brought_back(suite, page):
-    open_gallery(page, suite(*BASE))
+def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brought_back(world, page):
+    open_gallery(page, world("base"))
     own = page.locator("section.own")
     playwright.expect(own).to_be_hidden()
     for title in ("First", "Second"):
@@ -122,11 +121,11 @@ def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(at_rest, pag
     playwright.expect(fault.locator(".technical p")).to_contain_text("line 1, column 1")
 
 
-def test_a_dropped_file_is_refused_where_it_was_dropped_in_the_language_of_the_page(suite, page, tmp_path):
+def test_a_dropped_file_is_refused_where_it_was_dropped_in_the_language_of_the_page(world, page, tmp_path):
     broken = tmp_path / "kaputt.json"
     shape = {"kind": "box", "name": "crate", "x_m": 0, "y_m": 0, "size_x_m": 0, "size_y_m": 1, "height_m": 1}
     broken.write_text(json.dumps({"format": 1, "title": "x", "shapes": [shape | {"color": "#112233"}]}))
-    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+    open_page(page, world("base", behaviour="explorer"))
     page.wait_for_function("window.thymio.state().program?.state === 'running'")
     choose_language(page, "de")
     drop_file(page, broken, "#view")
@@ -144,7 +143,7 @@ def test_a_dropped_file_is_refused_where_it_was_dropped_in_the_language_of_the_p
     assert page.evaluate("window.thymio.state().program.state") == "running"
 
 
-def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(suite, page, tmp_path):
+def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(world, page, tmp_path):
     foreign = tmp_path / "mine.json"
     pillar = {"topRadius": 2, "botRadius": 2, "height": 6, "color": "#9fa3bd", "positionX": 20, "positionZ": 0}
     floor = {"name": "ground", "props": {"width": 50, "height": 50, "color": "#bdbbbb"}, "hasWalls": True}
@@ -159,7 +158,7 @@ def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(suite, pag
             }
         )
     )
-    open_gallery(page, suite(*BASE))
+    open_gallery(page, world("base"))
     page.set_input_files("#playground-file", str(foreign))
     page.wait_for_function("window.thymio.state().simulator.title === 'Lone pillar'")
     page.wait_for_function("window.thymio.state().robot?.latest")

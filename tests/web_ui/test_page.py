@@ -64,8 +64,8 @@ def colors(page) -> int:
     )
 
 
-def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
-    open_page(page, suite("--program", "line_follower"))
+def test_the_canvas_shows_something_and_the_robot_moves(world, page):
+    open_page(page, world("desk", "line_follower"))
     page.wait_for_function("window.thymio.frames() > 2 && window.thymio.state().markers > 0")
     wait_for_frame(page)
     assert colors(page) > 20
@@ -77,7 +77,8 @@ def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
     )
 
 
-def test_little_is_loaded_before_the_editor_is_opened(at_rest, page):
+def test_little_is_loaded_before_the_editor_is_opened(at_rest, own_page):
+    page = own_page
     loaded: dict[str, bytes] = {}
     page.on("requestfinished", lambda request: loaded.update({request.url: request.response().body()}))
     open_page(page, at_rest)
@@ -87,10 +88,10 @@ def test_little_is_loaded_before_the_editor_is_opened(at_rest, page):
     assert [url for url in loaded if "editor" in url] == []
 
 
-def test_a_click_on_the_center_button_reaches_the_program(suite, page, tmp_path):
+def test_a_click_on_the_center_button_reaches_the_program(world, page, tmp_path):
     program = tmp_path / "switch.aesl"
     program.write_text(PROGRAM)
-    open_page(page, suite("--playground", "base", "--program", str(program)))
+    open_page(page, world("base", program))
     wait_for_program(page, "switch.aesl")
     wait_for_position(page, "robot")
     begin = robot(page)
@@ -137,10 +138,10 @@ if acc[0] < -10 then call leds.bottom.right(0, 0, 32) end
 """
 
 
-def test_stimuli_reach_the_program(suite, page, tmp_path):
+def test_stimuli_reach_the_program(world, page, tmp_path):
     program = tmp_path / "senses.aesl"
     program.write_text(SENSES)
-    open_page(page, suite("--playground", "base", "--program", str(program)))
+    open_page(page, world("base", program))
     wait_for_program(page, "senses.aesl")
     page.wait_for_function("() => window.thymio.state().robot.leds.top !== undefined")
     for control, group in (
@@ -161,8 +162,8 @@ def test_stimuli_reach_the_program(suite, page, tmp_path):
         page.wait_for_function("(group) => Math.max(...window.thymio.state().robot.leds[group]) === 1", arg=group)
 
 
-def test_the_pen_leaves_a_trail(suite, page):
-    open_page(page, suite("--program", "line_follower"))
+def test_the_pen_leaves_a_trail(world, page):
+    open_page(page, world("desk", "line_follower"))
     open_hands(page, "pen")
     page.click("[data-pen=down]")
     page.wait_for_function("() => window.thymio.state().robot.trail > 0")
@@ -178,8 +179,8 @@ def press(page, part):
     page.wait_for_function("() => window.thymio.state().robot.buttons.center === false")
 
 
-def test_an_error_is_shown_at_its_position_and_the_previous_program_keeps_running(suite, page, tmp_path):
-    open_page(page, suite("--program", "line_follower"))
+def test_an_error_is_shown_at_its_position_and_the_previous_program_keeps_running(world, page, tmp_path):
+    open_page(page, world("desk", "line_follower"))
     broken = tmp_path / "broken.aesl"
     broken.write_text("var a\nonevent prox\n  motor.left.targt = 5\n")
     wait_for_program(page, "line_follower.aesl")
@@ -227,22 +228,22 @@ def test_a_rejection_is_shown_where_the_file_was_dropped_or_chosen(at_rest, page
     playwright.expect(here).to_be_hidden()
 
 
-def test_another_playground_can_be_chosen(suite, page):
-    open_page(page, suite())
+def test_another_playground_can_be_chosen(world, page):
+    open_page(page, world("desk", "welcome"))
     choose_playground(page, "obstacle")
     page.wait_for_function("window.thymio.state().simulator.playground === 'obstacle'")
 
 
-def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejected(suite, page, tmp_path):
+def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejected(world, page, tmp_path):
     colors = '<color name="white" r="1" g="1" b="1"/>'
-    world = '<world w="100" h="100" color="white" groundTexture="ground.png"/><robot x="50" y="50"/><feeder/>'
+    content = '<world w="100" h="100" color="white" groundTexture="ground.png"/><robot x="50" y="50"/><feeder/>'
     archive = tmp_path / "my maze.playground"
     with zipfile.ZipFile(archive, "w") as packed:
-        packed.writestr("world.xml", f"<aseba-playground>{colors}{world}</aseba-playground>")
+        packed.writestr("world.xml", f"<aseba-playground>{colors}{content}</aseba-playground>")
         packed.writestr("ground.png", png([[BLACK, WHITE]]))
     broken = tmp_path / "broken.playground"
     broken.write_text("<aseba-playground>\n<world w='wide'/></aseba-playground>")
-    open_page(page, suite("--playground", "base"))
+    open_page(page, world("base", "welcome"))
     open_tab(page, "playground")
     page.set_input_files("#playground-file", str(archive))
     page.wait_for_function("window.thymio.state().simulator.playground === 'my maze.playground'")
@@ -256,7 +257,7 @@ def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejecte
     assert page.evaluate("window.thymio.state().simulator.playground") == "my maze.playground"
 
 
-def test_a_pushed_object_moves_on_the_page(suite, page, tmp_path):
+def test_a_pushed_object_moves_on_the_page(world, page, tmp_path):
     can = {"kind": "cylinder", "name": "can", "x_m": 0.2, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "mass_kg": 0.05}
     ground = {"kind": "rectangle", "size_x_m": 3, "size_y_m": 1, "color": "#ffffff"}
     shapes = [ground, can | {"color": "#cc3333"}]
@@ -264,6 +265,6 @@ def test_a_pushed_object_moves_on_the_page(suite, page, tmp_path):
     playground, program = tmp_path / "push.json", tmp_path / "push.aesl"
     playground.write_text(json.dumps({"format": 1, "title": "Push", "shapes": shapes, "robots": robots}))
     program.write_text("motor.left.target = 200\nmotor.right.target = 200")
-    open_page(page, suite("--playground", str(playground), "--program", str(program)))
+    open_page(page, world(playground, program))
     page.wait_for_function("() => window.thymio.state().objects.some((thing) => thing.pose.position.x > 0.3)")
     assert page.evaluate("() => window.thymio.state().objects.map((thing) => thing.name)") == ["can"]

@@ -52,8 +52,8 @@ def findings(page: Any) -> list[Any]:
 
 
 @pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm install in web_ui")
-def test_axe_finds_nothing_serious(suite, page):
-    open_page(page, suite("--playground", "two_robots", "--behaviour", "menu"))
+def test_axe_finds_nothing_serious(world, page):
+    open_page(page, world("two_robots", behaviour="menu"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     page.add_script_tag(path=str(AXE))
     assert findings(page) == []
@@ -117,9 +117,9 @@ def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(at_rest
     page.fill("[data-new=constant]", "FAR")
 
 
-def test_values_can_be_frozen_and_copied(suite, page):
+def test_values_can_be_frozen_and_copied(world, page):
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, world("base"))
     open_details(page)
     page.wait_for_function("() => window.thymio.state().robot.raw.battery !== undefined")
     for sensor in ("accelerometer", "temperature", "sound", "battery"):

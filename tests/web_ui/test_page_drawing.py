@@ -13,8 +13,8 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from PIL import Image
 
-from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import MARKS, build_playground, open_page, open_tab
+from tests.web_ui.tabs import checked_page
 
 pytestmark = MARKS
 
@@ -74,17 +74,17 @@ FRAMES = """async () => {
 @pytest.fixture
 def page(browser) -> Iterator[Any]:
     """A page in full resolution, because its picture is compared."""
-    yield from checked_page(browser, device_scale_factor=1)
+    yield from checked_page(browser, compares_pictures=True)
 
 
 @pytest.fixture
-def driving(suite, page, tmp_path) -> Any:
+def driving(world, page, tmp_path) -> Any:
     """A robot that drives in a circle."""
     program = tmp_path / "circle.aesl"
     program.write_text(CIRCLE)
     page.add_init_script(f"({WATCH})()")
     page.set_viewport_size({"width": 1280, "height": 800})
-    open_page(page, suite("--playground", "base", "--program", str(program)))
+    open_page(page, world("base", program))
     page.add_style_tag(content=".scene::after { display: none; }")  # the shade while time is paused
     return page
 

@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import MARKS, choose_robot, open_hands, open_menu, open_page, wait_for_position
 
 pytestmark = MARKS
 
-RESTING = ("--playground", "base", "--program", "none")
 HELD = "(held) => window.thymio.state().robot.latest.pose.z > 0.03 === held"
 SEEN = "(counts) => String(window.thymio.state().robot.raw.proximity?.slice(0, 5)) === String(counts)"
 
 
-@pytest.fixture
-def phone(browser) -> Iterator[Any]:
-    """A checked page on a touch screen."""
-    yield from checked_page(browser, has_touch=True)
-
-
-def test_pick_up_holds_the_robot_until_it_is_put_down(suite, page):
-    open_page(page, suite(*RESTING))
+def test_pick_up_holds_the_robot_until_it_is_put_down(world, page):
+    open_page(page, world("base"))
     lift = page.locator("[data-hand=lift]")
     playwright.expect(lift).to_have_text("Pick up")
     lift.click()
@@ -39,8 +28,8 @@ def test_pick_up_holds_the_robot_until_it_is_put_down(suite, page):
     playwright.expect(lift).to_have_attribute("aria-pressed", "false")
 
 
-def test_all_robots_are_picked_up_together(suite, page):
-    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+def test_all_robots_are_picked_up_together(world, page):
+    open_page(page, world("two_robots"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     choose_robot(page, "*")
     page.locator("[data-hand=lift]").click()
@@ -63,8 +52,8 @@ def test_a_hand_before_the_sensors_stays_until_it_is_taken_away(at_rest, page):
     playwright.expect(hand).to_have_attribute("data-held", "false")
 
 
-def test_hands_have_letters_and_escape_closes_sheet_and_move_mode_before_it_stops_the_robot(suite, page):
-    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+def test_hands_have_letters_and_escape_closes_sheet_and_move_mode_before_it_stops_the_robot(world, page):
+    open_page(page, world("base", behaviour="explorer"))
     page.wait_for_function("() => window.thymio.state().program?.state === 'running'")
     view = page.locator("#view")
     for key, sheet in (("h", "#hand-sheet"), ("i", "#tilt-sheet"), ("p", "#pen-sheet"), ("r", "#remote-sheet")):
@@ -111,24 +100,24 @@ def test_a_folded_tray_opens_for_a_hand_with_values(at_rest, page):
     playwright.expect(page.locator("[data-hand=tilt]")).to_have_attribute("data-held", "false")
 
 
-def test_on_a_phone_every_hand_camera_and_tool_is_in_reach(suite, phone):
-    phone.set_viewport_size({"width": 390, "height": 844})
-    open_page(phone, suite(*RESTING))
-    wait_for_position(phone, "robot")
-    open_hands(phone, "pen")
-    phone.locator("[data-pen=down]").tap()
-    phone.keyboard.press("Escape")
-    phone.keyboard.press("Escape")
-    open_menu(phone, "#cameras-open")
-    phone.locator("[data-view=top]").tap()
-    playwright.expect(phone.locator("#cameras-open")).to_have_text("Above")
-    playwright.expect(phone.locator("#camera-list")).to_be_hidden()
-    open_menu(phone, "#tools-open")
-    phone.locator("[data-view=move]").tap()
-    playwright.expect(phone.locator("#tool-list")).to_be_hidden()
-    phone.wait_for_function("() => window.thymio.dragged() !== null")
-    step = phone.locator("#time [data-verb=step]")
+def test_on_a_phone_every_hand_camera_and_tool_is_in_reach(world, touch_page):
+    touch_page.set_viewport_size({"width": 390, "height": 844})
+    open_page(touch_page, world("base"))
+    wait_for_position(touch_page, "robot")
+    open_hands(touch_page, "pen")
+    touch_page.locator("[data-pen=down]").tap()
+    touch_page.keyboard.press("Escape")
+    touch_page.keyboard.press("Escape")
+    open_menu(touch_page, "#cameras-open")
+    touch_page.locator("[data-view=top]").tap()
+    playwright.expect(touch_page.locator("#cameras-open")).to_have_text("Above")
+    playwright.expect(touch_page.locator("#camera-list")).to_be_hidden()
+    open_menu(touch_page, "#tools-open")
+    touch_page.locator("[data-view=move]").tap()
+    playwright.expect(touch_page.locator("#tool-list")).to_be_hidden()
+    touch_page.wait_for_function("() => window.thymio.dragged() !== null")
+    step = touch_page.locator("#time [data-verb=step]")
     playwright.expect(step).to_be_hidden()
-    phone.locator("#pause").tap()
+    touch_page.locator("#pause").tap()
     playwright.expect(step).to_be_enabled()
-    phone.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
+    touch_page.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")

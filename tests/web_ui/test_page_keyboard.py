@@ -62,12 +62,13 @@ def expect(page: Any, selector: str) -> Any:
     return playwright.expect(page.locator(selector))
 
 
-def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
+def test_a_whole_lesson_by_keyboard(world, own_page, tmp_path):
+    page = own_page
     file = tmp_path / "drive.aesl"
     file.write_text(f'<network>\n<node nodeId="1" name="thymio-II">{PROGRAM}</node>\n</network>\n')
     page.set_viewport_size({"width": 1280, "height": 720})
     page.on("filechooser", lambda _chooser: None)  # from now on, so that no dialog of the system opens
-    open_page(page, suite("--playground", "line", "--program", "none"))
+    open_page(page, world("line"))
 
     go_to(page, "#tab-robot")
     page.keyboard.press("ArrowUp")
@@ -140,11 +141,11 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     ],
 )
 def test_editor_and_program_panel_show_errors_in_the_language_of_the_page(
-    suite, page, tmp_path, language, error, help_text
+    world, page, tmp_path, language, error, help_text
 ):
     broken = tmp_path / "broken.aesl"
     broken.write_text("onevent prox\nmotor.left.targt = 1\n")
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, world("base"))
     choose_language(page, language)
     page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
     drop_file(page, broken, "#view")
@@ -191,8 +192,8 @@ def stops(page: Any) -> list[str]:
     return [stop["name"] for stop in found]
 
 
-def test_tab_leads_everywhere_and_the_focus_is_always_seen(suite, page):
-    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+def test_tab_leads_everywhere_and_the_focus_is_always_seen(world, page):
+    open_page(page, world("two_robots"))
     page.wait_for_function(f"() => Object.keys(({STATE})().robots).length === 2")
     stage = {"robot-chooser", "stop", "view", "pause", "tray-fold"}
     open_details(page)
@@ -208,10 +209,10 @@ def test_tab_leads_everywhere_and_the_focus_is_always_seen(suite, page):
     assert stage | {"file-menu", "tool-tab-values"} <= set(stops(page))
 
 
-def test_the_focus_is_not_lost_with_what_had_it(suite, page, tmp_path):
+def test_the_focus_is_not_lost_with_what_had_it(world, page, tmp_path):
     broken = tmp_path / "broken.aesl"
     broken.write_text("onevent prox\nmotor.left.targt = 1\n")
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, world("base"))
     page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
     drop_file(page, broken, "#view")
     go_to(page, ".notice button")
@@ -229,10 +230,10 @@ def test_the_focus_is_not_lost_with_what_had_it(suite, page, tmp_path):
     expect(page, "#help-open").to_be_focused()
 
 
-def test_an_open_menu_keeps_the_focus_when_the_editor_comes_late(exploring, page):
+def test_an_open_menu_keeps_the_focus_when_the_editor_comes_late(world, page):
     held = []
     page.route("**/assets/editor-*.js", lambda route: held.append(route))
-    open_page(page, exploring)
+    open_page(page, world("base", "explorer"))
     open_tab(page, "program")
     page.locator(".program[data-shown=program]").wait_for()
     page.locator("#file-menu").press("Enter")

@@ -23,9 +23,9 @@ WIDTH = "() => Math.round(document.querySelector('#work').getBoundingClientRect(
 RUNNING = "() => window.thymio.state().program?.state === 'running'"
 
 
-def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(suite, page):
+def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(world, page):
     page.set_viewport_size({"width": 1280, "height": 800})
-    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+    open_page(page, world("base", behaviour="explorer"))
     assert page.evaluate(WIDTH) == 88
     open_tab(page, "program")
     assert page.evaluate(WIDTH) == 752
@@ -52,8 +52,8 @@ def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(s
     assert page.evaluate(WIDTH) == 88
 
 
-def test_escape_closes_a_menu_first_and_the_theme_is_kept(suite, page):
-    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+def test_escape_closes_a_menu_first_and_the_theme_is_kept(world, page):
+    open_page(page, world("base", behaviour="explorer"))
     page.wait_for_function(RUNNING)
     open_menu(page, "#theme")
     page.keyboard.press("ArrowDown")
@@ -74,8 +74,8 @@ def test_escape_closes_a_menu_first_and_the_theme_is_kept(suite, page):
     page.wait_for_function("() => window.thymio.state().program?.state === 'stopped'")
 
 
-def test_actions_go_to_the_chosen_robot_or_to_all(suite, page):
-    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+def test_actions_go_to_the_chosen_robot_or_to_all(world, page):
+    open_page(page, world("two_robots"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     names = page.evaluate("() => Object.keys(window.thymio.state().robots)")
     pressed = "(names) => names.every((name) => window.thymio.state().robots[name].buttons.left)"

@@ -26,14 +26,14 @@ AS_LATE = f"(stamps) => ({STAMPS})().every((stamp, at) => stamp >= stamps[at])"
 
 
 @pytest.fixture
-def robots_page(suite, page, tmp_path) -> Any:
+def robots_page(world, page, tmp_path) -> Any:
     """Six robots that drive small circles."""
     shapes = [{"kind": "rectangle", "size_x_m": 3.0, "size_y_m": 1.0, "color": "#eef2f6"}]
     robots = [{"name": name, "x_m": -1.2 + 0.5 * number, "y_m": 0.0} for number, name in enumerate(NAMES)]
-    world, program = tmp_path / "many_robots.json", tmp_path / "circle.aesl"
-    world.write_text(json.dumps({"format": 1, "title": "Many robots", "shapes": shapes, "robots": robots}))
+    playground, program = tmp_path / "many_robots.json", tmp_path / "circle.aesl"
+    playground.write_text(json.dumps({"format": 1, "title": "Many robots", "shapes": shapes, "robots": robots}))
     program.write_text("motor.left.target = 100\nmotor.right.target = 200\n")
-    open_page(page, suite("--playground", str(world), "--program", str(program)))
+    open_page(page, world(playground, program))
     page.wait_for_function(ALL_TURN, arg=len(NAMES))
     return page
 

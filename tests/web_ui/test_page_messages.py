@@ -61,11 +61,11 @@ def test_the_tab_does_not_show_the_error_of_another_attempt(at_rest, page, tmp_p
     playwright.expect(fault).to_be_hidden()
 
 
-def test_success_notices_disappear_and_errors_stay_until_closed(suite, page, tmp_path):
+def test_success_notices_disappear_and_errors_stay_until_closed(world, page, tmp_path):
     program, unknown = tmp_path / "good.aesl", tmp_path / "song.mp3"
     program.write_text("var a = 1\n")
     unknown.write_bytes(b"")
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, world("base"))
     page.set_input_files("#playground-file", str(unknown))
     page.locator(".notice.error").wait_for()
     with page.expect_download():
@@ -98,8 +98,8 @@ def test_one_message_is_shown_at_a_time_and_the_next_one_follows(at_rest, page, 
     playwright.expect(hint).to_be_visible()
 
 
-def test_a_new_playground_fades_in(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_a_new_playground_fades_in(world, page):
+    open_page(page, world("base"))
     page.evaluate(
         "() => new MutationObserver(() => { window.arrived = true; })"
         ".observe(document.querySelector('#stage'), {attributeFilter: ['data-arriving']})"

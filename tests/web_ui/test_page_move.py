@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -19,17 +20,17 @@ POSE = "() => window.thymio.state().robot.latest.pose"
 
 
 @pytest.fixture
-def still_world(tmp_path) -> str:
+def still_world(tmp_path) -> Path:
     """A playground with a robot at rest, a movable can, and a fixed box."""
     shapes = [GROUND, CAN | {"color": "#cc3333"}, BOX | {"color": "#3333cc"}]
     robots = [{"name": "thymio", "x_m": 0, "y_m": 0}]
     path = tmp_path / "still.json"
     path.write_text(json.dumps({"format": 1, "title": "Still", "shapes": shapes, "robots": robots}))
-    return str(path)
+    return path
 
 
-def open_still(page, suite, playground):
-    open_page(page, suite("--playground", playground, "--program", "none"))
+def open_still(page, world, playground):
+    open_page(page, world(playground))
     wait_for_service(page, "/simulator/set_poses")
     page.wait_for_function("() => window.thymio.state().objects.some(({name}) => name === 'can')")
     wait_for_position(page, "robot")
@@ -43,8 +44,8 @@ def drag(page, begin, end):
     page.mouse.move(places[1]["x"], places[1]["y"], steps=4)
 
 
-def test_a_robot_and_a_can_are_dragged_and_an_occupied_position_is_rejected(suite, page, still_world):
-    open_still(page, suite, still_world)
+def test_a_robot_and_a_can_are_dragged_and_an_occupied_position_is_rejected(world, page, still_world):
+    open_still(page, world, still_world)
     page.keyboard.down("Shift")
     drag(page, (0.02, 0, 0.05), (0.02, -0.25, 0.05))
     assert page.evaluate("() => window.thymio.dragged().blocker") is None
@@ -60,8 +61,8 @@ def test_a_robot_and_a_can_are_dragged_and_an_occupied_position_is_rejected(suit
     assert page.evaluate(POSE)["y"] == pytest.approx(-0.25, abs=0.02)
 
 
-def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(suite, page, still_world):
-    open_still(page, suite, still_world)
+def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(world, page, still_world):
+    open_still(page, world, still_world)
     page.locator("#view").focus()
     page.keyboard.press("m")
     page.wait_for_function("() => window.thymio.dragged() !== null")
@@ -77,13 +78,13 @@ def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(suite, page, still_wo
     assert page.evaluate("() => window.thymio.state().robot.buttons.center") is False
 
 
-def test_a_fallen_robot_is_reported_and_put_back(suite, page, tmp_path):
+def test_a_fallen_robot_is_reported_and_put_back(world, page, tmp_path):
     ground = {"kind": "rectangle", "size_x_m": 0.8, "size_y_m": 0.8, "color": "#ffffff"}
     playground, program = tmp_path / "table.json", tmp_path / "off.aesl"
     robots = [{"name": "thymio", "x_m": 0.25, "y_m": 0}]
     playground.write_text(json.dumps({"format": 1, "title": "Table", "shapes": [ground], "robots": robots}))
     program.write_text("onevent button.forward\nmotor.left.target = 300\nmotor.right.target = 300\n")
-    open_page(page, suite("--playground", str(playground), "--program", str(program)))
+    open_page(page, world(playground, program))
     wait_for_program(page, "off.aesl")
     back = page.get_by_role("button", name="Put me back")
     playwright.expect(back).to_have_count(0)

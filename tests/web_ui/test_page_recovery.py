@@ -93,7 +93,8 @@ NO_STORAGE = """Object.defineProperty(window, "localStorage", {
 })"""
 
 
-def test_the_page_works_without_browser_storage(at_rest, page):
+def test_the_page_works_without_browser_storage(at_rest, own_page):
+    page = own_page
     page.add_init_script(NO_STORAGE)
     open_page(page, at_rest)
     choose_language(page, "fr")
@@ -128,8 +129,8 @@ def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(s
     playwright.expect(page.locator(".mistake-card")).to_contain_text("No variable is called 'b'")
 
 
-def test_actions_in_one_browser_are_visible_in_one_that_connects_late(suite, page, other_page):
-    address = suite("--playground", "base", "--program", "none")
+def test_actions_in_one_browser_are_visible_in_one_that_connects_late(world, page, other_page):
+    address = world("base")
     open_page(page, address)
     page.locator("#view").focus()
     page.locator("#pause").click()

@@ -49,8 +49,8 @@ def test_values_are_subscribed_to_while_the_tab_is_open(at_rest, page):
     page.wait_for_function(f"{MOTOR} !== window.words")
 
 
-def test_the_picture_shows_what_the_robot_notices_and_does(suite, page):
-    open_page(page, suite("--playground", "base", "--behaviour", "thesis_basic"))
+def test_the_picture_shows_what_the_robot_notices_and_does(world, page):
+    open_page(page, world("base", behaviour="thesis_basic"))
     open_tab(page, "robot")
     picture = page.get_by_role("img", name="The robot from above")
     playwright.expect(picture.locator(".proximity")).to_have_count(7)
@@ -71,8 +71,8 @@ def test_the_picture_shows_what_the_robot_notices_and_does(suite, page):
     playwright.expect(speed.nth(0)).to_have_text("0")
 
 
-def test_held_values_stay_until_another_robot_is_chosen(suite, page):
-    open_page(page, suite("--playground", "two_robots", "--behaviour", "explorer"))
+def test_held_values_stay_until_another_robot_is_chosen(world, page):
+    open_page(page, world("two_robots", behaviour="explorer"))
     open_tab(page, "robot")
     number = page.locator(".motor .number").first
     playwright.expect(number).to_have_text(re.compile("^-?[1-9]"))

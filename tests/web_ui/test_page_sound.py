@@ -38,11 +38,12 @@ SINGING = "call sound.freq(440, 0)\nonevent button.center\n  call sound.freq(550
 SOUNDING = "() => (window.heard[0]?.sounding ?? []).length"
 
 
-def test_a_tone_is_played_after_the_first_user_action_and_until_it_is_muted(suite, page, tmp_path):
+def test_a_tone_is_played_after_the_first_user_action_and_until_it_is_muted(world, own_page, tmp_path):
+    page = own_page
     program = tmp_path / "singing.aesl"
     program.write_text(SINGING)
     page.add_init_script(LISTEN)
-    open_page(page, suite("--program", str(program)))
+    open_page(page, world("desk", program))
     page.wait_for_function("() => window.thymio.state().robot.sound[0] === 440")
     button = page.locator("button.sound")
     playwright.expect(button).to_have_attribute("data-phase", "waiting")
@@ -65,11 +66,12 @@ def test_a_tone_is_played_after_the_first_user_action_and_until_it_is_muted(suit
     page.mouse.up()
 
 
-def test_the_browser_plays_a_tone_of_that_pitch(suite, page, tmp_path):
+def test_the_browser_plays_a_tone_of_that_pitch(world, own_page, tmp_path):
+    page = own_page
     program = tmp_path / "singing.aesl"
     program.write_text(SINGING)
     page.add_init_script(OFFLINE)
-    open_page(page, suite("--program", str(program)))
+    open_page(page, world("desk", program))
     page.wait_for_function("() => window.thymio.state().robot.sound[0] === 440")
     page.locator("#connection").click()
     page.wait_for_function("() => window.heard")
@@ -78,11 +80,12 @@ def test_the_browser_plays_a_tone_of_that_pitch(suite, page, tmp_path):
     assert 0.05 < heard["loudest"] < 1
 
 
-def test_a_pause_suspends_the_sound(suite, page, tmp_path):
+def test_a_pause_suspends_the_sound(world, own_page, tmp_path):
+    page = own_page
     program = tmp_path / "singing.aesl"
     program.write_text(SINGING)
     page.add_init_script(LISTEN)
-    open_page(page, suite("--program", str(program)))
+    open_page(page, world("desk", program))
     page.locator("#connection").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
     page.locator("#pause").click()
@@ -91,8 +94,8 @@ def test_a_pause_suspends_the_sound(suite, page, tmp_path):
     page.wait_for_function("() => window.heard[0].state === 'running'")
 
 
-def test_a_built_in_behavior_is_chosen_and_shows_its_color(suite, page):
-    open_page(page, suite("--playground", "base"))
+def test_a_built_in_behavior_is_chosen_and_shows_its_color(world, page):
+    open_page(page, world("base", "welcome"))
     choose_example(page, "friendly")
     page.wait_for_function("() => window.thymio.state().program?.name.startsWith('friendly')")
     choose_in_file_menu(page, "examples")

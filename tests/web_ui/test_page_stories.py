@@ -19,9 +19,9 @@ MOVED = """([x, y, far]) => {
 
 
 @pytest.fixture
-def class_page(suite, page) -> Any:
+def class_page(world, page) -> Any:
     """The page at the start of a lesson: the robot is switched on and nothing has been chosen."""
-    open_page(page, suite("--playground", "base"))
+    open_page(page, world("base", "welcome"))
     return page
 
 

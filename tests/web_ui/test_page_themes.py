@@ -15,8 +15,8 @@ DIMMED = "() => getComputedStyle(document.querySelector('#scene'), '::after').op
 
 
 @pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm install in web_ui")
-def test_axe_finds_nothing_serious_in_sheets(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_axe_finds_nothing_serious_in_sheets(world, page):
+    open_page(page, world("base"))
     page.add_script_tag(path=str(AXE))
     for hand in ("hand", "tilt", "pen", "remote", "room"):
         open_hands(page, hand)

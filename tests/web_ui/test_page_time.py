@@ -18,8 +18,8 @@ def seconds(page) -> float:
     return 60 * int(minutes) + float(rest)
 
 
-def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite, page):
-    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+def test_a_step_has_the_selected_length_and_the_program_state_says_paused(world, page):
+    open_page(page, world("base", behaviour="explorer"))
     open_tab(page, "program")
     state = page.locator("#program-state")
     playwright.expect(state).to_have_text("running")

@@ -1,14 +1,12 @@
-"""Touch on a tablet: turn and zoom the view, press buttons on the robot and on the cross, drag the robot."""
+"""Touch on a touch_page: turn and zoom the view, press buttons on the robot and on the cross, drag the robot."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import (
     MARKS,
     TouchPoints,
@@ -22,7 +20,6 @@ from tests.web_ui.page_support import (
 
 pytestmark = MARKS
 
-RESTING = ("--playground", "base", "--program", "none")
 POSE = "() => window.thymio.state().robot.latest.pose"
 CORNERS = "() => [[0.4, 0.4, 0], [-0.4, -0.4, 0]].map(([x, y, z]) => window.thymio.screenPosition(x, y, z))"
 
@@ -40,12 +37,6 @@ STOP_IN_SIGHT = """() => {
 }"""
 
 
-@pytest.fixture
-def tablet(browser) -> Iterator[Any]:
-    """A checked page on a touch screen."""
-    yield from checked_page(browser, has_touch=True)
-
-
 def place_of(page: Any, part: str) -> tuple[float, float]:
     place = page.evaluate("(part) => window.thymio.partPosition(part)", part)
     return place["x"], place["y"]
@@ -61,71 +52,71 @@ def corners(page: Any) -> list[tuple[float, float]]:
     return [(place["x"], place["y"]) for place in page.evaluate(CORNERS)]
 
 
-def test_one_finger_turns_the_view_and_two_zoom_it(at_rest, tablet):
-    open_page(tablet, at_rest)
-    wait_for_position(tablet, "robot")
-    touches = TouchPoints(tablet)
-    before = corners(tablet)
+def test_one_finger_turns_the_view_and_two_zoom_it(at_rest, touch_page):
+    open_page(touch_page, at_rest)
+    wait_for_position(touch_page, "robot")
+    touches = TouchPoints(touch_page)
+    before = corners(touch_page)
     touches.start(a=(60, 300))
     touches.move(a=(180, 300))
     touches.end()
-    tablet.wait_for_function(TURNED, arg=before[0])
-    wait_for_position(tablet, "robot")
-    turned = corners(tablet)
+    touch_page.wait_for_function(TURNED, arg=before[0])
+    wait_for_position(touch_page, "robot")
+    turned = corners(touch_page)
     touches.start(a=(60, 300), b=(100, 340))
     touches.move(a=(40, 280), b=(140, 380))
     touches.end()
-    tablet.wait_for_function(ZOOMED, arg=1.2 * math.dist(*turned))
+    touch_page.wait_for_function(ZOOMED, arg=1.2 * math.dist(*turned))
 
 
-def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(at_rest, tablet):
-    open_page(tablet, at_rest)
-    tablet.locator("#view").focus()
-    tablet.keyboard.press("f")
-    wait_for_position(tablet, "button.center")
-    touches = TouchPoints(tablet)
-    touches.start(a=place_of(tablet, "button.forward"), b=place_of(tablet, "button.backward"))
-    tablet.wait_for_function(
+def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(at_rest, touch_page):
+    open_page(touch_page, at_rest)
+    touch_page.locator("#view").focus()
+    touch_page.keyboard.press("f")
+    wait_for_position(touch_page, "button.center")
+    touches = TouchPoints(touch_page)
+    touches.start(a=place_of(touch_page, "button.forward"), b=place_of(touch_page, "button.backward"))
+    touch_page.wait_for_function(
         "() => { const {forward, backward} = window.thymio.state().robot.buttons; return forward && backward; }"
     )
     touches.end()
-    tablet.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
-    touches.start(a=middle_of(tablet, "[data-button=left]"), b=middle_of(tablet, "[data-button=center]"))
-    tablet.wait_for_function(
+    touch_page.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
+    touches.start(a=middle_of(touch_page, "[data-button=left]"), b=middle_of(touch_page, "[data-button=center]"))
+    touch_page.wait_for_function(
         "() => { const {left, center} = window.thymio.state().robot.buttons; return left && center; }"
     )
     touches.end()
-    tablet.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
+    touch_page.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
 
 
-def test_a_robot_is_dragged_by_touch(suite, tablet):
-    open_page(tablet, suite(*RESTING))
-    wait_for_position(tablet, "robot")
-    tablet.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
-    before = tablet.evaluate(POSE)
-    tablet.get_by_role("button", name="Move it").tap()
-    tablet.wait_for_function("() => window.thymio.dragged() !== null")  # a tap becomes a click only later
-    touches = TouchPoints(tablet)
-    x, y = place_of(tablet, "robot")
+def test_a_robot_is_dragged_by_touch(world, touch_page):
+    open_page(touch_page, world("base"))
+    wait_for_position(touch_page, "robot")
+    touch_page.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
+    before = touch_page.evaluate(POSE)
+    touch_page.get_by_role("button", name="Move it").tap()
+    touch_page.wait_for_function("() => window.thymio.dragged() !== null")  # a tap becomes a click only later
+    touches = TouchPoints(touch_page)
+    x, y = place_of(touch_page, "robot")
     touches.start(a=(x, y))
     touches.move(a=(x + 60, y + 10))
-    tablet.wait_for_function("() => window.thymio.dragged()?.blocker === null")
+    touch_page.wait_for_function("() => window.thymio.dragged()?.blocker === null")
     touches.end()
-    tablet.wait_for_function(
+    touch_page.wait_for_function(
         "(before) => { const {x, y} = window.thymio.state().robot.latest.pose;"
         " return Math.hypot(x - before.x, y - before.y) > 0.05; }",
         arg=before,
     )
 
 
-def test_on_a_phone_nothing_overflows_and_stop_is_visible(at_rest, tablet):
-    tablet.set_viewport_size({"width": 412, "height": 860})
-    open_page(tablet, at_rest)
+def test_on_a_phone_nothing_overflows_and_stop_is_visible(at_rest, touch_page):
+    touch_page.set_viewport_size({"width": 412, "height": 860})
+    open_page(touch_page, at_rest)
     for go in (None, open_editor, build_playground):
         if go is not None:
-            go(tablet)
-        tablet.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
-        tablet.wait_for_function(STOP_IN_SIGHT)
+            go(touch_page)
+        touch_page.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
+        touch_page.wait_for_function(STOP_IN_SIGHT)
 
 
 FREE = """() => {
@@ -138,25 +129,25 @@ FREE = """() => {
 
 
 @pytest.mark.parametrize("size", [(390, 844), (360, 640)])
-def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(at_rest, tablet, size):
-    tablet.set_viewport_size({"width": size[0], "height": size[1]})
-    open_page(tablet, at_rest, unfold=False)
+def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(at_rest, touch_page, size):
+    touch_page.set_viewport_size({"width": size[0], "height": size[1]})
+    open_page(touch_page, at_rest, unfold=False)
     for language in ("de", "fr", "it", "en"):
-        choose_language(tablet, language)
-        assert tablet.evaluate(FREE) > 0.5
-    forward = tablet.locator("[data-button=forward]")
-    show = tablet.locator("#tray-unfold")
+        choose_language(touch_page, language)
+        assert touch_page.evaluate(FREE) > 0.5
+    forward = touch_page.locator("[data-button=forward]")
+    show = touch_page.locator("#tray-unfold")
     if show.is_visible():
         show.tap()
-    open_menu(tablet, "#hands-more")
-    tablet.locator("#tray-fold").tap()
+    open_menu(touch_page, "#hands-more")
+    touch_page.locator("#tray-fold").tap()
     forward.wait_for(state="hidden")
-    tablet.reload()
-    tablet.wait_for_function("window.thymio && window.thymio.connected")
+    touch_page.reload()
+    touch_page.wait_for_function("window.thymio && window.thymio.connected")
     show.wait_for()
     assert forward.is_hidden()
     show.tap()
     forward.wait_for(state="visible")
-    tablet.set_viewport_size({"width": 1280, "height": 800})
+    touch_page.set_viewport_size({"width": 1280, "height": 800})
     show.wait_for(state="hidden")
     forward.wait_for(state="visible")

@@ -22,15 +22,9 @@ STEPS = 5
 
 
 @pytest.fixture
-def first_visit(suite, page):
+def first_visit(world, page):
     """The page at a first visit, and its address."""
-    return page, ready(suite("--playground", "base", "--program", "explorer"))
-
-
-@pytest.fixture
-def seen_visit(exploring, page):
-    """The same for tests that leave robot and time as they are."""
-    return page, ready(exploring)
+    return page, ready(world("base", "explorer"))
 
 
 def ready(address):
@@ -75,8 +69,8 @@ def test_it_is_offered_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_
     playwright.expect(page.locator(".tour")).to_contain_text("Die Welt deines Roboters")
 
 
-def test_an_offer_that_is_declined_does_not_come_back(seen_visit):
-    page, address = seen_visit
+def test_an_offer_that_is_declined_does_not_come_back(first_visit):
+    page, address = first_visit
     visit(page, f"{address}?welcome=off")
     page.get_by_role("button", name="Not now").click()
     playwright.expect(page.locator(".welcome-tour")).to_have_count(0)
@@ -98,8 +92,8 @@ def test_it_does_not_block_the_page(first_visit):
     page.wait_for_function("window.thymio.state().simulator.paused")
 
 
-def test_the_address_disables_or_forces_it(seen_visit):
-    page, address = seen_visit
+def test_the_address_disables_or_forces_it(first_visit):
+    page, address = first_visit
     visit(page, f"{address}?tour=off")
     page.locator(".welcome-starts").wait_for()
     playwright.expect(page.locator(".tour, .welcome-tour")).to_have_count(0)
@@ -109,8 +103,8 @@ def test_the_address_disables_or_forces_it(seen_visit):
     page.locator(".tour").wait_for()
 
 
-def test_it_can_be_closed_without_browser_storage(seen_visit):
-    page, address = seen_visit
+def test_it_can_be_closed_without_browser_storage(world, own_page):
+    page, address = own_page, ready(world("base", "explorer"))
     page.add_init_script(NO_STORAGE)
     visit(page, address)
     page.click("[data-tour=yes]")
@@ -122,8 +116,8 @@ def test_it_can_be_closed_without_browser_storage(seen_visit):
 
 
 @pytest.mark.parametrize("size", [(1280, 650), (820, 1180), (360, 640)])
-def test_it_is_visible_and_accessible_on_every_screen_in_every_language(seen_visit, size):
-    page, address = seen_visit
+def test_it_is_visible_and_accessible_on_every_screen_in_every_language(first_visit, size):
+    page, address = first_visit
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.emulate_media(reduced_motion="reduce")
     visit(page, f"{address}?tour=on")

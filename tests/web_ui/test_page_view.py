@@ -27,10 +27,10 @@ FLAT_COLORS = """() => {
 }"""
 CANVAS = "() => document.querySelector('#view').width"
 PNG = b"\x89PNG\r\n\x1a\n"
-RESTING = ("--playground", "base", "--program", "none")
 
 
-def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(at_rest, page):
+def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(at_rest, own_page):
+    page = own_page
     page.add_init_script(NO_WEBGL)
     open_page(page, at_rest)
     page.wait_for_function(f"({FLAT_COLORS})() > 4")
@@ -49,7 +49,8 @@ def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(at_rest, pa
     assert int.from_bytes(content[16:20]) >= 1920
 
 
-def test_a_context_that_is_not_restored_switches_to_2d(at_rest, page):
+def test_a_context_that_is_not_restored_switches_to_2d(at_rest, own_page):
+    page = own_page
     open_page(page, at_rest)
     wait_for_position(page, "robot")
     page.evaluate(LOSE)
@@ -81,8 +82,8 @@ def test_the_view_is_saved_as_an_image_and_the_robot_view_works(at_rest, page):
     assert page.evaluate(CANVAS) == coarse
 
 
-def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(suite, page):
-    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(world, page):
+    open_page(page, world("two_robots"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     page.wait_for_function("() => document.querySelectorAll('#labels .dot').length === 2")
     open_menu(page, "#robot-chooser")

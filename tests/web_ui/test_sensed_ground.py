@@ -13,8 +13,8 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from PIL import Image
 
-from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import MARKS, open_menu, open_page, wait_until_still
+from tests.web_ui.tabs import checked_page
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.playground import reader
 
@@ -42,15 +42,15 @@ def playground() -> str:
 @pytest.fixture
 def page(browser) -> Iterator[Any]:
     """A page in full resolution, because its picture is compared."""
-    yield from checked_page(browser, device_scale_factor=1)
+    yield from checked_page(browser, compares_pictures=True)
 
 
-def test_the_view_is_dark_exactly_where_the_sensors_measure_dark(suite, page, tmp_path):
+def test_the_view_is_dark_exactly_where_the_sensors_measure_dark(world, page, tmp_path):
     path = tmp_path / "strips.json"
     path.write_text(playground())
     loaded = reader.load(path)
     ground = Ground(loaded.floors, loaded.paints)
-    open_page(page, suite("--playground", str(path), "--program", "none"))
+    open_page(page, world(path))
     open_menu(page, "[data-view=look]")
     page.select_option("#quality", "medium")
     page.locator("#view").focus()

@@ -12,10 +12,9 @@ from PIL import Image, ImageDraw
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.processes import wait_for_port
-from tests.web_ui.conftest import Suites, checked_page
 from tests.web_ui.page_support import MARKS, choose_language, choose_playground, open_menu, open_tab, wait_for_frame
 from tests.web_ui.snapshots import MOST, SHRINK, Snapshots, font_script, letters, share, shrunk, shrunk_already
+from tests.web_ui.tabs import checked_page
 
 FOLDER = Path(__file__).parents[1] / "data" / "web" / "snapshots"
 MISTAKE = "var near = 2000\nonevent prox\nif prox.horizontal[2] = near then\nmotor.left.target = 0\nend\n"
@@ -101,27 +100,19 @@ STATES: dict[str, tuple[State, tuple[int, int], str]] = {
     "phone": (nothing, (390, 844), "welcome=off&scene=off"),
     "class": (many, WIDE, "welcome=off"),
 }
-"""What to do, the size of the window, options in the address. The last one changes the world."""
+"""What to do, the size of the window, options in the address."""
 
 
-@pytest.fixture(scope="module")
-def address(browser, _shared, tmp_path_factory) -> Iterator[str]:
-    """One suite for all states."""
-    from thymio_sim_ros.testing.ros.domain import reserved
-
-    _shared.end()
-    suites = Suites(tmp_path_factory.mktemp("suite"))
-    with reserved():
-        address = suites("--playground", "desk", "--program", "none")
-        wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
-        yield address
-        suites.end()
+@pytest.fixture
+def address(world) -> str:
+    """The page of a desk with a robot at rest."""
+    return world("desk")
 
 
 @pytest.fixture(scope="module")
 def shared_page(browser) -> Iterator[Any]:
     """One page for all states: it is loaded again for each, and stored nothing."""
-    for page in checked_page(browser, device_scale_factor=1, reduced_motion="reduce"):
+    for page in checked_page(browser, compares_pictures=True, reduced_motion="reduce"):
         page.add_init_script(font_script())
         page.add_init_script("localStorage.clear()")
         yield page

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,6 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.conftest import checked_page
 from tests.web_ui.page_support import (
     MARKS,
     TouchPoints,
@@ -104,9 +102,9 @@ def set_slider(page: Any, look: str, value: str) -> None:
     raise AssertionError(f"{look} never showed {value}")
 
 
-def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page, ros):
+def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(world, page):
     page.set_viewport_size({"width": 1280, "height": 900})
-    open_page(page, suite("--playground", "base", "--program", "none"))
+    open_page(page, world("base"))
     page.add_script_tag(content=AXE.read_text(encoding="utf-8"))
     begin(page, "empty")
     assert page.evaluate(FINDINGS) == []
@@ -161,7 +159,7 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
     page.get_by_role("button", name="Run program").click()
     expect(page, "#program-state").to_have_attribute("data-state", "running")
     page.wait_for_function("() => document.querySelector('.vpl-ran:not([hidden])') !== null")
-    watch_it_avoid(page, ros)
+    watch_it_avoid(page, world)
 
     # as text, read-only; turned into text; back
     page.locator("[data-language=text]").click()
@@ -180,8 +178,8 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(suite, page
         assert page.evaluate(FINDINGS) == []
 
 
-def test_a_program_is_built_by_keyboard_alone(suite, page):
-    open_page(page, suite("--playground", "base", "--program", "none"))
+def test_a_program_is_built_by_keyboard_alone(world, page):
+    open_page(page, world("base"))
     begin(page, "empty")
     page.locator(place(0, "event")).focus()
     for key in ("Enter", "Enter"):  # the slot, then the first block of the palette: buttons
@@ -214,13 +212,14 @@ def test_a_program_is_built_by_keyboard_alone(suite, page):
 
 
 @pytest.fixture
-def phone(browser) -> Iterator[Any]:
+def phone(touch_page) -> Any:
     """A checked page on a phone in portrait."""
-    yield from checked_page(browser, has_touch=True, viewport={"width": 390, "height": 844})
+    touch_page.set_viewport_size({"width": 390, "height": 844})
+    return touch_page
 
 
-def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(suite, phone):
-    open_page(phone, suite("--playground", "base", "--program", "none"))
+def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(world, phone):
+    open_page(phone, world("base"))
     begin(phone, "buttons")
     assert blocks(phone, 0) == ["button", "move", "colortop"]
     fingers = TouchPoints(phone)
@@ -259,9 +258,9 @@ def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(suite,
     assert phone.evaluate(FINDINGS) == []
 
 
-def test_older_files_and_a_teachers_list_are_opened(suite, page):
+def test_older_files_and_a_teachers_list_are_opened(world, page):
     page.set_viewport_size({"width": 800, "height": 600})
-    open_page(page, suite("--playground", "base", "--program", "none"), unfold=False)
+    open_page(page, world("base"), unfold=False)
     open_tab(page, "program")
     page.locator(".program[data-shown=start]").wait_for()
     drop_file(page, FILES / "format0.aesl", ".program")

@@ -42,18 +42,9 @@ def visit(page, address, query="tour=off"):
 
 
 @pytest.fixture
-def first_visit(suite, page):
+def first_visit(world, page):
     """The page at a first visit: the robot waits in the ring of line. Also its address."""
-    return opened(page, suite("--playground", "line", "--program", "welcome"))
-
-
-@pytest.fixture
-def seen_visit(greeting, page):
-    """The same for tests that start nothing."""
-    return opened(page, greeting)
-
-
-def opened(page, address):
+    address = world("line", "welcome")
     visit(page, address)
     page.locator(STARTS).wait_for()
     wait_for_program(page, "welcome")
@@ -119,8 +110,8 @@ def test_who_only_watches_sees_it_follow_the_line(first_visit):
     page.wait_for_function(MOVES)
 
 
-def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(seen_visit):
-    page, address = seen_visit
+def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(first_visit):
+    page, address = first_visit
     page.keyboard.press("Escape")
     playwright.expect(page.locator(STARTS)).to_have_count(0)
     visit(page, address)
@@ -133,9 +124,10 @@ def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(seen_
     playwright.expect(page.locator(STARTS)).to_have_count(0)
 
 
-def test_without_browser_storage_a_choice_lasts_in_this_visit(greeting, page):
+def test_without_browser_storage_a_choice_lasts_in_this_visit(world, own_page):
+    page = own_page
     page.add_init_script(NO_STORAGE)
-    visit(page, greeting)
+    visit(page, world("line", "welcome"))
     page.locator(STARTS).wait_for()
     page.keyboard.press("Escape")
     page.reload()
@@ -144,8 +136,8 @@ def test_without_browser_storage_a_choice_lasts_in_this_visit(greeting, page):
     playwright.expect(page.locator(STARTS)).to_have_count(0)
 
 
-def test_the_greeting_is_over_the_robot_and_in_every_language(seen_visit):
-    page, _ = seen_visit
+def test_the_greeting_is_over_the_robot_and_in_every_language(first_visit):
+    page, _ = first_visit
     hello = page.locator(".welcome-hello")
     for language, text in (("de", "Hallo, ich bin Thymio."), ("fr", "Bonjour"), ("it", "Ciao"), ("en", "Hello")):
         choose_language(page, language)
@@ -160,10 +152,10 @@ def test_the_greeting_is_over_the_robot_and_in_every_language(seen_visit):
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1024, 768), (390, 844), (640, 400)])
-def test_everything_is_in_sight_and_accessible_on_every_screen(greeting, page, size):
+def test_everything_is_in_sight_and_accessible_on_every_screen(world, page, size):
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.emulate_media(reduced_motion="reduce")
-    visit(page, greeting, "welcome=on")
+    visit(page, world("line", "welcome"), "welcome=on")
     page.locator(STARTS).wait_for()
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)
@@ -178,8 +170,8 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(greeting, page, s
     assert page.locator(".welcome-tour").count() == 1
 
 
-def test_the_keys_are_listed_in_a_dialog_that_escape_closes(greeting, page):
-    visit(page, greeting, "tour=off&welcome=off")
+def test_the_keys_are_listed_in_a_dialog_that_escape_closes(world, page):
+    visit(page, world("line", "welcome"), "tour=off&welcome=off")
     wait_for_program(page, "welcome")
     open_menu(page, "#help-open")
     page.get_by_role("menuitem", name="Keys").click()
@@ -193,8 +185,8 @@ def test_the_keys_are_listed_in_a_dialog_that_escape_closes(greeting, page):
     assert page.evaluate("window.thymio.state().program.state") == "running"
 
 
-def test_the_documentation_ships_with_the_page(seen_visit):
-    page, _ = seen_visit
+def test_the_documentation_ships_with_the_page(first_visit):
+    page, _ = first_visit
     open_menu(page, "#help-open")
     with page.context.expect_page() as opened:
         page.get_by_role("menuitem", name="Documentation").click()
