@@ -15,6 +15,14 @@ from tests.web_ui.page_support import MARKS, choose_robot, open_details, open_pa
 pytestmark = MARKS
 
 MOTOR = "window.thymio.state().robot?.raw.motor"
+HOLD_BEFORE_THE_PICTURE = """async () => {
+    const [shown] = document.querySelectorAll(".motor .number");
+    const isShown = () => shown.textContent === String(window.thymio.state().robot.raw.motor[0]);
+    while (isShown()) await new Promise((end) => setTimeout(end));
+    document.querySelector("[data-values=hold]").click();
+    return document.querySelector(".picture svg").innerHTML;
+}"""
+"""Hold the values when others have been received, but are not yet in the picture; the picture."""
 TIME = "window.thymio.state().timeNs"
 
 
@@ -77,9 +85,8 @@ def test_held_values_stay_until_another_robot_is_chosen(world, page):
     number = page.locator(".motor .number").first
     playwright.expect(number).to_have_text(re.compile("^-?[1-9]"))
     hold = page.locator("[data-values=hold]")
-    hold.click()
+    before = page.evaluate(HOLD_BEFORE_THE_PICTURE)
     playwright.expect(hold).to_have_text("Values are held")
-    before = page.locator(".picture svg").inner_html()
     time = page.evaluate(TIME)
     page.wait_for_function(f"(time) => {TIME} > time + 1e9", arg=time)
     assert page.locator(".picture svg").inner_html() == before

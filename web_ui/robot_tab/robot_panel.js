@@ -19,7 +19,9 @@ export function robotPanel(context) {
   const picture = robotPicture(t);
   const stats = robotStats(t);
   const table = valuesTable(context);
-  /** @type {{ name: string, robot: Robot } | null} whose values are held */ let held = null;
+  /** @typedef {{ name: string, robot: Robot }} Shown */
+  /** @type {Shown | null} */ let shown = null;
+  /** @type {Shown | null} what was shown when the values were held */ let held = null;
   const word = h("span", {}, t("hold"));
   const hold = h(
     "button",
@@ -27,15 +29,15 @@ export function robotPanel(context) {
     icon("pin", { small: true }),
     word,
   );
-  /** @param {typeof held} now */
+  /** @param {Shown | null} now */
   const keep = (now) => {
     held = now;
     setAttribute(hold, "aria-pressed", String(held !== null));
     setText(word, t(held === null ? "hold" : "hold.on"));
   };
   hold.addEventListener("click", () => {
-    const { robots, selected } = store.state;
-    keep(held !== null || robots[selected] === undefined ? null : { name: selected, robot: robots[selected] });
+    // not the newest values, which may not be in the picture yet: it would still change
+    keep(held === null && shown?.name === store.state.selected ? shown : null);
     scene.invalidate();
   });
   const waiting = h("p", { class: "waiting small muted", hidden: true }, t("waiting"));
@@ -58,7 +60,6 @@ export function robotPanel(context) {
     stats.element,
     table.element,
   );
-  /** @type {Robot | null} */ let shown = null;
   /** @type {readonly unknown[]} */ let declared = [];
   let shownMs = -Infinity;
   let isLate = false;
@@ -74,7 +75,7 @@ export function robotPanel(context) {
       if (held !== null && held.name !== selected) keep(null);
       const robot = held?.robot ?? robots[selected];
       waiting.hidden = !(simulator?.paused && robot !== undefined && Object.keys(robot.raw).length === 0);
-      if (robot === undefined || (robot === shown && sensors === declared)) return;
+      if (robot === undefined || (robot === shown?.robot && sensors === declared)) return;
       const early = LEAST_MS - (performance.now() - shownMs);
       if (early > 0) {
         if (!isLate) setTimeout(() => scene.invalidate(), early);
@@ -82,7 +83,7 @@ export function robotPanel(context) {
         return;
       }
       isLate = false;
-      shown = robot;
+      shown = { name: selected, robot };
       declared = sensors;
       shownMs = performance.now();
       const values = pictureOf(robot);
