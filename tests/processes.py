@@ -116,17 +116,23 @@ def wait_until_asleep(pid: int) -> None:
         until(lambda: b") S " in os.pread(stat.fileno(), 200, 0), every_s=0.001)
 
 
-def free_port() -> int:
-    """A TCP port of loopback that is free now, and that the system does not give to a process that asks for any port.
+def free_port(count: int = 1) -> int:
+    """The first of TCP ports of loopback that are free now, and that the system does not give to others by itself.
 
     Such a one could go to a server of another test before the program that is to use it has started; processes
     begin to count at places of their own, and take none twice.
     """
     while True:
-        port = _PORTS[0] + (os.getpid() * _STRIDE + next(_taken)) % len(_PORTS)
-        with socket.socket() as probe:
-            try:
-                probe.bind(("127.0.0.1", port))
-            except OSError:
-                continue
-        return port
+        turns = [next(_taken) for _ in range(count)]
+        first = _PORTS[0] + (os.getpid() * _STRIDE + turns[0]) % (len(_PORTS) - count)
+        if all(_is_free(port) for port in range(first, first + count)):
+            return first
+
+
+def _is_free(port: int) -> bool:
+    with socket.socket() as probe:
+        try:
+            probe.bind(("127.0.0.1", port))
+        except OSError:
+            return False
+    return True

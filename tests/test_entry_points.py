@@ -64,6 +64,7 @@ def test_an_ignored_interrupt_stays_ignored(monkeypatch):
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
 
 
+@pytest.mark.process
 def test_nothing_that_takes_time_is_imported_first():
     code = "import sys, thymio_sim_ros.entry_points; print(*sorted(name for name in sys.modules if '.' not in name))"
     names = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()

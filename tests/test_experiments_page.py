@@ -36,6 +36,8 @@ def run(folder: Path, *command: str) -> str:
     return ended.stdout
 
 
+@pytest.mark.slow
+@pytest.mark.process
 def test_the_loop_of_the_shell_leaves_a_result_and_a_log_for_each_seed(tmp_path: Path) -> None:
     command = tmp_path / "bin" / "thymio-sim"
     command.parent.mkdir()

@@ -66,6 +66,8 @@ def test_the_rows_are_the_sample_of_vpl() -> None:
     assert program_of("avoid_vpl.aseba").program.words == sample.program.words
 
 
+@pytest.mark.slow
+@pytest.mark.process
 def test_the_test_of_the_page_passes(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     if importlib.util.find_spec("rclpy") is None:
         pytest.skip("needs ROS")

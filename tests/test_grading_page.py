@@ -40,6 +40,10 @@ def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     return pytester.runpytest_subprocess(*plugin, *arguments, timeout=PROGRAM_S)
 
 
+LONG = {"test_avoider.py", "test_two_nodes.py"}
+"""Examples that only `make test-all` executes: others that need ROS, too, are executed by `make test`."""
+
+
 def test_the_page_has_its_examples() -> None:
     assert {"follower.aesl", "avoider.py", "caller.aesl", "comer.aesl", WORKFLOW} <= FILES.keys()
     assert FAILING.keys() == {"test_button.py", "test_misspelt.py"}
@@ -47,7 +51,15 @@ def test_the_page_has_its_examples() -> None:
     assert PAGE.count("```") == 2 * (len(FILES) + len(FAILING))
 
 
-@pytest.mark.parametrize("name", sorted(name for name in FILES if name.startswith("test_") and name not in FAILING))
+@pytest.mark.process
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in LONG else ())
+        for name in sorted(FILES)
+        if name.startswith("test_") and name not in FAILING
+    ],
+)
 def test_an_example_passes(pytester: pytest.Pytester, folder: Path, name: str) -> None:
     if name in NEED_ROS and not HAS_ROS:
         pytest.skip("needs ROS")
@@ -56,6 +68,7 @@ def test_an_example_passes(pytester: pytest.Pytester, folder: Path, name: str) -
     result.assert_outcomes(passed=FILES[name].count("\ndef test_") + sum(seeds) - len(seeds))
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("name", sorted(FAILING))
 def test_an_example_fails_as_the_page_says(pytester: pytest.Pytester, folder: Path, name: str) -> None:
     if name in NEED_ROS and not HAS_ROS:
@@ -66,6 +79,7 @@ def test_an_example_fails_as_the_page_says(pytester: pytest.Pytester, folder: Pa
     assert FAILING[name].rstrip() in said
 
 
+@pytest.mark.process
 def test_without_ros_examples_that_need_it_are_skipped(pytester: pytest.Pytester, folder: Path) -> None:
     (folder / "conftest.py").write_text(
         "import sys\nfor name in 'rclpy', 'geometry_msgs', 'sensor_msgs':\n    sys.modules[name] = None\n"
@@ -74,6 +88,7 @@ def test_without_ros_examples_that_need_it_are_skipped(pytester: pytest.Pytester
     result.assert_outcomes(passed=1, skipped=4)  # a file as a whole, and the tests of the three others
 
 
+@pytest.mark.process
 def test_the_workflow_runs_what_there_is(pytester: pytest.Pytester, folder: Path) -> None:
     pytest.importorskip("xdist")
     install, command = re.findall(r"- run: (.*)", FILES[WORKFLOW])

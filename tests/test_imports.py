@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 from tests.syntax import ROOT, place, tree
 
 PACKAGES = ("aseba_vm", "thymio_sim_ros")
@@ -180,6 +182,7 @@ def test_no_module_imports_itself_by_a_detour() -> None:
     graphlib.TopologicalSorter(graph).prepare()
 
 
+@pytest.mark.process
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
     with_ros = (
         f"{OURS}.ros",
@@ -201,6 +204,7 @@ def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
     assert done.returncode == 0
 
 
+@pytest.mark.process
 def test_the_language_needs_nothing_but_the_standard_library() -> None:
     """aseba_vm is useful without a robot: -S hides every installed package."""
     program = f"import sys; sys.path.insert(0, {str(ROOT)!r}); import aseba_vm"

@@ -112,6 +112,7 @@ def test_launchers_are_one_text_and_executable() -> None:
     assert all(os.access(path, os.X_OK) for path in launchers)
 
 
+@pytest.mark.process
 def test_a_launcher_starts_the_console_script_of_its_own_installation(tmp_path: Path) -> None:
     launcher = tmp_path / "lib" / NAME / "simulator"
     script = tmp_path / "bin" / "thymio_simulator"

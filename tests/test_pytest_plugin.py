@@ -10,6 +10,8 @@ import pytest
 
 from tests.patience import PROGRAM_S
 
+pytestmark = pytest.mark.process
+
 ROOT = Path(__file__).parents[1]
 PLUGIN = "thymio_sim_ros.pytest_plugin"
 HAS_ROS = importlib.util.find_spec("rclpy") is not None

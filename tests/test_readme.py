@@ -80,6 +80,7 @@ def test_the_node_of_the_readme_drives_the_robot(ros, tmp_path):
         suite.end()
 
 
+@pytest.mark.process
 def test_the_test_of_the_readme_passes(pytester, monkeypatch):
     node, test = pages.blocks(README, "python")
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))

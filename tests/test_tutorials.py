@@ -17,11 +17,15 @@ pytestmark = [
 
 FOLDER = pages.DOCS / "tutorials"
 TUTORIALS = ("drive", "first-node", "sensors", "time", "domains", "qos", "tf", "record", "many-runs")
+LANDING = "first-node"
+"""The tutorial that `make test` follows; the others wait in real time."""
 NEEDS = {"many-runs": ("distributed", "matplotlib", "pyarrow"), "record": ("matplotlib", "rosbags")}
 """Packages of extras, without which a tutorial is skipped."""
 
 
-@pytest.mark.parametrize("name", TUTORIALS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name == LANDING else pytest.mark.slow) for name in TUTORIALS]
+)
 def test_a_tutorial_does_what_it_says(name: str, ros_domain: int, tmp_path: Path) -> None:
     for package in NEEDS.get(name, ()):
         pytest.importorskip(package)

@@ -2,6 +2,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import aseba_vm
 
 ROOT = str(Path(aseba_vm.__file__).parents[1])
@@ -25,6 +27,7 @@ def test_public_classes_and_functions_are_explained():
     assert [thing for thing in public if not thing.__doc__] == []
 
 
+@pytest.mark.process
 def test_the_package_needs_the_standard_library_only():
     found = subprocess.run([sys.executable, "-c", IMPORTING], capture_output=True, text=True, check=True)
     assert set(found.stdout.split()) - set(sys.stdlib_module_names) == {"aseba_vm"}

@@ -42,6 +42,7 @@ def run(folder):
     return ended.returncode, counts.get("passed", 0), counts.get("failed", 0)
 
 
+@pytest.mark.process
 def test_any_part_of_a_set_is_run_plain_or_compressed(tmp_path):
     (tmp_path / "aseba-compile.jsonl").write_text("\n".join(lines("aseba-compile", 5)), "utf-8")
     (tmp_path / "aseba-errors-more.jsonl.gz").write_bytes(gzip.compress("\n".join(lines("aseba-errors", 4)).encode()))
@@ -52,6 +53,7 @@ def test_any_part_of_a_set_is_run_plain_or_compressed(tmp_path):
     assert run(tmp_path) == (0, 5 + 4 + (3 + 2) * engines + own, 0)
 
 
+@pytest.mark.process
 def test_a_wrong_answer_in_a_set_is_found_in_every_engine(tmp_path):
     vector = json.loads(lines("aseba-execution", 1)[0])
     vector["expect"][-1]["memory_crc"] ^= 1
@@ -60,6 +62,7 @@ def test_a_wrong_answer_in_a_set_is_found_in_every_engine(tmp_path):
     assert (code, failed) == (1, len(AVAILABLE) + 1)
 
 
+@pytest.mark.process
 def test_a_folder_without_vectors_is_refused(tmp_path):
     assert run(tmp_path)[0] != 0
     assert not is_set(tmp_path)

@@ -24,6 +24,7 @@ def test_a_goal_is_reached_up_to_its_limit(measured: float | str, is_least: bool
     assert Goal("time", 1.0, measured, is_least=is_least).is_reached is is_reached
 
 
+@pytest.mark.process
 def test_a_result_is_stored_and_rendered(tmp_path: Path) -> None:
     path = tmp_path / "one.json"
     report.save(path, report.result("one", REPORT, ["--rounds", "2"], None, 0.5))
@@ -35,6 +36,7 @@ def test_a_result_is_stored_and_rendered(tmp_path: Path) -> None:
     assert text.endswith("load average 0.5.")
 
 
+@pytest.mark.process
 def test_a_section_of_the_page_is_rendered_again(tmp_path: Path) -> None:
     report.save(tmp_path / "one.json", report.result("one", REPORT, [], None, 0.5))
     end = "<!-- end of results -->\n"

@@ -19,6 +19,8 @@ from thymio_sim_ros.bridge.protocol.bounded_json import MAX_STRUCTURE
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.pending_requests import MAX_PENDING_CALLS
 
+pytestmark = pytest.mark.process
+
 PING = bytes([0x89, 0x80, 0, 0, 0, 0])
 CLIENT_FRAME = ms.ServiceRequest(7, 1, "cdr", b"")
 """A call of a service that does not exist: it is rejected immediately."""

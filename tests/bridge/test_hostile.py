@@ -21,6 +21,8 @@ from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.client_state import ClientState
 from thymio_sim_ros.bridge.transport import SharedConnection, SharedTransport
 
+pytestmark = pytest.mark.process
+
 FRAMES = 10_000
 VISITS = 500
 SAID = (

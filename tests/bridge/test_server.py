@@ -20,6 +20,8 @@ from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.switchboard import events as ev
 
+pytestmark = pytest.mark.process
+
 LIMIT = 1 << 16
 KILOBYTE = bytes(1024)
 

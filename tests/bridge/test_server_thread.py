@@ -25,6 +25,8 @@ from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.switchboard import events as ev
 
+pytestmark = pytest.mark.process
+
 CHANNEL = ms.Channel(1, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import urllib.error
 import urllib.request
@@ -10,24 +11,37 @@ from pathlib import Path
 from typing import Any
 
 from tests.patience import PATIENCE_S, until
-from tests.processes import Process, wait_for_port
+from tests.processes import Process, free_port, wait_for_port
+from thymio_sim_ros.testing.ros.domain import reserved
 
 _POLL_S = 0.2
 
 
 class RunningClass:
-    """A class with a folder. Its ports are `port` and those that follow, its domains those from `domain` on."""
+    """A class with a folder, on free ports and in domains of its own; `end` gives them back."""
 
-    def __init__(
-        self, path: Path, names: list[str], *, port: int, domain: int, arguments: tuple[str, ...] = ()
-    ) -> None:
+    def __init__(self, path: Path, names: list[str], *, arguments: tuple[str, ...] = ()) -> None:
+        self._domains = contextlib.ExitStack()
+        domains = [self._domains.enter_context(reserved())]
+        while domains[-len(names) :] != list(range(domains[-1] - len(names) + 1, domains[-1] + 1)):
+            domains.append(self._domains.enter_context(reserved()))
+        port = free_port(2 + 2 * len(names))
         self.folder, self.port = path / "class", port
         pupils = path / "names.csv"
         pupils.write_text("\n".join(names))
         given = ["--pupils", str(pupils), "--folder", str(self.folder), "--first-port", str(port)]
-        command = ["class", *given, "--first-domain", str(domain), *arguments]
+        command = ["class", *given, "--first-domain", str(domains[-len(names)]), *arguments]
         self.process = Process(path, "thymio_sim_ros.cli.main", *command)
         wait_for_port(port)
+
+    def port_of(self, number: int) -> int:
+        """The port of the bridge of the pupil with this number from 1 on; that of the page is the one before."""
+        return self.port + 2 * number
+
+    def end(self) -> None:
+        """End the class with all its suites."""
+        self.process.end()
+        self._domains.close()
 
     @property
     def known(self) -> Any:

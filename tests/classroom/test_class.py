@@ -26,21 +26,21 @@ from thymio_sim_ros.cli import main as commands
 
 pytestmark = pytest.mark.process
 
-PORT, DOMAIN = 21_310, 111
-ADA, BEN = PORT + 2, PORT + 4
+ADA, BEN = 1, 2
+"""Numbers of the pupils."""
 PROGRAM = "onevent button.forward\nmotor.left.target = 100\n"
 
 
 @pytest.fixture(scope="module")
 def group(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningClass]:
     """The class of Ada and Ben."""
-    running = RunningClass(tmp_path_factory.mktemp("class"), ["Ada", "Ben"], port=PORT, domain=DOMAIN)
+    running = RunningClass(tmp_path_factory.mktemp("class"), ["Ada", "Ben"])
     try:
         for pupil in ("ada", "ben"):
             running.until(pupil, lambda one: one["phase"] == "running" and one["programs"])
         yield running
     finally:
-        running.process.end()
+        running.end()
 
 
 def token_of(group: RunningClass, name: str) -> str:
@@ -78,7 +78,7 @@ def suite_pid(port: int) -> int:
 def test_a_bridge_needs_the_token_of_its_pupil(group: RunningClass) -> None:
     for token in ("", token_of(group, "Ben")):
         with pytest.raises((WebSocketException, TimeoutError)):
-            asked(ADA, token, ms.GetParameters(()), ())
+            asked(group.port_of(ADA), token, ms.GetParameters(()), ())
     with pytest.raises(urllib.error.HTTPError, match="401"):
         group.request("state", token=token_of(group, "Ada"))
 
@@ -100,10 +100,10 @@ def test_a_message_and_a_robot_that_is_shown_arrive_on_the_page(group: RunningCl
     group.request("message", {"pupils": ["ada"], "text": "Bitte schön"})
     group.request("show", {"pupil": "ben"})
     watch = group.pupil("ben")["watch"]
-    group.until("ada", lambda _one: notice(group, ADA, "Ada") == ("Bitte schön", watch))
+    group.until("ada", lambda _one: notice(group, group.port_of(ADA), "Ada") == ("Bitte schön", watch))
     group.request("show", {"pupil": None})
-    group.until("ada", lambda _one: notice(group, ADA, "Ada") == ("Bitte schön", ""))
-    assert notice(group, BEN, "Ben") == ("", "")
+    group.until("ada", lambda _one: notice(group, group.port_of(ADA), "Ada") == ("Bitte schön", ""))
+    assert notice(group, group.port_of(BEN), "Ben") == ("", "")
 
 
 def test_a_suite_that_is_killed_starts_again_with_its_program_and_message(group: RunningClass) -> None:
@@ -111,26 +111,27 @@ def test_a_suite_that_is_killed_starts_again_with_its_program_and_message(group:
         ms.Parameter("/aseba_runtime.script.name", "mine.aesl"),
         ms.Parameter("/aseba_runtime.script.source", PROGRAM),
     )
-    asked(ADA, token_of(group, "Ada"), ms.SetParameters(changes, "set"), ())
+    asked(group.port_of(ADA), token_of(group, "Ada"), ms.SetParameters(changes, "set"), ())
     group.request("message", {"pupils": ["ada"], "text": "still there"})
     group.until("ada", lambda one: zipped(group) == {"ada/program.aesl": PROGRAM})
     before = group.pupil("ada")
-    os.killpg(suite_pid(ADA), signal.SIGKILL)
+    os.killpg(suite_pid(group.port_of(ADA)), signal.SIGKILL)
     after = group.until("ada", lambda one: one["restarts"] == 1 and one["phase"] == "running" and one["programs"])
     assert after["reason"] == "ended by SIGKILL"
     assert after["link"] == before["link"]
     assert after["programs"][0]["program"] == "program.aesl"
     assert group.pupil("ben")["restarts"] == 0
     source = "/aseba_runtime.script.path"
-    kept = asked(ADA, token_of(group, "Ada"), ms.GetParameters((source,)), (source,))[source]
+    kept = asked(group.port_of(ADA), token_of(group, "Ada"), ms.GetParameters((source,)), (source,))[source]
     assert Path(str(kept)).read_text() == PROGRAM
-    group.until("ada", lambda _one: notice(group, ADA, "Ada")[0] == "still there")
+    group.until("ada", lambda _one: notice(group, group.port_of(ADA), "Ada")[0] == "still there")
 
 
 def test_the_teacher_restarts_a_suite(group: RunningClass) -> None:
-    before = suite_pid(BEN)
+    port = group.port_of(BEN)
+    before = suite_pid(port)
     group.request("restart", {"pupils": ["ben"]})
-    group.until("ben", lambda one: one["phase"] == "running" and one["programs"] and suite_pid(BEN) != before)
+    group.until("ben", lambda one: one["phase"] == "running" and one["programs"] and suite_pid(port) != before)
     assert group.pupil("ben")["restarts"] == 0
 
 

@@ -19,6 +19,7 @@ from thymio_sim_ros.domain import describe_domain
 from thymio_sim_ros.suite_config import SuiteConfig
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("address", ["localhost", "127.0.0.1"])
 def test_on_this_computer_only(address):
     text = banner.banner(SuiteConfig(address=address), ["thymio"]).splitlines()
@@ -31,6 +32,7 @@ def test_a_computer_without_a_network_interface_says_so(monkeypatch):
     assert first == ("Network   this computer cannot reach itself (Network is unreachable): switch its interface lo on")
 
 
+@pytest.mark.process
 def test_for_the_whole_network(monkeypatch):
     monkeypatch.setattr(addresses, "own_address", lambda: "10.1.2.3")
     text = banner.banner(SuiteConfig(address="0.0.0.0", port=80, foxglove_port=81), ["thymio"]).splitlines()
@@ -38,6 +40,7 @@ def test_for_the_whole_network(monkeypatch):
     assert text[1] == "Foxglove  ws://localhost:81, from other computers ws://10.1.2.3:81"
 
 
+@pytest.mark.process
 def test_on_one_address():
     assert "Page      http://10.1.2.3:8080/\n" in banner.banner(SuiteConfig(address="10.1.2.3"), ["thymio"])
 
@@ -56,6 +59,7 @@ def test_other_addresses(monkeypatch, address, text):
     assert addresses.describe_urls("ws", address, 8765) == text
 
 
+@pytest.mark.process
 def test_without_page_and_bridge():
     text = banner.banner(SuiteConfig(web=False, foxglove=False), ["thymio"])
     assert text.splitlines() == [
@@ -69,6 +73,7 @@ def test_without_page_and_bridge():
 TOKENS = Tokens("fulltoken", "looktoken")
 
 
+@pytest.mark.process
 def test_tokens_are_in_the_addresses_and_the_read_only_ones_apart(monkeypatch):
     monkeypatch.setattr(addresses, "own_address", lambda: "10.1.2.3")
     text = banner.banner(SuiteConfig(address="0.0.0.0", port=80, foxglove_port=81, tokens=TOKENS), ["thymio"])
@@ -82,6 +87,7 @@ def test_tokens_are_in_the_addresses_and_the_read_only_ones_apart(monkeypatch):
     ]
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("address", "tokens", "expected"),
     [
@@ -122,6 +128,7 @@ def test_without_the_package_there_is_no_qr_code(monkeypatch):
     assert banner.qr_code(SuiteConfig(address="0.0.0.0")) == ""
 
 
+@pytest.mark.process
 def test_this_computer_has_a_number_or_a_name(monkeypatch):
     found = addresses.own_address()
     assert found == socket.gethostname() or ipaddress.IPv4Address(found)

@@ -14,6 +14,8 @@ from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import Servers, add_server_options, select_servers
 from thymio_sim_ros.network.settings import OFF
 
+pytestmark = pytest.mark.process
+
 
 def _select(
     arguments: Sequence[str], *, address: str = "localhost", headless: bool = False, token: str = ""

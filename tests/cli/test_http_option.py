@@ -13,6 +13,8 @@ from thymio_sim_ros.cli.servers import add_server_options, select_servers
 from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams
 
+pytestmark = pytest.mark.process
+
 NO_TOKENS = Tokens()
 TOKENS = Tokens("full-token", "watch-token")
 

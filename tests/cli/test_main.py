@@ -65,6 +65,7 @@ def test_a_broken_playground_is_located(capsys, tmp_path):
     assert "expected" in line
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("option", "whose", "others"), [("--port", "page", []), ("--foxglove-port", "Foxglove", ["--no-web"])]
 )
@@ -97,6 +98,7 @@ def test_bad_arguments_exit_with_2(capsys, arguments):
     assert "error" in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_an_address_of_another_computer_is_one_line(capsys):
     line = refused(capsys, "--address", "192.0.2.1")
     assert "192.0.2.1" in line
@@ -115,6 +117,7 @@ def test_without_ros_the_error_says_how_to_install_it(capsys, monkeypatch):
     assert "runner" in refused(capsys, "--headless")
 
 
+@pytest.mark.process
 def test_checking_the_ports_accepts_no_connection(capsys, monkeypatch):
     """A browser that waits for the page took the first answer of its port for the page."""
 
@@ -137,6 +140,7 @@ def test_the_runner_repeats_itself_bit_for_bit(capsys):
     assert outputs[0] != outputs[2]
 
 
+@pytest.mark.process
 def test_the_runner_needs_no_ros():
     script = (
         "import sys\n"
@@ -259,6 +263,7 @@ COMMAND = (sys.executable, "-c", "import sys; from thymio_sim_ros.cli.main impor
 LONG_S = "1e7"
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_run_that_is_interrupted_keeps_what_it_made(tmp_path, number):
     log, sound = tmp_path / "run.jsonl", tmp_path / "sound.wav"
@@ -294,6 +299,7 @@ def test_a_second_ctrl_c_ends_at_once(ctrl_c):
     assert signal.getsignal(signal.SIGINT) is ctrl_c
 
 
+@pytest.mark.process
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
 @pytest.mark.parametrize("arguments", [["runner", "--seconds", "0.1"], ["foxglove-layout"]])
 def test_a_full_disk_behind_the_output_is_one_line(arguments):
@@ -452,6 +458,7 @@ def test_a_real_robot_takes_no_options_of_the_simulator(capsys, arguments, found
     assert found in refused(capsys, *arguments)
 
 
+@pytest.mark.process
 def test_the_suite_does_not_serve_the_port_of_its_own_robot(capsys):
     port = free_port()
     line = refused(capsys, "--robot", f"tcp:localhost:{port}", "--headless", "--aseba-port", str(port))

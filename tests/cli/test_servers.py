@@ -12,6 +12,8 @@ from thymio_sim_ros.cli import servers
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.network.settings import OFF
 
+pytestmark = pytest.mark.process
+
 
 def selected(*words, robots=1, headless=False):
     parser = argparse.ArgumentParser()

@@ -105,6 +105,7 @@ def test_the_class_of_thirty_gets_its_marks_and_harms_nothing(level: str, small:
         assert {**one[name], "id": ""} == {**two[name], "id": ""}  # one worker or two
 
 
+@pytest.mark.slow
 def test_a_cluster_with_an_address_gives_the_same_marks(small: Path, tmp_path: Path) -> None:
     with engine._quiet(), engine._local(2, "") as client:
         output = grade(tmp_path, ("Good", "Straight"), "--scheduler", client.scheduler.address)

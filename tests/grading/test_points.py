@@ -8,6 +8,8 @@ import pytest
 
 from thymio_sim_ros.grading.points import points_of
 
+pytestmark = pytest.mark.process
+
 
 def test_parameters_share_the_points_of_their_function(pytester: pytest.Pytester) -> None:
     items = pytester.getitems(

@@ -6,8 +6,12 @@ import asyncio
 import errno
 import socket
 
+import pytest
+
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.network.acceptor import Acceptor
+
+pytestmark = pytest.mark.process
 
 
 class _Listener(socket.socket):

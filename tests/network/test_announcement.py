@@ -13,6 +13,8 @@ from tests.patience import PATIENCE_S
 from thymio_sim_ros.network import announcement
 from thymio_sim_ros.network.announcement import ASEBA, Announcement, Announcer, aseba_properties
 
+pytestmark = pytest.mark.process
+
 
 class Browser:
     """What a client on this computer finds."""

@@ -29,6 +29,8 @@ from thymio_sim_ros.network.hub import Hub, Network
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.network.thread import NetworkThread
 
+pytestmark = pytest.mark.process
+
 FUZZED = int(os.environ.get("THYMIO_FUZZ_FRAMES", "3000"))
 
 

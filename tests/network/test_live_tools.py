@@ -48,7 +48,7 @@ emit answer event.args[0] * 2
 PROGRAM_VARIABLE = target().variables_end
 HELLO, ANSWER = 0, 1
 
-pytestmark = [pytest.mark.process, pytest.mark.slow]
+pytestmark = pytest.mark.process
 
 
 def needs(tool):
@@ -164,6 +164,7 @@ def test_asebahttp(port, start, program, locales):
     wait_for(lambda: (get(f"http://127.0.0.1:{http}/nodes/thymio-II/n") or [0])[0] > 0, "the program runs")
 
 
+@pytest.mark.slow
 @needs("asebahttp2")
 def test_asebahttp2(port, start):
     http = free_port()
@@ -173,6 +174,7 @@ def test_asebahttp2(port, start):
     assert len(get(f"http://127.0.0.1:{http}/nodes/1/prox.horizontal")) == 7
 
 
+@pytest.mark.slow
 @needs("asebaswitch")
 def test_asebaswitch(port, start):
     number = free_port()
@@ -220,6 +222,7 @@ CLICKS = 12
 """Attempts to load and run a program until it is typed again."""
 
 
+@pytest.mark.slow
 @needs("asebastudio")
 @pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed")
 @pytest.mark.skipif(not virtual_display.is_available(), reason="libX11 or libXtst is not installed")

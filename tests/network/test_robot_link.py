@@ -20,6 +20,8 @@ from thymio_sim_ros.network import robot_link
 from thymio_sim_ros.network.robot_link import LinkEvent, LinkLost, LinkOpened, LinkReceived, RobotLink
 from thymio_sim_ros.network.robot_target import SerialTarget, Target, TcpTarget
 
+pytestmark = pytest.mark.process
+
 
 class Events:
     """The events of a link, from its thread."""

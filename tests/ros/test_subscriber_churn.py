@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import pytest
+
 from tests.patience import PROGRAM_S
 
 CHANGES = 10
@@ -40,6 +42,7 @@ print("done")
 """
 
 
+@pytest.mark.slow
 def test_many_subscribers_survive_changes_of_the_playground(ros, simulation):
     sim = simulation(playground="two_robots")
     storm = subprocess.Popen(

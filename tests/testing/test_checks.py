@@ -114,6 +114,7 @@ def test_checks_combine_and_are_judged_when_asked() -> None:
     assert "; and thymio touched nothing" in repr(there)
 
 
+@pytest.mark.process
 def test_an_assertion_shows_what_the_check_saw(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(
         """

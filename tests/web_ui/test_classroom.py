@@ -12,15 +12,13 @@ from tests.web_ui.page_support import MARKS, open_page
 
 pytestmark = MARKS
 
-PORT, DOMAIN = 21_340, 115
-
 
 @pytest.fixture(scope="module")
 def group(browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningClass]:
     """The class of Ada and Jürg."""
-    running = RunningClass(tmp_path_factory.mktemp("class"), ["Ada", "Jürg"], port=PORT, domain=DOMAIN)
+    running = RunningClass(tmp_path_factory.mktemp("class"), ["Ada", "Jürg"])
     yield running
-    running.process.end()
+    running.end()
 
 
 def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
@@ -72,6 +70,6 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
 
 
 def test_without_the_token_the_page_says_what_is_missing(group: RunningClass, page) -> None:
-    page.goto(f"http://127.0.0.1:{PORT}/")
+    page.goto(f"http://127.0.0.1:{group.port}/")
     page.get_by_text("This page needs the link of the teacher").wait_for()
     assert page.locator(".pupil").count() == 0

@@ -17,6 +17,8 @@ from web_ui import build
 
 jsonschema = pytest.importorskip("jsonschema")
 
+pytestmark = pytest.mark.process
+
 SCRIPT = Path(__file__).with_name("build_random.js")
 PLAYGROUNDS = 40
 SCHEMA = Path(__file__).parents[2] / "playgrounds" / "playground.schema.json"

@@ -44,6 +44,7 @@ def test_the_listing_shows_lines_names_and_use(file, capsys):
     assert "of  1534 words" in shown
 
 
+@pytest.mark.process
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
 def test_a_full_disk_is_reported_with_the_name_of_the_output(file, capsys):
     name = file(GOOD.replace("ping", "timer0").replace("emit timer0 n\n", ""))

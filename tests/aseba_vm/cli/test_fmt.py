@@ -37,6 +37,7 @@ def test_formatting_changes_nothing_else_in_a_file(file):
     assert path.read_bytes() == codecs.BOM_UTF8 + expected.encode()
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "iso-8859-1"])
 def test_formatted_text_keeps_its_encoding_on_the_output(tmp_path, encoding):
     path = tmp_path / "robot.aesl"

@@ -95,6 +95,7 @@ def test_every_command_accepts_a_language(command, file, capsys):
     assert "mit dem Zeichen U+24 kann kein Wort beginnen" in capsys.readouterr().err
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("arguments", "closed", "code"),
     [("run {}", ">&-", 0), ("check {}", "<&- >&- 2>&-", 0), ("check -", "<&-", 0), ("run {}.not", "2>&-", 2)],

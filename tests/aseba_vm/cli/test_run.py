@@ -77,11 +77,13 @@ def test_a_usage_error_is_one_line_and_code_2(arguments, message, file, capsys):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_letters_outside_the_encoding_of_the_output_are_escaped(file):
     command = [*ASEBA, "run", file("var höhe = 3")]
     assert subprocess.run(command, stdout=subprocess.PIPE, check=True, env=ASCII).stdout == b"h\\xf6he 3\n"
 
 
+@pytest.mark.process
 def test_ctrl_c_ends_a_run_silently(file):
     command = [*ASEBA, "run", "--limit", "999999999999", "--trace", file("var n\nwhile n == 0 do n = 0 end")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
@@ -101,6 +103,7 @@ def test_definitions_of_the_command_line_obey_the_rules_of_files(arguments, file
     assert "expected" in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_a_closed_output_pipe_causes_no_traceback(file):
     name = file("var a\nwhile a < 30000 do a++ end")
     command = f"{sys.executable} -m aseba_vm run {name} --trace | head -1"

@@ -374,6 +374,7 @@ def test_a_translator_that_fails_leaves_the_program_to_the_interpreter(monkeypat
     caplog.clear()
 
 
+@pytest.mark.process
 @pytest.mark.skipif(not is_usable(), reason="wasmtime is not installed")
 def test_a_process_with_translated_programs_ends_in_silence():
     script = (

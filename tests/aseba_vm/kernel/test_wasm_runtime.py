@@ -79,30 +79,35 @@ def check_reported_once(stderr: list[str]) -> None:
     assert usable == "False"
 
 
+@pytest.mark.process
 def test_a_broken_package_is_reported_once_and_programs_run(broken):
     stdout, stderr = run(PROGRAM, path=broken)
     assert stdout == "9000\n"
     check_reported_once(stderr)
 
 
+@pytest.mark.process
 def test_a_broken_package_is_reported_once_and_crowds_move_the_same(broken, poses):
     stdout, stderr = run(BATCH_SCRIPT, path=broken)
     assert stdout == poses
     check_reported_once(stderr)
 
 
+@pytest.mark.process
 def test_a_missing_package_is_reported_once_and_programs_run():
     stdout, stderr = run(f"sys.modules['wasmtime'] = None\n{PROGRAM}")
     assert stdout == "9000\n"
     check_reported_once(stderr)
 
 
+@pytest.mark.process
 @pytest.mark.skipif(not is_usable(), reason="wasmtime is not installed")
 def test_memories_take_no_more_address_space_than_their_size(poses):
     assert run(PROGRAM, address_space=ENOUGH) == ("9000\n", ["True"])
     assert run(BATCH_SCRIPT, address_space=ENOUGH) == (poses, ["True"])
 
 
+@pytest.mark.process
 @pytest.mark.skipif(not is_usable(), reason="wasmtime is not installed")
 def test_where_memory_is_short_everything_works_without(poses):
     for script, expected in ((PROGRAM, "9000\n"), (BATCH_SCRIPT, poses)):

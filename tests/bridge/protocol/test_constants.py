@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import pytest
+
 from thymio_sim_ros.bridge.protocol.constants import ASSET_OPCODE, SUBPROTOCOLS, BinaryOpcode, ClientBinaryOpcode
 
 
@@ -25,6 +27,7 @@ def test_the_vendors_present_name_is_preferred() -> None:
     assert SUBPROTOCOLS == ("foxglove.sdk.v1", "foxglove.websocket.v1")
 
 
+@pytest.mark.process
 def test_the_constants_do_not_import_deprecated_websockets() -> None:
     unwanted = ("websockets.legacy", "rclpy", "foxglove_websocket.server")
     code = f"import sys, thymio_sim_ros.bridge; print([name for name in sys.modules if name.startswith({unwanted})])"

@@ -22,6 +22,8 @@ from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.network.http import server as limits
 from thymio_sim_ros.network.settings import OFF
 
+pytestmark = pytest.mark.process
+
 DATA = Path(__file__).parents[2] / "data" / "network"
 PROGRAM = (DATA / "http.aesl").read_bytes()
 N = "/nodes/thymio-II"

@@ -12,6 +12,8 @@ from tests.patience import until
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.thread import NetworkThread
 
+pytestmark = pytest.mark.process
+
 KIND = "_mobsya._tcp.local."
 
 

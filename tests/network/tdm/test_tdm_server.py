@@ -29,6 +29,8 @@ from thymio_sim_ros.network.tdm.protocol.constants import ErrorCode, Status, Wat
 from thymio_sim_ros.network.tdm_peers import is_this_computer
 from thymio_sim_ros.network.tdm_server import TdmServer
 
+pytestmark = pytest.mark.process
+
 CONNECTIONS = int(os.environ.get("THYMIO_SIM_FUZZ", "4000")) // 20
 """Connections of the test with malicious clients."""
 

@@ -98,6 +98,7 @@ def test_the_worker_imports_neither_the_package_nor_ros() -> None:
     )
 
 
+@pytest.mark.process
 @pytest.mark.skipif(sys.platform == "win32", reason="closes descriptors of POSIX")
 def test_it_draws_without_standard_streams_and_beside_threads(tmp_path: Path) -> None:
     code = f"""

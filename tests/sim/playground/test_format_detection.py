@@ -202,6 +202,7 @@ HUGE = {
 }
 
 
+@pytest.mark.process
 @pytest.mark.skipif(sys.platform == "win32", reason="measures memory as POSIX does")
 @pytest.mark.parametrize("kind", HUGE)
 def test_a_huge_text_is_refused_at_little_cost(kind: str) -> None:

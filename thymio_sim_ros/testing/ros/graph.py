@@ -75,16 +75,17 @@ class Stepped(Protocol):
 class Ros:
     """A private context, one executor for the nodes of this package and one per node under test; `until` spins all."""
 
+    deadline_s: float = DEADLINE_S
+    """Default deadline of waits in which simulated time does not pass, in s of real time on an idle machine.
+
+    A wait for nodes in another process may need more on a machine that is busy.
+    """
+
     def __init__(self, domain: int, *, folder: Path | None = None) -> None:
         """`folder`: where files of nodes under test are searched first."""
         self.domain = domain
         self.simulation: Stepped | None = None
         """The simulation of this test, if there is one; it owns simulated time."""
-        self.deadline_s = DEADLINE_S
-        """Default deadline of waits in which simulated time does not pass, in s of real time on an idle machine.
-
-        A wait for nodes in another process may need more on a machine that is busy.
-        """
         self._folder = folder
         self._threads = set(threading.enumerate())
         # Code under test may use the default context (`rclpy.ok()`). If it is in use already, it is left alone.
