@@ -22,7 +22,7 @@ class Studio:
 
     def __init__(self, port: int, until: Callable[..., object], *, tls: ssl.SSLContext | None = None) -> None:
         url = f"ws://127.0.0.1:{port}" if tls is None else f"wss://localhost:{port}"
-        self._connecting = connect(url, subprotocols=SUBPROTOCOLS, max_queue=None, ssl=tls)
+        self._connecting = connect(url, subprotocols=SUBPROTOCOLS, max_size=None, max_queue=None, ssl=tls)
         self._until = until
         self.channels: dict[str, ms.Channel] = {}
         self.services: dict[str, ms.Service] = {}

@@ -185,6 +185,7 @@ def choose_robot(page: Any, name: str) -> None:
     """Choose a robot by its name, or all of them by `*`."""
     open_menu(page, "#robot-chooser")
     page.locator(f"#robot-menu [data-robot='{name}']").click()
+    wait_for_frame(page)
 
 
 def choose_language(page: Any, language: str) -> None:
@@ -193,6 +194,7 @@ def choose_language(page: Any, language: str) -> None:
         open_menu(page, "#settings-open")
     page.select_option("select.language", language)
     page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+    wait_for_frame(page)
 
 
 def wait_for_program(page: Any, name: str) -> None:
@@ -215,6 +217,15 @@ def wait_for_frame(page: Any) -> None:
     """Wait for one more frame: then panels and view show the current state."""
     frames = page.evaluate("() => window.thymio.frames()")
     page.wait_for_function("(frames) => window.thymio.frames() > frames", arg=frames)
+
+
+def wait_for_none(page: Any, finding: str, arg: Any = None) -> None:
+    """Wait until a function that runs on the page finds nothing; fails with what it still finds."""
+    from playwright.sync_api import TimeoutError as TooLate
+
+    with contextlib.suppress(TooLate):
+        page.wait_for_function(f"(arg) => ({finding})(arg).length === 0", arg=arg)
+    assert page.evaluate(finding, arg) == []
 
 
 def wait_until_still(page: Any, place: str) -> None:

@@ -24,6 +24,8 @@ STATUS = "/_aseba/status"
 PLAYGROUND = "/simulator.playground"
 PATH, SOURCE, NAME = (f"/aseba_runtime.script.{word}" for word in ("path", "source", "name"))
 BEHAVIOUR = "/aseba_runtime.behaviour"
+BETWEEN = "# between two tests"
+"""A program that no test has, so that the next one starts although it was the last one."""
 
 
 def until(condition: Callable[[], object], *, what: str) -> None:
@@ -97,14 +99,12 @@ class SharedWorld:
             wanted |= {PATH: "", SOURCE: program.read_text(encoding="utf-8"), NAME: program.name}
         else:
             wanted |= {PATH: program, SOURCE: "", NAME: ""}
-        wanted |= {BEHAVIOUR: behaviour}
-        changed = _differing(client, wanted)
-        if behaviour and BEHAVIOUR not in [one.name for one in changed]:
-            changed.append(ms.Parameter(BEHAVIOUR, behaviour))  # a new program ends it
-        if PLAYGROUND not in [one.name for one in changed]:
+        if behaviour:
+            wanted |= {BEHAVIOUR: behaviour}
+        if _parameters(client)[PLAYGROUND].value == wanted[PLAYGROUND]:
             _call(client, "/simulator/reset")  # before programs start: it discards what they have commanded
-        if changed:
-            set_and_answer(client, *changed)
+        set_and_answer(client, ms.Parameter(SOURCE, BETWEEN))
+        set_and_answer(client, *_differing(client, wanted))
         _call(client, "/simulator/pause", data=False)
         left = _differing(client, wanted)
         assert not left, f"parameters that cannot be set: {left}"
@@ -158,14 +158,15 @@ def _parameters(client: Studio) -> dict[str, ms.Parameter]:
 def _differing(client: Studio, wanted: dict[str, Any]) -> list[ms.Parameter]:
     """The parameters that have other values, with the wanted ones; those that are not listed have none.
 
-    These came with a robot or a constant. The name of a program comes before its text, as the runtime needs it.
+    These came with a robot or a constant. The name of a program comes before its text, as the runtime needs it, and the
+    behavior, which new programs end, last.
     """
     changed = []
     for name, one in _parameters(client).items():
         value = wanted[name] if name in wanted else {str: "", tuple: ()}.get(type(one.value))
         if (one.value or None) != (value or None):  # an empty list may have none
             changed.append(ms.Parameter(name, value, one.type))
-    return sorted(changed, key=lambda one: not one.name.endswith("script.name"))
+    return sorted(changed, key=lambda one: (one.name == BEHAVIOUR, not one.name.endswith("script.name")))
 
 
 def _call(client: Studio, name: str, **request: Any) -> None:

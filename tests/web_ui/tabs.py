@@ -111,7 +111,9 @@ def _clear(page: Any, developer: Any) -> None:
     page.context.clear_permissions()
     page.emulate_media(**USUAL_MEDIA)
     page.set_viewport_size(SIZE)
-    if page.url.startswith("http"):
-        origin = page.evaluate("() => { sessionStorage.clear(); return location.origin; }")
-        page.goto("about:blank")
+    origin = page.evaluate("() => location.origin")
+    if origin.startswith("http"):
+        page.evaluate("() => sessionStorage.clear()")
+    page.goto("about:blank")
+    if origin.startswith("http"):
         developer.send("Storage.clearDataForOrigin", {"origin": origin, "storageTypes": "all"})

@@ -66,7 +66,7 @@ def begin(page, sample: str) -> None:
 
 
 def next_frame(page) -> None:
-    """Let Blockly record what has happened, as it does before the next frame; no hand is quicker."""
+    """Let Blockly draw and record what has happened, as it does before the next frame; no hand is quicker."""
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
@@ -91,6 +91,7 @@ def new_block(page, group: str, kind: str) -> tuple[float, float]:
     category(page, group).click()
     block = page.locator(f"{FLYOUT} .{kind}").first
     block.wait_for()
+    next_frame(page)
     return grip_of(page, block)
 
 
@@ -99,7 +100,9 @@ def drag(page, start: tuple[float, float], end: tuple[float, float]) -> None:
     page.mouse.down()
     page.mouse.move(start[0] + 8, start[1] + 8, steps=3)
     page.mouse.move(*end, steps=12)
+    next_frame(page)
     page.mouse.up()
+    next_frame(page)  # blocks are moved apart in it
 
 
 def add(page, group: str, kind: str, target: tuple[float, float]) -> None:

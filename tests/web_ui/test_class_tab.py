@@ -101,7 +101,7 @@ def test_it_is_accessible_in_both_themes_and_every_language(class_page):
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)
         page.locator(".class-tile").nth(19).wait_for()
-        assert page.evaluate("() => document.querySelector('#panel-class').scrollWidth") <= 576
+        page.wait_for_function("() => document.querySelector('#panel-class').scrollWidth <= 576")
         for button in page.locator(".class-row button").all():
             assert button.evaluate("(button) => button.scrollWidth <= button.clientWidth + 1")
     if not AXE.exists():

@@ -146,7 +146,7 @@ def test_a_playground_with_a_door_is_built_in_twelve_clicks_by_names_only(world,
     wait_for_items(page, 4)
     page.get_by_role("button", name="Try it").click()  # the seventh click
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
-    assert page.evaluate("window.thymio.state().objects.length") > 0
+    page.wait_for_function("window.thymio.state().objects.length > 0")
 
 
 def test_an_image_is_placed_on_the_ground(world, page, tmp_path):

@@ -19,6 +19,7 @@ from tests.web_ui.page_support import (
     MARKS,
     choose_language,
     wait_for_frame,
+    wait_for_none,
 )
 from tests.web_ui.test_page_access import AXE, FINDINGS
 
@@ -46,7 +47,7 @@ def test_items_are_dragged_turned_and_edited_as_numbers(at_rest, page):
     page.mouse.move(*spot(page, -0.2, 0.2, 0.05), steps=4)
     page.mouse.up()
     page.wait_for_function("window.thymio.built().playground.items[1].x_m === -0.2")
-    assert built(page)["selected"] == "box_1"
+    page.wait_for_function("window.thymio.built().selected === 'box_1'")
     ring = 0.05 * 2**0.5 + 0.03
     page.mouse.move(*spot(page, -0.2 + ring, 0.2))
     page.mouse.down()
@@ -144,7 +145,7 @@ def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(at_rest, 
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)
         wait_for_frame(page)
-        assert page.evaluate(OUT_OF_SIGHT, CONTROLS) == []
+        wait_for_none(page, OUT_OF_SIGHT, CONTROLS)
     if not AXE.exists():
         return
     page.add_script_tag(path=str(AXE))

@@ -138,7 +138,9 @@ def test_the_bar_over_the_selected_item_turns_copies_and_removes_it(at_rest, pag
     page.keyboard.press("Escape")
     click(page, 0.3, 0.2, 0.05)
     playwright.expect(bar).to_be_visible()
-    assert bar.evaluate(OVER, page.evaluate("window.thymio.screenPosition(0.3, 0.2, 0.1)"))
+    page.wait_for_function(
+        f"(bar) => ({OVER})(bar, window.thymio.screenPosition(0.3, 0.2, 0.1))", arg=bar.element_handle()
+    )
     bar.get_by_role("button", name="Turn").click()
     page.wait_for_function("Math.abs(window.thymio.built().playground.items[1].yaw_rad - Math.PI / 12) < 0.001")
     bar.get_by_role("button", name="Copy").click()

@@ -51,7 +51,7 @@ def test_writing_a_program_as_one_is_used_to(world, page):
     for line in WRITTEN:
         page.keyboard.type(line)
         if line.startswith("call"):
-            assert signature.count() == 0, "the call is finished"
+            playwright.expect(signature).to_have_count(0)  # the call is finished
         page.keyboard.press("Escape")  # the list of completions
         page.keyboard.press("Enter")
     assert text_of(page).rstrip() == INDENTED

@@ -19,6 +19,7 @@ from tests.web_ui.page_support import (
     open_page,
     open_tab,
     wait_for_frame,
+    wait_for_none,
 )
 
 pytestmark = MARKS
@@ -102,7 +103,7 @@ def test_at_800_by_600_every_control_is_visible_in_every_language(at_rest, page)
     for language in ("de", "fr", "it", "en"):
         choose_language(page, language)
         wait_for_frame(page)
-        assert page.evaluate(OVERLAPPING) == []
+        wait_for_none(page, OVERLAPPING)
 
 
 @pytest.mark.parametrize("size", [(683, 384), (360, 640)])
@@ -110,7 +111,7 @@ def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(at_rest
     page.set_viewport_size({"width": size[0], "height": size[1]})  # 1366 × 768 at 200 %; a small phone
     open_page(page, at_rest, unfold=False)
     wait_for_frame(page)
-    assert page.evaluate(OVERLAPPING) == []
+    wait_for_none(page, OVERLAPPING)
     open_editor(page)
     page.wait_for_function("() => document.querySelector('.cm-scroller')?.getBoundingClientRect().height > 120")
     page.locator(".constants > summary").click()

@@ -19,27 +19,27 @@ from tests.web_ui.test_page_touch import STOP_IN_SIGHT
 
 pytestmark = MARKS
 
-WIDTH = "() => Math.round(document.querySelector('#work').getBoundingClientRect().width)"
+WIDTH = "(width) => Math.round(document.querySelector('#work').getBoundingClientRect().width) === width"
 RUNNING = "() => window.thymio.state().program?.state === 'running'"
 
 
 def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(world, page):
     page.set_viewport_size({"width": 1280, "height": 800})
     open_page(page, world("base", behaviour="explorer"))
-    assert page.evaluate(WIDTH) == 88
+    page.wait_for_function(WIDTH, arg=88)
     open_tab(page, "program")
-    assert page.evaluate(WIDTH) == 752
+    page.wait_for_function(WIDTH, arg=752)
     open_tab(page, "robot")
-    assert page.evaluate(WIDTH) == 480
+    page.wait_for_function(WIDTH, arg=480)
     page.focus("#grip")
     page.keyboard.press("ArrowLeft")
-    assert page.evaluate(WIDTH) == 496
+    page.wait_for_function(WIDTH, arg=496)
     page.reload()
     page.wait_for_function("window.thymio && window.thymio.connected")
     playwright.expect(page.locator("#tab-robot")).to_have_attribute("aria-selected", "true")
-    assert page.evaluate(WIDTH) == 496
+    page.wait_for_function(WIDTH, arg=496)
     page.dblclick("#grip")
-    assert page.evaluate(WIDTH) == 480
+    page.wait_for_function(WIDTH, arg=480)
     for width, height in ((1024, 768), (800, 600), (640, 400), (390, 844), (360, 640)):
         page.set_viewport_size({"width": width, "height": height})
         for tab in ("robot", "program", "playground"):
@@ -49,7 +49,7 @@ def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(w
     page.set_viewport_size({"width": 1280, "height": 800})
     page.click("#work-fold")
     playwright.expect(page.locator("#tab-playground")).to_be_focused()
-    assert page.evaluate(WIDTH) == 88
+    page.wait_for_function(WIDTH, arg=88)
 
 
 def test_escape_closes_a_menu_first_and_the_theme_is_kept(world, page):

@@ -33,7 +33,7 @@ def test_a_message_is_above_an_open_dialog_and_can_be_closed_there(at_rest, page
     page.set_input_files("#playground-file", str(unknown))
     notice = page.locator(".notice", has_text="song.mp3")
     notice.wait_for()
-    assert notice.evaluate(ON_TOP)
+    page.wait_for_function(ON_TOP, arg=notice.element_handle())
     notice.get_by_role("button").click()
     playwright.expect(notice).to_have_count(0)
     page.set_input_files("#playground-file", str(unknown))
@@ -41,7 +41,7 @@ def test_a_message_is_above_an_open_dialog_and_can_be_closed_there(at_rest, page
     page.keyboard.press("Escape")
     page.locator("#view").hover()  # draws a frame
     page.wait_for_function("() => document.querySelector('#messages > .notices .notice') !== null")
-    assert notice.evaluate(ON_TOP)
+    page.wait_for_function(ON_TOP, arg=notice.element_handle())
 
 
 def test_the_tab_does_not_show_the_error_of_another_attempt(at_rest, page, tmp_path):

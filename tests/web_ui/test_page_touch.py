@@ -134,7 +134,7 @@ def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be
     open_page(touch_page, at_rest, unfold=False)
     for language in ("de", "fr", "it", "en"):
         choose_language(touch_page, language)
-        assert touch_page.evaluate(FREE) > 0.5
+        touch_page.wait_for_function(f"() => ({FREE})() > 0.5")
     forward = touch_page.locator("[data-button=forward]")
     show = touch_page.locator("#tray-unfold")
     if show.is_visible():

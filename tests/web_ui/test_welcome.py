@@ -9,7 +9,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
-from tests.web_ui.page_support import MARKS, choose_language, open_menu, open_tab, wait_for_frame
+from tests.web_ui.page_support import MARKS, choose_language, open_menu, open_tab, wait_for_frame, wait_for_none
 from tests.web_ui.test_page_access import AXE, FINDINGS, OVERLAPPING
 from tests.web_ui.test_page_recovery import NO_STORAGE
 
@@ -166,7 +166,7 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(world, page, size
         assert page.evaluate(FINDINGS) == []
     page.keyboard.press("Escape")  # the starts are gone, the offer of the tour stays, and covers nothing
     page.locator(".view-row").wait_for()
-    page.wait_for_function(f"() => ({OVERLAPPING})().length === 0")
+    wait_for_none(page, OVERLAPPING)
     assert page.locator(".welcome-tour").count() == 1
 
 
