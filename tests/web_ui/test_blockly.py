@@ -199,6 +199,7 @@ def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(bl
     watch_it_avoid(page, world)
 
 
+@pytest.mark.slow
 def test_blocks_are_put_together_by_keys_and_run_one_by_one(blocks):
     page = blocks
     begin(page, "blocks-empty")
@@ -238,6 +239,7 @@ def test_blocks_are_put_together_by_keys_and_run_one_by_one(blocks):
     expect(page, f"{BLOCKS} .blocklyHighlighted").to_have_count(0)
 
 
+@pytest.mark.slow
 def test_files_open_change_and_keep_what_is_theirs(blocks, tmp_path):
     page = blocks
     # a text that was edited runs until the user decides

@@ -77,6 +77,7 @@ def test_a_program_for_all_and_one_pupil_in_trouble(class_page, tmp_path):
     page.wait_for_function("(before) => window.thymio.state().timeNs < before", arg=before)
 
 
+@pytest.mark.slow
 def test_names_are_given_by_keys_shown_everywhere_and_kept(class_page):
     page = class_page
     page.click("[data-names=edit]")
@@ -95,6 +96,7 @@ def test_names_are_given_by_keys_shown_everywhere_and_kept(class_page):
     playwright.expect(page.locator(".class-name").nth(1)).to_have_text("Ben")
 
 
+@pytest.mark.slow
 def test_it_is_accessible_in_both_themes_and_every_language(class_page):
     page = class_page
     page.emulate_media(reduced_motion="reduce")
@@ -112,6 +114,7 @@ def test_it_is_accessible_in_both_themes_and_every_language(class_page):
         assert page.evaluate(FINDINGS) == []
 
 
+@pytest.mark.slow
 def test_one_robot_is_no_class(at_rest, page):
     open_page(page, at_rest)
     playwright.expect(page.locator("#tab-robot")).to_be_visible()

@@ -69,6 +69,7 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     ada.wait_for()
 
 
+@pytest.mark.slow
 def test_without_the_token_the_page_says_what_is_missing(group: RunningClass, page) -> None:
     page.goto(f"http://127.0.0.1:{group.port}/")
     page.get_by_text("This page needs the link of the teacher").wait_for()

@@ -92,6 +92,7 @@ def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(world, 
     )
 
 
+@pytest.mark.slow
 def test_everything_is_built_by_keys_alone(world, page):
     open_page(page, world("base"))
     page.locator("#tab-playground").press("Enter")
@@ -134,6 +135,7 @@ def test_everything_is_built_by_keys_alone(world, page):
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
 
 
+@pytest.mark.slow
 def test_a_playground_with_a_door_is_built_in_twelve_clicks_by_names_only(world, page):
     open_page(page, world("base"))
     page.get_by_role("tab", name="Playground").click()
@@ -149,6 +151,7 @@ def test_a_playground_with_a_door_is_built_in_twelve_clicks_by_names_only(world,
     page.wait_for_function("window.thymio.state().objects.length > 0")
 
 
+@pytest.mark.slow
 def test_an_image_is_placed_on_the_ground(world, page, tmp_path):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(
@@ -163,6 +166,7 @@ def test_an_image_is_placed_on_the_ground(world, page, tmp_path):
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
 
 
+@pytest.mark.slow
 def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone(suite, page, tmp_path, monkeypatch):
     installed = tmp_path / "site-packages"
     plugin_page.lay_out(installed, plugin_page.files())
@@ -192,6 +196,7 @@ def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone
     page.wait_for_function("() => window.thymio.state().markers > 4")
 
 
+@pytest.mark.slow
 def test_the_head_says_where_the_playground_is_kept(at_rest, page):
     open_creator(page, at_rest)
     kept = page.locator(".creator .kept")
@@ -215,6 +220,7 @@ def test_the_head_says_where_the_playground_is_kept(at_rest, page):
     playwright.expect(kept).to_have_text("Saved as a file")
 
 
+@pytest.mark.slow
 def test_another_tab_shows_the_running_world_and_the_tab_of_playgrounds_continues(at_rest, page):
     open_creator(page, at_rest)
     open_editor(page)
@@ -224,6 +230,7 @@ def test_another_tab_shows_the_running_world_and_the_tab_of_playgrounds_continue
     playwright.expect(page.locator(".editor")).to_be_hidden()
 
 
+@pytest.mark.slow
 def test_without_ground_the_creator_warns_and_offers_to_add_one(at_rest, page):
     open_creator(page, at_rest)
     add = page.get_by_role("button", name="Add a ground")

@@ -71,6 +71,7 @@ def test_items_are_dragged_turned_and_edited_as_numbers(at_rest, page):
     assert len(items(page)) == 3, "keys in a field act on the field only"
 
 
+@pytest.mark.slow
 def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(at_rest, page):
     open_creator(page, at_rest)
     page.click("[data-tool=track]")
@@ -93,6 +94,7 @@ def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(at_rest, p
     playwright.expect(y).to_be_focused()
 
 
+@pytest.mark.slow
 def test_a_file_that_is_not_an_image_is_rejected_at_its_field(at_rest, page, tmp_path):
     open_creator(page, at_rest)
     good, bad = tmp_path / "good.svg", tmp_path / "bad.png"
@@ -106,6 +108,7 @@ def test_a_file_that_is_not_an_image_is_rejected_at_its_field(at_rest, page, tmp
     )
 
 
+@pytest.mark.slow
 def test_what_can_be_pushed_is_said_in_a_sentence(at_rest, page):
     open_creator(page, at_rest)
     page.click("[data-tool=box]")
@@ -123,6 +126,7 @@ def test_what_can_be_pushed_is_said_in_a_sentence(at_rest, page):
     playwright.expect(movable).to_contain_text("80 g, slides on paper")
 
 
+@pytest.mark.slow
 def test_mac_shortcuts_undo_redo_and_copy(at_rest, page):
     open_creator(page, at_rest)
     page.click("[data-tool=box]")
@@ -139,6 +143,7 @@ def test_mac_shortcuts_undo_redo_and_copy(at_rest, page):
     wait_for_items(page, 4)
 
 
+@pytest.mark.slow
 def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(at_rest, page):
     page.set_viewport_size({"width": 800, "height": 600})
     open_creator(page, at_rest)

@@ -14,6 +14,7 @@ from tests.web_ui.page_support import MARKS, open_page, open_tab, wait_for_servi
 pytestmark = MARKS
 
 
+@pytest.mark.slow
 def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_unchanged(at_rest, page, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text(json.dumps({"format": 1, "title": "x", "shapes": [{"kind": "box", "x_m": "far"}]}))
@@ -25,6 +26,7 @@ def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_uncha
     assert sorted(items(page)) == ["ground", "thymio"]
 
 
+@pytest.mark.slow
 def test_a_copy_of_a_shipped_playground_is_edited(at_rest, page):
     open_page(page, at_rest)
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
@@ -50,6 +52,7 @@ def test_a_running_aseba_playground_is_edited(world, page, tmp_path):
     assert "box" in {item["kind"] for item in items(page).values()}
 
 
+@pytest.mark.slow
 def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(at_rest, page, tmp_path):
     letter = tmp_path / "letter.json"
     letter.write_text("hello")

@@ -56,6 +56,7 @@ IN_SIGHT = """(one) => {
 }"""
 
 
+@pytest.mark.slow
 def test_the_ghost_is_red_at_invalid_positions_and_the_reason_is_shown(at_rest, page):
     open_creator(page, at_rest)
     page.click("[data-tool=cylinder]")
@@ -68,6 +69,7 @@ def test_the_ghost_is_red_at_invalid_positions_and_the_reason_is_shown(at_rest, 
     assert len(items(page)) == 2
 
 
+@pytest.mark.slow
 def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_ghost(at_rest, page):
     open_creator(page, at_rest)
     page.click("[data-tool=box]")
@@ -89,6 +91,7 @@ def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_g
     assert placed["box_2"]["yaw_rad"] == pytest.approx(-math.radians(15), abs=1e-3)
 
 
+@pytest.mark.slow
 def test_what_things_snap_to_is_chosen_in_the_bar_below(at_rest, page):
     open_creator(page, at_rest)
     playwright.expect(page.locator("#creator-snap")).to_have_text("Snap to 5 cm")
@@ -103,6 +106,7 @@ def test_what_things_snap_to_is_chosen_in_the_bar_below(at_rest, page):
     assert items(page)["box_1"]["x_m"] != 0.3
 
 
+@pytest.mark.slow
 def test_shift_toggles_the_camera_and_clicks_place_items_either_way(at_rest, page):
     open_creator(page, at_rest)
     page.click("[data-tool=cylinder]")
@@ -128,6 +132,7 @@ def drag(page):
     page.mouse.up()
 
 
+@pytest.mark.slow
 def test_the_bar_over_the_selected_item_turns_copies_and_removes_it(at_rest, page):
     open_creator(page, at_rest)
     bar = page.locator(".context-bar")
@@ -152,6 +157,7 @@ def test_the_bar_over_the_selected_item_turns_copies_and_removes_it(at_rest, pag
     assert page.evaluate("document.activeElement.id") == "view"
 
 
+@pytest.mark.slow
 def test_ten_thousand_moves_leave_one_animation_loop(at_rest, own_page):
     page = own_page
     page.add_init_script(f"({ONE_LOOP})()")
@@ -187,6 +193,7 @@ def test_items_are_placed_and_dragged_by_touch(at_rest, touch_page):
     page.wait_for_function("window.thymio.built().placing === null")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768)])
 def test_all_tools_are_reached_by_touch(at_rest, touch_page, size):
     page = touch_page

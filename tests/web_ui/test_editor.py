@@ -124,6 +124,7 @@ def test_a_breakpoint_stops_the_program_and_it_is_stepped_by_lines(editor):
     expect(editor, "#program-state").to_have_text("running")
 
 
+@pytest.mark.slow
 def test_a_variable_is_edited_within_its_range(editor):
     editor.click(".values-all")
     editor.fill(".values-search input[type=search]", "motor.left.target")
@@ -134,6 +135,7 @@ def test_a_variable_is_edited_within_its_range(editor):
     playwright.expect(value).to_have_text("120")
 
 
+@pytest.mark.slow
 def test_a_long_array_takes_at_most_three_lines(editor):
     editor.click(".values-all")
     value = editor.locator("[data-variable='event.args']")
@@ -142,6 +144,7 @@ def test_a_long_array_takes_at_most_three_lines(editor):
     assert 2 < height / line < 4
 
 
+@pytest.mark.slow
 def test_an_event_is_defined_sent_and_logged(editor):
     editor.click("#tool-tab-events")
     for name, size in (("ping", "1"), ("pong", "1")):
@@ -158,6 +161,7 @@ def test_an_event_is_defined_sent_and_logged(editor):
     expect(editor, ".log p").to_contain_text("pong 42")
 
 
+@pytest.mark.slow
 def test_tab_moves_on_from_a_constant_and_event_values_stay_when_events_are_added(editor):
     editor.click(".constants > summary")
     for name in ("FAR", "NEAR"):
@@ -178,6 +182,7 @@ def test_tab_moves_on_from_a_constant_and_event_values_stay_when_events_are_adde
     playwright.expect(editor.get_by_label("Values of ping: 1")).to_have_value("41")
 
 
+@pytest.mark.slow
 def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the_page(editor, tmp_path):
     head = '<!DOCTYPE aesl-source>\n<network>\n<constant value="4" name="SIZE"/>\n<!-- mine -->\n'
     plugins = '<toolsPlugins><X y="1"/></toolsPlugins>'
@@ -206,6 +211,7 @@ def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the
     expect(editor, ".cm-line").to_have_text("var a = SIZE_")
 
 
+@pytest.mark.slow
 def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
     declared = '<?xml version="1.0" encoding="{}"?>\n'
     text = declared + '<network><node nodeId="1" name="thymio-II">var a # größer</node></network>'
@@ -222,6 +228,7 @@ def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
     expect(editor, ".cm-content").to_have_text("var a # größer")
 
 
+@pytest.mark.slow
 def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path):
     write(editor, "var mine = 1")
     playground = tmp_path / "mine.json"
@@ -238,6 +245,7 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path)
     expect(editor, ".cm-content").to_have_text("var mine = 1")
 
 
+@pytest.mark.slow
 def test_an_overwritten_draft_is_added_to_the_recent_files(editor):
     write(editor, "var first = 1")
     editor.reload()
@@ -253,6 +261,7 @@ def test_an_overwritten_draft_is_added_to_the_recent_files(editor):
     playwright.expect(editor.get_by_label("Not saved to a file")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_changes(editor):
     write(editor, PROGRAM)
     editor.locator(".cm-line", has_text="count = count + 1").click()
@@ -272,6 +281,7 @@ def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_change
     expect(editor, ".cm-activeLine").to_have_text("count = count + 1")
 
 
+@pytest.mark.slow
 def test_common_names_come_first_in_completion_and_help(editor):
     write(editor, "")
     for typed, first in (("motor.", "motor.left.target"), ("call l", "leds.top"), ("onevent b", "button.center")):
@@ -339,6 +349,7 @@ def test_a_mistake_is_explained_and_corrected_by_its_button(editor):
         assert [line.strip("\n") for line in text_of(editor)] == repaired.split("\n")
 
 
+@pytest.mark.slow
 def test_a_mistake_is_corrected_by_keyboard_and_the_correction_can_be_undone(editor):
     write(editor, "var a\na == 3\n")
     expect(editor, CARD).to_contain_text("Two “=” compare. One stores.")
@@ -352,6 +363,7 @@ def test_a_mistake_is_corrected_by_keyboard_and_the_correction_can_be_undone(edi
     expect(editor, ".verdict").to_contain_text("No mistakes")
 
 
+@pytest.mark.slow
 def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the_page(editor):
     write(editor, "var a = 1.5\n")
     expect(editor, CARD).to_contain_text("Aseba has whole numbers only")
@@ -360,6 +372,7 @@ def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the
     expect(editor, CARD).to_contain_text("Aseba n’a que des nombres entiers")
 
 
+@pytest.mark.slow
 def test_the_mark_in_the_text_offers_the_correction_too(editor):
     write(editor, "var a\nif a = 1 then\nend\n")
     editor.locator(".cm-lintRange-error").hover()
@@ -368,6 +381,7 @@ def test_the_mark_in_the_text_offers_the_correction_too(editor):
     expect(editor, ".verdict").to_contain_text("No mistakes")
 
 
+@pytest.mark.slow
 def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(editor, tmp_path):
     text = (
         "<!DOCTYPE aesl-source>\n<network>\n<mystery/>\n"

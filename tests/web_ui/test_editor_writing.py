@@ -40,6 +40,7 @@ def place_cursor(page, line, column):
         page.keyboard.press("ArrowRight")
 
 
+@pytest.mark.slow
 def test_writing_a_program_as_one_is_used_to(world, page):
     open_page(page, world("base"))
     open_editor(page)

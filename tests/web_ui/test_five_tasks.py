@@ -182,6 +182,7 @@ def run_as_node(ros: Any, page: Any, command: str) -> None:
     ros.until(lambda: page.evaluate(MOVES))
 
 
+@pytest.mark.slow
 def test_the_five_tasks_by_what_the_page_says(hand, ros, tmp_path):
     page = hand.page
 

@@ -30,6 +30,7 @@ def open_gallery(page, address):
     open_tab(page, "playground")
 
 
+@pytest.mark.slow
 def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(at_rest, page):
     open_gallery(page, at_rest)
     for name in resources.playgrounds():
@@ -48,6 +49,7 @@ def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(at_res
         assert page.evaluate(FINDINGS) == []
 
 
+@pytest.mark.slow
 def test_thumbnails_are_drawn_when_they_come_into_sight(at_rest, page):
     open_gallery(page, at_rest)
     page.locator("[data-playground] img:not([hidden])").first.wait_for()
@@ -94,6 +96,7 @@ def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brough
     page.wait_for_function("window.thymio.built().playground.title === 'First'")
 
 
+@pytest.mark.slow
 def test_a_broken_file_is_rejected_in_one_sentence_with_details_and_the_world_stays(at_rest, page, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text(json.dumps({"format": 1, "title": "Broken", "shapes": [{"kind": "box", "x_m": "far"}]}))
@@ -108,6 +111,7 @@ def test_a_broken_file_is_rejected_in_one_sentence_with_details_and_the_world_st
     assert page.evaluate("window.thymio.state().simulator.playground") == "base"
 
 
+@pytest.mark.slow
 def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(at_rest, page, tmp_path):
     letter = tmp_path / "letter.json"
     letter.write_text("hello")
@@ -121,6 +125,7 @@ def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(at_rest, pag
     playwright.expect(fault.locator(".technical p")).to_contain_text("line 1, column 1")
 
 
+@pytest.mark.slow
 def test_a_dropped_file_is_refused_where_it_was_dropped_in_the_language_of_the_page(world, page, tmp_path):
     broken = tmp_path / "kaputt.json"
     shape = {"kind": "box", "name": "crate", "x_m": 0, "y_m": 0, "size_x_m": 0, "size_y_m": 1, "height_m": 1}
@@ -143,6 +148,7 @@ def test_a_dropped_file_is_refused_where_it_was_dropped_in_the_language_of_the_p
     assert page.evaluate("window.thymio.state().program.state") == "running"
 
 
+@pytest.mark.slow
 def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(world, page, tmp_path):
     foreign = tmp_path / "mine.json"
     pillar = {"topRadius": 2, "botRadius": 2, "height": 6, "color": "#9fa3bd", "positionX": 20, "positionZ": 0}

@@ -77,6 +77,7 @@ def test_the_canvas_shows_something_and_the_robot_moves(world, page):
     )
 
 
+@pytest.mark.slow
 def test_little_is_loaded_before_the_editor_is_opened(at_rest, own_page):
     page = own_page
     loaded: dict[str, bytes] = {}
@@ -103,6 +104,7 @@ def test_a_click_on_the_center_button_reaches_the_program(world, page, tmp_path)
     )
 
 
+@pytest.mark.slow
 def test_with_shift_a_mouse_keeps_several_buttons_pressed(at_rest, page):
     open_page(page, at_rest)
     page.locator("#view").focus()
@@ -162,6 +164,7 @@ def test_stimuli_reach_the_program(world, page, tmp_path):
         page.wait_for_function("(group) => Math.max(...window.thymio.state().robot.leds[group]) === 1", arg=group)
 
 
+@pytest.mark.slow
 def test_the_pen_leaves_a_trail(world, page):
     open_page(page, world("desk", "line_follower"))
     open_hands(page, "pen")
@@ -202,6 +205,7 @@ AT_CENTER_OF = """(message, selector) => {
 }"""
 
 
+@pytest.mark.slow
 def test_a_rejection_is_shown_where_the_file_was_dropped_or_chosen(at_rest, page, tmp_path):
     playground, program, unknown = tmp_path / "bad.json", tmp_path / "bad.aesl", tmp_path / "bad.dat"
     playground.write_text('{"format": 1}')
@@ -228,6 +232,7 @@ def test_a_rejection_is_shown_where_the_file_was_dropped_or_chosen(at_rest, page
     playwright.expect(here).to_be_hidden()
 
 
+@pytest.mark.slow
 def test_another_playground_can_be_chosen(world, page):
     open_page(page, world("desk", "welcome"))
     choose_playground(page, "obstacle")
@@ -257,6 +262,7 @@ def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejecte
     assert page.evaluate("window.thymio.state().simulator.playground") == "my maze.playground"
 
 
+@pytest.mark.slow
 def test_a_pushed_object_moves_on_the_page(world, page, tmp_path):
     can = {"kind": "cylinder", "name": "can", "x_m": 0.2, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "mass_kg": 0.05}
     ground = {"kind": "rectangle", "size_x_m": 3, "size_y_m": 1, "color": "#ffffff"}

@@ -52,6 +52,7 @@ def findings(page: Any) -> list[Any]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm install in web_ui")
 def test_axe_finds_nothing_serious(world, page):
     open_page(page, world("two_robots", behaviour="menu"))
@@ -106,6 +107,7 @@ def test_at_800_by_600_every_control_is_visible_in_every_language(at_rest, page)
         wait_for_none(page, OVERLAPPING)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(683, 384), (360, 640)])
 def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(at_rest, page, size):
     page.set_viewport_size({"width": size[0], "height": size[1]})  # 1366 × 768 at 200 %; a small phone
@@ -118,6 +120,7 @@ def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(at_rest
     page.fill("[data-new=constant]", "FAR")
 
 
+@pytest.mark.slow
 def test_values_can_be_frozen_and_copied(world, page):
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_page(page, world("base"))

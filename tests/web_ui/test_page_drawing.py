@@ -110,12 +110,14 @@ def around(image, place, reach):
     return image[y - reach : y + reach + 1, x - reach : x + reach + 1].reshape(-1, 3)
 
 
+@pytest.mark.slow
 def test_while_the_camera_rests_the_ground_is_copied_and_not_drawn_again(driving):
     driving.wait_for_function("() => window.keptFrames > 10")
     pause(driving, True)
     check(driving, "copied")
 
 
+@pytest.mark.slow
 def test_floor_and_robot_are_seen_at_rest_at_every_level(driving):
     for level in LEVELS:
         driving.evaluate("() => { window.slowMs = 60; }")

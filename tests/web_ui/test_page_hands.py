@@ -14,6 +14,7 @@ HELD = "(held) => window.thymio.state().robot.latest.pose.z > 0.03 === held"
 SEEN = "(counts) => String(window.thymio.state().robot.raw.proximity?.slice(0, 5)) === String(counts)"
 
 
+@pytest.mark.slow
 def test_pick_up_holds_the_robot_until_it_is_put_down(world, page):
     open_page(page, world("base"))
     lift = page.locator("[data-hand=lift]")
@@ -28,6 +29,7 @@ def test_pick_up_holds_the_robot_until_it_is_put_down(world, page):
     playwright.expect(lift).to_have_attribute("aria-pressed", "false")
 
 
+@pytest.mark.slow
 def test_all_robots_are_picked_up_together(world, page):
     open_page(page, world("two_robots"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
@@ -52,6 +54,7 @@ def test_a_hand_before_the_sensors_stays_until_it_is_taken_away(at_rest, page):
     playwright.expect(hand).to_have_attribute("data-held", "false")
 
 
+@pytest.mark.slow
 def test_hands_have_letters_and_escape_closes_sheet_and_move_mode_before_it_stops_the_robot(world, page):
     open_page(page, world("base", behaviour="explorer"))
     page.wait_for_function("() => window.thymio.state().program?.state === 'running'")
@@ -86,6 +89,7 @@ def test_hands_have_letters_and_escape_closes_sheet_and_move_mode_before_it_stop
     page.wait_for_function("() => window.thymio.state().program.state === 'stopped'")
 
 
+@pytest.mark.slow
 def test_a_folded_tray_opens_for_a_hand_with_values(at_rest, page):
     open_page(page, at_rest)
     page.locator("#tray-fold").click()
@@ -100,6 +104,7 @@ def test_a_folded_tray_opens_for_a_hand_with_values(at_rest, page):
     playwright.expect(page.locator("[data-hand=tilt]")).to_have_attribute("data-held", "false")
 
 
+@pytest.mark.slow
 def test_on_a_phone_every_hand_camera_and_tool_is_in_reach(world, touch_page):
     touch_page.set_viewport_size({"width": 390, "height": 844})
     open_page(touch_page, world("base"))

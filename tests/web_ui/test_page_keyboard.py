@@ -132,6 +132,7 @@ def test_a_whole_lesson_by_keyboard(world, own_page, tmp_path):
     expect(page, "#live").to_contain_text("stopped")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("language", "error", "help_text"),
     [
@@ -157,6 +158,7 @@ def test_editor_and_program_panel_show_errors_in_the_language_of_the_page(
     expect(page, ".reference .entry-help:visible p").to_contain_text(help_text)
 
 
+@pytest.mark.slow
 def test_letter_keys_work_with_caps_lock(at_rest, page):
     open_page(page, at_rest)
     page.focus("#view")
@@ -192,6 +194,7 @@ def stops(page: Any) -> list[str]:
     return [stop["name"] for stop in found]
 
 
+@pytest.mark.slow
 def test_tab_leads_everywhere_and_the_focus_is_always_seen(world, page):
     open_page(page, world("two_robots"))
     page.wait_for_function(f"() => Object.keys(({STATE})().robots).length === 2")
@@ -209,6 +212,7 @@ def test_tab_leads_everywhere_and_the_focus_is_always_seen(world, page):
     assert stage | {"file-menu", "tool-tab-values"} <= set(stops(page))
 
 
+@pytest.mark.slow
 def test_the_focus_is_not_lost_with_what_had_it(world, page, tmp_path):
     broken = tmp_path / "broken.aesl"
     broken.write_text("onevent prox\nmotor.left.targt = 1\n")
@@ -230,6 +234,7 @@ def test_the_focus_is_not_lost_with_what_had_it(world, page, tmp_path):
     expect(page, "#help-open").to_be_focused()
 
 
+@pytest.mark.slow
 def test_an_open_menu_keeps_the_focus_when_the_editor_comes_late(world, page):
     held = []
     page.route("**/assets/editor-*.js", lambda route: held.append(route))

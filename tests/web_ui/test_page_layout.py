@@ -23,6 +23,7 @@ WIDTH = "(width) => Math.round(document.querySelector('#work').getBoundingClient
 RUNNING = "() => window.thymio.state().program?.state === 'running'"
 
 
+@pytest.mark.slow
 def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(world, page):
     page.set_viewport_size({"width": 1280, "height": 800})
     open_page(page, world("base", behaviour="explorer"))
@@ -52,6 +53,7 @@ def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(w
     page.wait_for_function(WIDTH, arg=88)
 
 
+@pytest.mark.slow
 def test_escape_closes_a_menu_first_and_the_theme_is_kept(world, page):
     open_page(page, world("base", behaviour="explorer"))
     page.wait_for_function(RUNNING)
@@ -101,6 +103,7 @@ def test_actions_go_to_the_chosen_robot_or_to_all(world, page):
     assert page.evaluate(runs, [names[0], "explorer"])
 
 
+@pytest.mark.slow
 def test_the_creator_continues_when_its_tab_is_opened_again(at_rest, page):
     open_page(page, at_rest)
     build_playground(page)
@@ -114,6 +117,7 @@ def test_the_creator_continues_when_its_tab_is_opened_again(at_rest, page):
     playwright.expect(page.locator("#playground-change")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_names_of_views_follow_the_height_of_the_window_alone(at_rest, page):
     page.set_viewport_size({"width": 1280, "height": 640})
     open_page(page, at_rest, unfold=False)

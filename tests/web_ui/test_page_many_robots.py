@@ -53,6 +53,7 @@ def test_all_of_many_robots_move_by_their_shared_transforms(robots_page):
     robots_page.wait_for_function("() => window.thymio.state().robot.raw.motor !== undefined")
 
 
+@pytest.mark.slow
 def test_a_browser_that_connects_while_paused_gets_all_poses(robots_page, other_page):
     robots_page.wait_for_function(f"() => ({PLACED})() === 5")
     robots_page.get_by_role("button", name="Pause time").click()

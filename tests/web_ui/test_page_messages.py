@@ -25,6 +25,7 @@ DIALOG = """() => {
 }"""
 
 
+@pytest.mark.slow
 def test_a_message_is_above_an_open_dialog_and_can_be_closed_there(at_rest, page, tmp_path):
     unknown = tmp_path / "song.mp3"
     unknown.write_bytes(b"")
@@ -44,6 +45,7 @@ def test_a_message_is_above_an_open_dialog_and_can_be_closed_there(at_rest, page
     page.wait_for_function(ON_TOP, arg=notice.element_handle())
 
 
+@pytest.mark.slow
 def test_the_tab_does_not_show_the_error_of_another_attempt(at_rest, page, tmp_path):
     broken, unknown = tmp_path / "broken.json", tmp_path / "song.mp3"
     broken.write_text('{"format": 1, "title": 3}')
@@ -79,6 +81,7 @@ def test_success_notices_disappear_and_errors_stay_until_closed(world, page, tmp
     playwright.expect(page.locator(".notice.info")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_one_message_is_shown_at_a_time_and_the_next_one_follows(at_rest, page, tmp_path):
     files = [tmp_path / name for name in ("song.mp3", "film.mp4")]
     for file in files:
@@ -98,6 +101,7 @@ def test_one_message_is_shown_at_a_time_and_the_next_one_follows(at_rest, page, 
     playwright.expect(hint).to_be_visible()
 
 
+@pytest.mark.slow
 def test_a_new_playground_fades_in(world, page):
     open_page(page, world("base"))
     page.evaluate(

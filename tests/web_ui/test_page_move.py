@@ -61,6 +61,7 @@ def test_a_robot_and_a_can_are_dragged_and_an_occupied_position_is_rejected(worl
     assert page.evaluate(POSE)["y"] == pytest.approx(-0.25, abs=0.02)
 
 
+@pytest.mark.slow
 def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(world, page, still_world):
     open_still(page, world, still_world)
     page.locator("#view").focus()
@@ -78,6 +79,7 @@ def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(world, page, still_wo
     assert page.evaluate("() => window.thymio.state().robot.buttons.center") is False
 
 
+@pytest.mark.slow
 def test_a_fallen_robot_is_reported_and_put_back(world, page, tmp_path):
     ground = {"kind": "rectangle", "size_x_m": 0.8, "size_y_m": 0.8, "color": "#ffffff"}
     playground, program = tmp_path / "table.json", tmp_path / "off.aesl"

@@ -44,6 +44,7 @@ def test_a_real_robot_is_driven_and_its_time_is_left_alone(suite, page, other_pa
     other_page.wait_for_function("() => window.thymio.state().robot.latest?.pose.x > 0.05")
 
 
+@pytest.mark.slow
 def test_the_page_says_when_the_connection_to_the_robot_is_lost(suite, page):
     robot = ServedRobot()
     try:

@@ -51,6 +51,7 @@ STATES = """(controls) => [...document.querySelectorAll(controls)]
     .map((one) => [one.matches(":disabled"), one.title || one.closest("fieldset")?.title || ""])"""
 
 
+@pytest.mark.slow
 def test_controls_are_disabled_with_a_reason_while_the_simulator_is_gone(suite, page):
     ports = (free_port(), free_port())
     arguments = ("--playground", "base", "--behaviour", "menu")
@@ -108,6 +109,7 @@ def test_the_page_works_without_browser_storage(at_rest, own_page):
     playwright.expect(page.locator(".cm-content")).to_contain_text("var a")
 
 
+@pytest.mark.slow
 def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(suite, page):
     ports = (free_port(), free_port())
     open_page(page, suite("--playground", "base", "--program", "none", ports=ports))
@@ -129,6 +131,7 @@ def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(s
     playwright.expect(page.locator(".mistake-card")).to_contain_text("No variable is called 'b'")
 
 
+@pytest.mark.slow
 def test_actions_in_one_browser_are_visible_in_one_that_connects_late(world, page, other_page):
     address = world("base")
     open_page(page, address)

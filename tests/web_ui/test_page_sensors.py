@@ -42,6 +42,7 @@ def test_the_sensor_of_a_plug_in_is_shown_with_its_changing_value(suite, page, t
     playwright.expect(values.nth(0)).to_have_text(heading)
 
 
+@pytest.mark.slow
 def test_values_are_subscribed_to_while_the_tab_is_open(at_rest, page):
     open_page(page, at_rest)
     open_tab(page, "robot")
@@ -57,6 +58,7 @@ def test_values_are_subscribed_to_while_the_tab_is_open(at_rest, page):
     page.wait_for_function(f"{MOTOR} !== window.words")
 
 
+@pytest.mark.slow
 def test_the_picture_shows_what_the_robot_notices_and_does(world, page):
     open_page(page, world("base", behaviour="thesis_basic"))
     open_tab(page, "robot")

@@ -66,6 +66,7 @@ def test_a_tone_is_played_after_the_first_user_action_and_until_it_is_muted(worl
     page.mouse.up()
 
 
+@pytest.mark.slow
 def test_the_browser_plays_a_tone_of_that_pitch(world, own_page, tmp_path):
     page = own_page
     program = tmp_path / "singing.aesl"
@@ -80,6 +81,7 @@ def test_the_browser_plays_a_tone_of_that_pitch(world, own_page, tmp_path):
     assert 0.05 < heard["loudest"] < 1
 
 
+@pytest.mark.slow
 def test_a_pause_suspends_the_sound(world, own_page, tmp_path):
     page = own_page
     program = tmp_path / "singing.aesl"
@@ -94,6 +96,7 @@ def test_a_pause_suspends_the_sound(world, own_page, tmp_path):
     page.wait_for_function("() => window.heard[0].state === 'running'")
 
 
+@pytest.mark.slow
 def test_a_built_in_behavior_is_chosen_and_shows_its_color(world, page):
     open_page(page, world("base", "welcome"))
     choose_example(page, "friendly")

@@ -45,6 +45,7 @@ def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
     page.wait_for_function(MOVED, arg=[pose["x"], pose["y"], far_m])
 
 
+@pytest.mark.slow
 def test_the_basic_mode_drives_by_the_arrow_buttons(class_page):
     about = "Press an arrow and the robot drives until something is in its way."
     choose_example(class_page, "Drive with the arrows", about)
@@ -54,6 +55,7 @@ def test_the_basic_mode_drives_by_the_arrow_buttons(class_page):
     class_page.wait_for_function("() => Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
 
 
+@pytest.mark.slow
 def test_the_explorer_avoids_obstacles(class_page):
     class_page.get_by_role("tab", name="Playground").click()
     class_page.get_by_role("button", name="Obstacle").first.click()
@@ -64,6 +66,7 @@ def test_the_explorer_avoids_obstacles(class_page):
     playwright.expect(class_page.get_by_text("running", exact=True).first).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_track_follower_follows_the_track(class_page):
     class_page.get_by_role("tab", name="Playground").click()
     class_page.get_by_role("button", name="Borderless").first.click()

@@ -14,6 +14,7 @@ pytestmark = MARKS
 DIMMED = "() => getComputedStyle(document.querySelector('#scene'), '::after').opacity"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm install in web_ui")
 def test_axe_finds_nothing_serious_in_sheets(world, page):
     open_page(page, world("base"))

@@ -32,6 +32,7 @@ def test_the_token_in_the_address_gives_control_and_survives_a_reload(suite, pag
     assert page.evaluate("window.thymio.state().notices") == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rest", "state"), [("", "noToken"), ("#token=wrongtoken", "wrongToken")])
 def test_without_a_valid_token_the_page_explains_what_to_do(suite, page, rest, state):
     address = suite(*TOKENS)
@@ -74,6 +75,7 @@ def page_server():
     server.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "[::1]"])
 def test_nothing_violates_the_content_security_policy(browser, page_server, host):
     page = browser.new_page()
@@ -95,6 +97,7 @@ def test_nothing_violates_the_content_security_policy(browser, page_server, host
     page.close()
 
 
+@pytest.mark.slow
 def test_the_page_cannot_be_embedded(browser, page_server):
     page = browser.new_page()
     page.goto(f"data:text/html,<iframe src='http://127.0.0.1:{page_server.port}/'></iframe>")

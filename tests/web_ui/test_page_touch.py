@@ -52,6 +52,7 @@ def corners(page: Any) -> list[tuple[float, float]]:
     return [(place["x"], place["y"]) for place in page.evaluate(CORNERS)]
 
 
+@pytest.mark.slow
 def test_one_finger_turns_the_view_and_two_zoom_it(at_rest, touch_page):
     open_page(touch_page, at_rest)
     wait_for_position(touch_page, "robot")
@@ -89,6 +90,7 @@ def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(at_rest
     touch_page.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
 
 
+@pytest.mark.slow
 def test_a_robot_is_dragged_by_touch(world, touch_page):
     open_page(touch_page, world("base"))
     wait_for_position(touch_page, "robot")
@@ -109,6 +111,7 @@ def test_a_robot_is_dragged_by_touch(world, touch_page):
     )
 
 
+@pytest.mark.slow
 def test_on_a_phone_nothing_overflows_and_stop_is_visible(at_rest, touch_page):
     touch_page.set_viewport_size({"width": 412, "height": 860})
     open_page(touch_page, at_rest)
@@ -128,6 +131,7 @@ FREE = """() => {
 }"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(390, 844), (360, 640)])
 def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(at_rest, touch_page, size):
     touch_page.set_viewport_size({"width": size[0], "height": size[1]})

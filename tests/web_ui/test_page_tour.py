@@ -69,6 +69,7 @@ def test_it_is_offered_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_
     playwright.expect(page.locator(".tour")).to_contain_text("Die Welt deines Roboters")
 
 
+@pytest.mark.slow
 def test_an_offer_that_is_declined_does_not_come_back(first_visit):
     page, address = first_visit
     visit(page, f"{address}?welcome=off")
@@ -79,6 +80,7 @@ def test_an_offer_that_is_declined_does_not_come_back(first_visit):
     playwright.expect(page.locator(".tour, .welcome-tour")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_it_does_not_block_the_page(first_visit):
     page, address = first_visit
     visit(page, f"{address}?tour=on&welcome=off")
@@ -92,6 +94,7 @@ def test_it_does_not_block_the_page(first_visit):
     page.wait_for_function("window.thymio.state().simulator.paused")
 
 
+@pytest.mark.slow
 def test_the_address_disables_or_forces_it(first_visit):
     page, address = first_visit
     visit(page, f"{address}?tour=off")
@@ -103,6 +106,7 @@ def test_the_address_disables_or_forces_it(first_visit):
     page.locator(".tour").wait_for()
 
 
+@pytest.mark.slow
 def test_it_can_be_closed_without_browser_storage(world, own_page):
     page, address = own_page, ready(world("base", "explorer"))
     page.add_init_script(NO_STORAGE)
@@ -115,6 +119,7 @@ def test_it_can_be_closed_without_browser_storage(world, own_page):
     playwright.expect(page.locator(".tour, .welcome-tour")).to_have_count(0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(1280, 650), (820, 1180), (360, 640)])
 def test_it_is_visible_and_accessible_on_every_screen_in_every_language(first_visit, size):
     page, address = first_visit

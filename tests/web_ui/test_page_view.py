@@ -49,6 +49,7 @@ def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(at_rest, ow
     assert int.from_bytes(content[16:20]) >= 1920
 
 
+@pytest.mark.slow
 def test_a_context_that_is_not_restored_switches_to_2d(at_rest, own_page):
     page = own_page
     open_page(page, at_rest)
@@ -82,6 +83,7 @@ def test_the_view_is_saved_as_an_image_and_the_robot_view_works(at_rest, page):
     assert page.evaluate(CANVAS) == coarse
 
 
+@pytest.mark.slow
 def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(world, page):
     open_page(page, world("two_robots"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
@@ -107,6 +109,7 @@ def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(wor
     playwright.expect(names).to_have_text(["blue"])
 
 
+@pytest.mark.slow
 def test_one_robot_needs_no_name(at_rest, page):
     open_page(page, at_rest)
     wait_for_position(page, "robot")

@@ -45,6 +45,7 @@ def page(browser) -> Iterator[Any]:
     yield from checked_page(browser, compares_pictures=True)
 
 
+@pytest.mark.slow
 def test_the_view_is_dark_exactly_where_the_sensors_measure_dark(world, page, tmp_path):
     path = tmp_path / "strips.json"
     path.write_text(playground())

@@ -146,11 +146,13 @@ def picture(page: Any) -> bytes:
 class TestPage:
     pytestmark = MARKS
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("name", STATES)
     def test_it_looks_as_it_did(self, shared_page, address, snapshots, name):
         show(shared_page, address, name)
         snapshots.check(name, picture(shared_page))
 
+    @pytest.mark.slow
     def test_a_panel_that_moves_is_noticed_and_another_rendering_of_text_is_not(self, shared_page, address):
         show(shared_page, address, "robot")
         before = shrunk(picture(shared_page))

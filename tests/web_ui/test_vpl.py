@@ -178,6 +178,7 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(world, page
         assert page.evaluate(FINDINGS) == []
 
 
+@pytest.mark.slow
 def test_a_program_is_built_by_keyboard_alone(world, page):
     open_page(page, world("base"))
     begin(page, "empty")
@@ -218,6 +219,7 @@ def phone(touch_page) -> Any:
     return touch_page
 
 
+@pytest.mark.slow
 def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(world, phone):
     open_page(phone, world("base"))
     begin(phone, "buttons")
@@ -258,6 +260,7 @@ def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(world,
     assert phone.evaluate(FINDINGS) == []
 
 
+@pytest.mark.slow
 def test_older_files_and_a_teachers_list_are_opened(world, page):
     page.set_viewport_size({"width": 800, "height": 600})
     open_page(page, world("base"), unfold=False)

@@ -66,6 +66,7 @@ def test_drive_it_one_click_and_the_arrow_keys_drive(first_visit):
     page.wait_for_function(MOVES)
 
 
+@pytest.mark.slow
 def test_program_it_an_example_moves_and_its_text_is_open(first_visit):
     page, _ = first_visit
     page.locator("[data-start=program]").click()
@@ -76,6 +77,7 @@ def test_program_it_an_example_moves_and_its_text_is_open(first_visit):
     playwright.expect(page.locator(".cm-content")).to_contain_text("Follow a black line")
 
 
+@pytest.mark.slow
 def test_connect_ros_2_the_shown_speed_is_sent_once(first_visit):
     page, _ = first_visit
     playwright.expect(page.locator("[data-start=ros]").locator("xpath=ancestor::li")).to_contain_text("/cmd_vel")
@@ -101,6 +103,7 @@ def test_connect_ros_2_the_shown_speed_is_sent_once(first_visit):
     assert page.evaluate("window.thymio.state().program.state") == "running"  # Escape has stopped nothing
 
 
+@pytest.mark.slow
 def test_who_only_watches_sees_it_follow_the_line(first_visit):
     page, _ = first_visit
     page.locator("#pause").click()
@@ -110,6 +113,7 @@ def test_who_only_watches_sees_it_follow_the_line(first_visit):
     page.wait_for_function(MOVES)
 
 
+@pytest.mark.slow
 def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(first_visit):
     page, address = first_visit
     page.keyboard.press("Escape")
@@ -124,6 +128,7 @@ def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(first
     playwright.expect(page.locator(STARTS)).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_without_browser_storage_a_choice_lasts_in_this_visit(world, own_page):
     page = own_page
     page.add_init_script(NO_STORAGE)
@@ -151,6 +156,7 @@ def test_the_greeting_is_over_the_robot_and_in_every_language(first_visit):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(1280, 800), (1024, 768), (390, 844), (640, 400)])
 def test_everything_is_in_sight_and_accessible_on_every_screen(world, page, size):
     page.set_viewport_size({"width": size[0], "height": size[1]})
@@ -170,6 +176,7 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(world, page, size
     assert page.locator(".welcome-tour").count() == 1
 
 
+@pytest.mark.slow
 def test_the_keys_are_listed_in_a_dialog_that_escape_closes(world, page):
     visit(page, world("line", "welcome"), "tour=off&welcome=off")
     wait_for_program(page, "welcome")
@@ -185,6 +192,7 @@ def test_the_keys_are_listed_in_a_dialog_that_escape_closes(world, page):
     assert page.evaluate("window.thymio.state().program.state") == "running"
 
 
+@pytest.mark.slow
 def test_the_documentation_ships_with_the_page(first_visit):
     page, _ = first_visit
     open_menu(page, "#help-open")
