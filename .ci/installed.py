@@ -44,7 +44,7 @@ EXECUTABLES = {
     },
 }
 SHARED = ["package.xml", "launch/thymio.launch.py", "playgrounds/line.json", "rviz/thymio.rviz"]
-DEADLINE_S = 30.0
+DEADLINE_S = 60.0
 
 
 def main() -> int:
