@@ -88,14 +88,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     - A test with a browser, other processes or ROS may run a second time.
     - The workers of pytest-xdist share out files, so that fixtures of a module and of a session are made less often.
     """
-    may_rerun = config.pluginmanager.hasplugin("rerunfailures")
+    may_rerun, shares_out = map(config.pluginmanager.hasplugin, ("rerunfailures", "xdist"))
     for item in items:
         fixtures = ROS_FIXTURES.intersection(getattr(item, "fixturenames", ()))
         if fixtures or any(folder in item.path.parents for folder in ROS_FOLDERS):
             item.add_marker("ros")
         if may_rerun and _kind(item) < len(LONGEST_FIRST):
             item.add_marker(pytest.mark.flaky(reruns=1))
-        if item.get_closest_marker("xdist_group") is None:
+        if shares_out and item.get_closest_marker("xdist_group") is None:
             item.add_marker(pytest.mark.xdist_group(item.path.relative_to(ROOT).with_suffix("").as_posix()))
     items.sort(key=_kind)
 
