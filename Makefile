@@ -37,7 +37,7 @@ run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NA
 
 # Three tiers of the same tests, selected by their markers (docs/testing.md). Files are shared out among the workers, the
 # long ones first.
-TEST := $(PYTHON) -m pytest -n auto --maxprocesses 4 --dist loadgroup --no-loadscope-reorder
+TEST := $(PYTHON) -m pytest -n auto --maxprocesses 4
 check: lint $(VENV)/.ready-test  ## before a commit: lint, and tests without ROS, browser, sockets and other processes
 	@$(TEST) -q -m 'not process and not browser and not ros and not slow' $(ARGS)
 

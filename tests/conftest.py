@@ -82,26 +82,41 @@ LONGEST_FIRST = ("browser", "process", "ros")
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark, group and order all tests. The markers select the tiers (docs/testing.md).
+    """Mark and order all tests. The markers select the tiers (docs/testing.md).
 
     - Tests need ROS if they are in one of its folders or have one of its fixtures.
     - A test with a browser, other processes or ROS may run a second time.
-    - The workers of pytest-xdist share out files, so that fixtures of a module and of a session are made less often.
     """
-    may_rerun, shares_out = map(config.pluginmanager.hasplugin, ("rerunfailures", "xdist"))
+    may_rerun = config.pluginmanager.hasplugin("rerunfailures")
     for item in items:
         fixtures = ROS_FIXTURES.intersection(getattr(item, "fixturenames", ()))
         if fixtures or any(folder in item.path.parents for folder in ROS_FOLDERS):
             item.add_marker("ros")
         if may_rerun and _kind(item) < len(LONGEST_FIRST):
             item.add_marker(pytest.mark.flaky(reruns=1))
-        if shares_out and item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group(item.path.relative_to(ROOT).with_suffix("").as_posix()))
     items.sort(key=_kind)
 
 
 def _kind(item: pytest.Item) -> int:
     return next((at for at, name in enumerate(LONGEST_FIRST) if item.get_closest_marker(name)), len(LONGEST_FIRST))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Share out whole files in their order, so that fixtures of a module and of a session are made less often.
+
+    One worker has all tests of the page: two browsers that draw by software at the same time take several times as
+    long. (`--dist loadgroup` of pytest-xdist 3.8 does not group with pytest 9.2, which keeps names elsewhere.)
+    """
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Files(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.partition("::")[0]
+            return "page" if file.startswith("tests/web_ui/") else file
+
+    config.option.loadscopereorder = False
+    return Files(config, log)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -33,7 +33,7 @@ def measure(part: str, *arguments: str) -> int:
     FOLDER.mkdir(parents=True, exist_ok=True)
     config = FOLDER / f"{part}.ini"
     config.write_text(f"{CONFIG}data_file = {FOLDER / part}\n", encoding="utf-8")
-    pytest = ["-m", "pytest", "-q", "-n", "auto", "--dist", "loadgroup", "--no-loadscope-reorder", "-m", PARTS[part]]
+    pytest = ["-m", "pytest", "-q", "-n", "auto", "-m", PARTS[part]]
     run = [sys.executable, "-m", "coverage", "run", f"--rcfile={config}", *pytest, *arguments]
     code = subprocess.run(run, cwd=ROOT, check=False).returncode
     combine = [sys.executable, "-m", "coverage", "combine", "-q", f"--rcfile={config}", f"--data-file={FOLDER / part}"]
