@@ -27,9 +27,13 @@ FLAGS = [
 ]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Any]:
-    """Chromium; a test is skipped where it, the page's build, Playwright or ROS is missing."""
+    """Chromium; a test is skipped where it, the page's build, Playwright or ROS is missing.
+
+    It ends with the tests of this folder: Playwright leaves a running event loop in the thread, in which
+    `asyncio.run` of later tests would fail.
+    """
     api = pytest.importorskip("playwright.sync_api")
     pytest.importorskip("rclpy")
     if CHROMIUM is None:
@@ -70,7 +74,7 @@ def suite(ros_domain, tmp_path) -> Iterator[Suites]:
     suites.end()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def _shared(browser, tmp_path_factory) -> Iterator[SharedWorld]:
     shared = SharedWorld(tmp_path_factory.mktemp("shared"))
     yield shared
@@ -93,7 +97,7 @@ def at_rest(world) -> str:
 CLASS_NAMES = [f"thymio_{number}" for number in range(1, 21)]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def class_world(tmp_path_factory) -> Path:
     """A playground with twenty robots."""
     shapes = [{"kind": "rectangle", "x_m": 1.0, "y_m": -0.75, "size_x_m": 3.0, "size_y_m": 2.5, "color": "#f3eee3"}]
@@ -103,7 +107,7 @@ def class_world(tmp_path_factory) -> Path:
     return world
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def _tabs(browser) -> Tabs:
     return Tabs(browser)
 
