@@ -1,5 +1,6 @@
 """Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
+import contextlib
 import json
 import signal
 import sys
@@ -13,6 +14,9 @@ import pytest
 from aseba_vm import languages
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.sim.formats import svg_worker
+
+with contextlib.suppress(ImportError):
+    import wasmtime  # noqa: F401  # before pytester runs pytest in this process: it forgets what such a run imports first
 
 # Whatever a shell starts in the background ignores Ctrl-C, and so would every program that a test starts.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
