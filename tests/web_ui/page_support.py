@@ -166,6 +166,7 @@ def build_playground(page: Any) -> None:
     if not page.locator(".palette").is_visible():
         page.click(".current [data-new]")
     page.locator(".palette").wait_for()
+    wait_for_frame(page)  # with its title
 
 
 def go_on_building(page: Any, title: str) -> None:

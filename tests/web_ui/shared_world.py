@@ -17,10 +17,12 @@ from thymio_sim_ros.classroom.cdr import read_diagnostic, read_string
 
 POLL_S = 0.005
 
+SLOW_CLOCK = ("--ros-args", "-p", "clock_rate:=10.0")
+"""The page draws with each message of the clock: fewer of them save a quarter of its processor time."""
 NODES = {"/simulator", "/aseba_runtime", "/foxglove_bridge", "/web_ui"}
 STATE = "/simulator/_state"
-STATUS = "/_aseba/status"
-"""End of the topics with the program of a robot."""
+STATUS, IMU = "/_aseba/status", "/imu"
+"""Ends of topics of a robot, from runtime and simulator; its others come and go with these."""
 PLAYGROUND = "/simulator.playground"
 PATH, SOURCE, NAME = (f"/aseba_runtime.script.{word}" for word in ("path", "source", "name"))
 BEHAVIOUR = "/aseba_runtime.behaviour"
@@ -85,7 +87,8 @@ class SharedWorld:
         self._ports = port, foxglove_port = free_port(), free_port()
         ports = ("--port", str(port), "--foxglove-port", str(foxglove_port))
         with reserved():  # until it uses the domain
-            self._process = Process(self._folder, SUITE, *ports, "--playground", "base", "--program", "none")
+            world = ("--playground", "base", "--program", "none")
+            self._process = Process(self._folder, SUITE, *ports, *world, *SLOW_CLOCK)
             for one in self._ports:
                 wait_for_port(one)
         with self.client() as client:
@@ -116,12 +119,14 @@ class SharedWorld:
         state: dict[str, Any] = {}
         programs: dict[str, dict[str, str]] = {}
 
+        def watch(topic: str) -> None:
+            if topic in client.channels and (number := client.channels[topic].id) not in topics:
+                topics[number] = topic
+                client.subscribe(number, topic)
+
         def is_ready() -> bool:
             client.read()
-            for topic, channel in client.channels.items():
-                if (topic == STATE or topic.endswith(STATUS)) and channel.id not in topics:
-                    topics[channel.id] = topic
-                    client.subscribe(channel.id, topic)
+            watch(STATE)
             for message in client.received:
                 if isinstance(message, ms.MessageData):
                     topic = topics[message.subscription_id]
@@ -132,10 +137,17 @@ class SharedWorld:
             client.received.clear()
             if not state or Path(state["playground"]).stem != playground or state["paused"]:
                 return False
-            robots = {f"/{robot['name']}".rstrip("/") + STATUS for robot in state["robots"]}
-            return robots <= programs.keys() and all(
-                programs[robot]["state"] == "running" and Path(programs[robot]["program"]).stem == program
-                for robot in robots
+            robots = {f"/{robot['name']}".rstrip("/") for robot in state["robots"]}
+            for end in (STATUS, IMU):
+                if robots != {topic.removesuffix(end) for topic in client.channels if topic.endswith(end)}:
+                    return False
+            for robot in robots:
+                watch(robot + STATUS)  # not of a robot that is gone: a subscription keeps its topic
+            return all(
+                topic in programs
+                and programs[topic]["state"] == "running"
+                and Path(programs[topic]["program"]).stem == program
+                for topic in (robot + STATUS for robot in robots)
             )
 
         try:

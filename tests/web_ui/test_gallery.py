@@ -9,7 +9,15 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.patience import PATIENCE_MS
-from tests.web_ui.page_support import MARKS, choose_language, drop_file, go_on_building, open_page, open_tab
+from tests.web_ui.page_support import (
+    MARKS,
+    build_playground,
+    choose_language,
+    drop_file,
+    go_on_building,
+    open_page,
+    open_tab,
+)
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros import resources
 
@@ -73,7 +81,7 @@ def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brough
     own = page.locator("section.own")
     playwright.expect(own).to_be_hidden()
     for title in ("First", "Second"):
-        page.click(".current [data-new]")
+        build_playground(page)
         page.locator("[data-field=title]").fill(title)
         page.locator("[data-field=title]").press("Enter")
         playwright.expect(page.locator(".kept")).to_have_text("Saved on this device")

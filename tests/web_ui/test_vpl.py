@@ -87,6 +87,7 @@ def set_sensors(page: Any, row: int, states: dict[int, int]) -> None:
     for sensor, times in states.items():
         for _ in range(times):
             page.locator("#vpl-block .vpl-part").nth(sensor).click()
+            wait_for_frame(page)  # the next click starts from what this one has changed
     close_sheet(page)
 
 
