@@ -130,7 +130,8 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     names = sorted({report.nodeid for report in stats.get("rerun", ())} - failed)
     if names:
         terminalreporter.section("passed only at the second try: mend today (docs/testing.md)", red=True)
-        terminalreporter.write_lines(names)
+        for name in names:
+            terminalreporter.write_line(name)
 
 
 class Border:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -31,13 +30,20 @@ def two() -> Iterator[Served]:
 
 
 class Command:
-    """A command of tdmclient as a process."""
+    """A command of tdmclient as a process, which ends with its context."""
 
     def __init__(self, found: Served, tool: str, *arguments: str) -> None:
         command = [sys.executable, "-u", "-m", "tdmclient", tool, f"--tdmport={found.tcp_port}", *arguments]
-        self._popen = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, restore_signals=True
-        )
+        self._popen = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def __enter__(self) -> Command:
+        """The command itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Kill it: after an interrupt at an unlucky moment, its receiving thread reads a closed socket without end."""
+        self._popen.kill()
+        self._popen.communicate()
 
     def read_until(self, text: str) -> str:
         """Read lines up to one that contains a text."""
@@ -55,14 +61,15 @@ class Command:
         assert self._popen.returncode == 0, output
         return output
 
-    def stop(self) -> None:
-        """End a command that runs forever."""
-        self._popen.send_signal(signal.SIGINT)
-        self._popen.communicate(timeout=PATIENCE_S)
+
+def finished(found: Served, tool: str, *arguments: str) -> str:
+    """The output of a command that ends by itself."""
+    with Command(found, tool, *arguments) as command:
+        return command.finish()
 
 
 def test_list_shows_the_robots_and_ends(two: Served) -> None:
-    output = Command(two, "list").finish()
+    output = finished(two, "list")
     shown = [line for line in output.splitlines() if line.startswith(("name", "type", "status", "cap"))]
     robot = ["type:       2 (Simulated Thymio II)", "name:       {}", "status:     2 (available)", "cap:        3"]
     assert shown == [line.format(f"thymio_{place}") for place in (0, 1) for line in robot]
@@ -79,38 +86,35 @@ def test_run_translates_python_prints_and_is_stopped(two: Served, tmp_path: Path
         "    n += 2\n"
         '    print("tick", n, motor_left_target)\n'
     )
-    command = Command(two, "run", "--robotname=thymio_1", str(script))
     node = two.networks[1].node
-    until(lambda: node.value("motor.left.target") == (200,))
-    two.start_event(1, TIMER)
-    assert command.read_until("tick") == "tick 42 200\n"
-    command.stop()
-    Command(two, "run", "--stop", "--robotname=thymio_1").finish()
+    with Command(two, "run", "--robotname=thymio_1", str(script)) as command:
+        until(lambda: node.value("motor.left.target") == (200,))
+        two.start_event(1, TIMER)
+        assert command.read_until("tick") == "tick 42 200\n"
+    finished(two, "run", "--stop", "--robotname=thymio_1")
     assert node.value("motor.left.target") == (0,)
 
 
 def test_run_registers_events_that_sendevent_sends(two: Served, tmp_path: Path) -> None:
     script = tmp_path / "go.aseba"
     script.write_text("onevent go\nmotor.left.target = event.args[0] - event.args[1]\n")
-    Command(two, "run", "--event=go[2]", "--nosleep", str(script)).finish()
-    Command(two, "sendevent", "--event=go", "--data=[300,-77]").finish()
+    finished(two, "run", "--event=go[2]", "--nosleep", str(script))
+    finished(two, "sendevent", "--event=go", "--data=[300,-77]")
     assert two.networks[0].node.value("motor.left.target") == (377,)
 
 
 def test_an_error_of_a_program_is_shown(two: Served, tmp_path: Path) -> None:
     script = tmp_path / "wrong.aseba"
     script.write_text("var a\nmotor.lefft.target = 1\n")
-    command = Command(two, "run", str(script))
-    assert "motor.lefft.target" in command.read_until("error")
-    command.stop()
+    with Command(two, "run", str(script)) as command:
+        assert "motor.lefft.target" in command.read_until("error")
 
 
 def test_watch_shows_variables_and_states(two: Served) -> None:
-    command = Command(two, "watch", "--robotname=thymio_1", "--variables", "--vm-state")
-    shown = command.read_until("timer.period")
+    with Command(two, "watch", "--robotname=thymio_1", "--variables", "--vm-state") as command:
+        shown = command.read_until("timer.period")
     assert "prox.horizontal [0, 0, 0, 0, 0, 0, 0]" in shown
     assert "execution state of node" in shown
-    command.stop()
 
 
 NOTEBOOK = """
