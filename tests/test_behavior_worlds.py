@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.seeds import seeds
 from tests.sim.builders import box, make
 from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.programs.program import load_program
@@ -147,7 +148,7 @@ def test_fearful_stands_still_while_nothing_is_near() -> None:
     assert is_silent(runner)
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", seeds(2))
 def test_investigator_follows_the_line_for_three_laps(seed: int) -> None:
     assert farthest_in_laps(alone("investigator", "line", seed=seed), 3) < 0.025
 

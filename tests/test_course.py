@@ -76,8 +76,8 @@ def test_there_are_six_lessons_with_promised_marks() -> None:
 
 
 def graded_programs() -> list[object]:
-    """Every program of every lesson; `make test` has the solutions, and one mistake with blocks."""
-    landing = {(lesson, "solution") for lesson in LESSONS} | {("3-blocks", "mistake")}
+    """Every program of every lesson; `make test` has the solutions."""
+    landing = {(lesson, "solution") for lesson in LESSONS}
     return [
         pytest.param(lesson, program, marks=() if (lesson, program) in landing else pytest.mark.slow)
         for lesson in LESSONS
@@ -168,6 +168,7 @@ def test_points_and_paths_on_a_lesson_page_are_those_of_the_files(page: Path) ->
     assert columns == [marks["solution"], marks["start"], marks["mistake"]]
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_the_grading_example_prints_what_the_page_says(tmp_path: Path) -> None:
     try:

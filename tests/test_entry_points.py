@@ -100,6 +100,7 @@ def test_an_interrupt_while_a_command_is_imported_ends_it_without_a_word():
         assert (code, output) == (-signal.SIGINT, "") or "stopped after" in output
 
 
+@pytest.mark.slow
 @pytest.mark.process
 @pytest.mark.parametrize(("name", "codes"), [("thymio_sim", {0, -signal.SIGINT}), ("simulator", {0})])
 def test_an_interrupt_at_any_moment_of_a_start_ends_it_without_a_traceback(ros_domain, name, codes):
@@ -111,7 +112,9 @@ def test_an_interrupt_at_any_moment_of_a_start_ends_it_without_a_traceback(ros_d
 
 
 @pytest.mark.process
-@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize(
+    "closed", [*(pytest.param(one, marks=pytest.mark.slow) for one in ("<&-", ">&-", "2>&-")), "<&- >&- 2>&-"]
+)
 def test_a_run_with_closed_standard_streams_is_a_run(tmp_path, closed):
     log = tmp_path / "run.jsonl"
     command = f'"{sys.executable}" -c "{IN_A_SHELL}" runner --seconds 1 --log "{log}" {closed}'
@@ -122,7 +125,9 @@ def test_a_run_with_closed_standard_streams_is_a_run(tmp_path, closed):
 
 
 @pytest.mark.process
-@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize(
+    "closed", [*(pytest.param(one, marks=pytest.mark.slow) for one in (">&-", "2>&-")), "<&- >&- 2>&-"]
+)
 def test_nodes_start_with_closed_standard_streams(ros_domain, tmp_path, closed):
     log = tmp_path / "run.jsonl"
     command = f'exec "{sys.executable}" -c "{IN_A_SHELL}" --headless --log "{log}" {closed}'
@@ -139,7 +144,7 @@ def test_nodes_start_with_closed_standard_streams(ros_domain, tmp_path, closed):
 
 
 @pytest.mark.process
-@pytest.mark.parametrize("home", [None, "/proc/nowhere"])
+@pytest.mark.parametrize("home", [pytest.param(None, marks=pytest.mark.slow), "/proc/nowhere"])
 def test_nodes_start_without_a_home_folder(ros_domain, tmp_path, home):
     environment = {name: value for name, value in os.environ.items() if name not in ("HOME", "ROS_LOG_DIR", "ROS_HOME")}
     environment |= {"TMPDIR": str(tmp_path)} | ({} if home is None else {"HOME": home})

@@ -85,6 +85,7 @@ async def _simulated_time_passes(port: int) -> None:
                         return
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(FAKETIME is None, reason="needs libfaketime (apt install faketime)")
 def test_the_suite_does_not_care_for_jumps_of_the_clock(start: Callable[..., Process], tmp_path: Path) -> None:
     offset = tmp_path / "offset"

@@ -40,25 +40,25 @@ def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     return pytester.runpytest_subprocess(*plugin, *arguments, timeout=PROGRAM_S)
 
 
-LONG = {"test_avoider.py", "test_two_nodes.py"}
+LONG = {"test_avoider.py", "test_follower.py", "test_misspelt.py", "test_two_nodes.py"}
 """Examples that only `make test-all` executes: others that need ROS, too, are executed by `make test`."""
+
+
+def slow_if_long(name: str) -> object:
+    return pytest.param(name, marks=pytest.mark.slow if name in LONG else ())
 
 
 def test_the_page_has_its_examples() -> None:
     assert {"follower.aesl", "avoider.py", "caller.aesl", "comer.aesl", WORKFLOW} <= FILES.keys()
     assert FAILING.keys() == {"test_button.py", "test_misspelt.py"}
-    assert {"test_avoider.py", "test_misspelt.py", "test_patrol.py", "test_two_nodes.py"} == NEED_ROS
+    assert {"test_avoider.py", "test_misspelt.py", "test_two_nodes.py"} == NEED_ROS
     assert PAGE.count("```") == 2 * (len(FILES) + len(FAILING))
 
 
 @pytest.mark.process
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(name, marks=pytest.mark.slow if name in LONG else ())
-        for name in sorted(FILES)
-        if name.startswith("test_") and name not in FAILING
-    ],
+    [slow_if_long(name) for name in sorted(FILES) if name.startswith("test_") and name not in FAILING],
 )
 def test_an_example_passes(pytester: pytest.Pytester, folder: Path, name: str) -> None:
     if name in NEED_ROS and not HAS_ROS:
@@ -69,7 +69,7 @@ def test_an_example_passes(pytester: pytest.Pytester, folder: Path, name: str) -
 
 
 @pytest.mark.process
-@pytest.mark.parametrize("name", sorted(FAILING))
+@pytest.mark.parametrize("name", [slow_if_long(name) for name in sorted(FAILING)])
 def test_an_example_fails_as_the_page_says(pytester: pytest.Pytester, folder: Path, name: str) -> None:
     if name in NEED_ROS and not HAS_ROS:
         pytest.skip("needs ROS")
@@ -88,6 +88,7 @@ def test_without_ros_examples_that_need_it_are_skipped(pytester: pytest.Pytester
     result.assert_outcomes(passed=1, skipped=4)  # a file as a whole, and the tests of the three others
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_the_workflow_runs_what_there_is(pytester: pytest.Pytester, folder: Path) -> None:
     pytest.importorskip("xdist")

@@ -94,21 +94,24 @@ def test_without_ros_its_tests_are_skipped_with_a_reason_and_the_others_run(
     result.stdout.fnmatch_lines(["*ROS is not here: rclpy cannot be imported. Source a ROS 2 Jazzy installation*"])
 
 
-@pytest.mark.parametrize(
-    ("mark", "reported"),
-    [
-        ('playgruond="line"', "found 'playgruond', expected keywords playground, program, programs, seed, noise"),
-        ('"line"', "found 'line', expected keywords playground"),
-        ('playground="lien"', "no playground 'lien'*did you mean 'line'?"),
-        ('playground="two_robots"', "2 robots here: use the fixture classroom and classroom*name*"),
-        ('program="motor.left.target = "', "program: line 1, column 20: expected one of"),
-    ],
-)
-def test_an_invalid_mark_is_explained(pytester: pytest.Pytester, run: Run, mark: str, reported: str) -> None:
-    pytester.makepyfile(f"import pytest\n@pytest.mark.thymio({mark})\ndef test_it(thymio): pass")
+INVALID_MARKS = [
+    ('playgruond="line"', "found 'playgruond', expected keywords playground, program, programs, seed, noise"),
+    ('"line"', "found 'line', expected keywords playground"),
+    ('playground="lien"', "no playground 'lien'*did you mean 'line'?"),
+    ('playground="two_robots"', "2 robots here: use the fixture classroom and classroom*name*"),
+    ('program="motor.left.target = "', "program: line 1, column 20: expected one of"),
+]
+
+
+def test_an_invalid_mark_is_explained(pytester: pytest.Pytester, run: Run) -> None:
+    tests = (
+        f"@pytest.mark.thymio({mark})\ndef test_{number}(thymio): pass\n"
+        for number, (mark, _) in enumerate(INVALID_MARKS)
+    )
+    pytester.makepyfile("import pytest\n" + "".join(tests))
     result = run()
-    result.assert_outcomes(errors=1)
-    result.stdout.fnmatch_lines([f"*{reported}*"])
+    result.assert_outcomes(errors=len(INVALID_MARKS))
+    result.stdout.fnmatch_lines([f"*{reported}*" for _, reported in INVALID_MARKS])
 
 
 def test_an_error_in_a_program_is_shown_without_the_frames_of_the_compiler(pytester: pytest.Pytester, run: Run) -> None:
@@ -191,7 +194,7 @@ def test_a_project_with_ros_runs_in_parallel_without_crosstalk(pytester: pytest.
 
 
 @pytest.mark.skipif(not HAS_ROS, reason="needs ROS")
-@pytest.mark.parametrize("capture", ["sys", "tee-sys", "no"])
+@pytest.mark.parametrize("capture", ["sys", *(pytest.param(one, marks=pytest.mark.slow) for one in ("tee-sys", "no"))])
 def test_output_may_be_captured_in_every_way(pytester: pytest.Pytester, run: Run, capture: str) -> None:
     pytester.makepyfile("def test_it(ros): assert ros.context.ok()")
     run(f"--capture={capture}").assert_outcomes(passed=1)

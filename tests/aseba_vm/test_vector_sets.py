@@ -42,6 +42,7 @@ def run(folder):
     return ended.returncode, counts.get("passed", 0), counts.get("failed", 0)
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_any_part_of_a_set_is_run_plain_or_compressed(tmp_path):
     (tmp_path / "aseba-compile.jsonl").write_text("\n".join(lines("aseba-compile", 5)), "utf-8")
@@ -62,6 +63,7 @@ def test_a_wrong_answer_in_a_set_is_found_in_every_engine(tmp_path):
     assert (code, failed) == (1, len(AVAILABLE) + 1)
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_a_folder_without_vectors_is_refused(tmp_path):
     assert run(tmp_path)[0] != 0

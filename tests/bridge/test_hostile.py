@@ -54,7 +54,7 @@ def mutated(rng: random.Random) -> Iterator[str | bytes]:
         yield data.decode(errors="replace") if isinstance(frame, str) else bytes(data)
 
 
-@pytest.mark.parametrize("seed", [5, 6])
+@pytest.mark.parametrize("seed", [5, pytest.param(6, marks=pytest.mark.slow)])
 def test_mutated_frames_do_not_affect_the_server_and_other_clients(seed: int) -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client() as fuzzer, server.client() as other:

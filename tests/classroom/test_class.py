@@ -127,6 +127,7 @@ def test_a_suite_that_is_killed_starts_again_with_its_program_and_message(group:
     group.until("ada", lambda _one: notice(group, group.port_of(ADA), "Ada")[0] == "still there")
 
 
+@pytest.mark.slow
 def test_the_teacher_restarts_a_suite(group: RunningClass) -> None:
     port = group.port_of(BEN)
     before = suite_pid(port)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.device.behaviour_oracle import ARROWS, ORACLES, STOP, Investigator, Senses, Shown
+from tests.seeds import seeds
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behavior_host import built_in
 from thymio_sim_ros.device.device import AsebaDevice
@@ -126,7 +127,7 @@ def histories(seed: int) -> Iterator[Senses]:
         )
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", seeds(3))
 @pytest.mark.parametrize("behaviour", ORACLES)
 def test_a_behaviour_does_what_its_table_says(behaviour: str, seed: int) -> None:
     bench, oracle = Bench(behaviour), ORACLES[behaviour]()

@@ -5,13 +5,14 @@ from __future__ import annotations
 import pytest
 from rclpy.parameter import Parameter
 
+from tests.seeds import seeds
 from thymio_sim_ros.testing import followed_line, no_contact, slower_than
 
 NODE = "thymio_sim_ros.examples.line_follower"
 pytestmark = pytest.mark.thymio(playground="line")
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", seeds(2))
 def test_it_follows_the_line_for_a_lap(ros, simulation, seed):
     sim = simulation()
     ros.start(NODE)

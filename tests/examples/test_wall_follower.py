@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from tests.seeds import seeds
 from thymio_sim_ros.testing import no_contact, reached
 
 NODE = "thymio_sim_ros.examples.wall_follower"
@@ -18,7 +19,7 @@ def to_the_wall(pose):
     return WALL_M - max(abs(pose.x_m), abs(pose.y_m))
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", seeds(2))
 def test_it_drives_around_with_the_walls_on_its_right_and_touches_nothing(ros, simulation, seed):
     sim = simulation(playground="base", seed=seed)
     ros.start(NODE)

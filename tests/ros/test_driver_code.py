@@ -29,7 +29,7 @@ WALL_M, NOSE_M = 0.45, 0.08
 BOTH_WAYS = pytest.mark.parametrize("out_of_range", ["rep117", "driver"])
 
 
-@BOTH_WAYS
+@pytest.mark.parametrize("out_of_range", [pytest.param("rep117", marks=pytest.mark.slow), "driver"])
 def test_a_square_is_driven_by_odometry(ros, simulation, out_of_range):
     sim = simulation(playground="borderless", out_of_range=out_of_range)
     lights = ros.collect(Float32MultiArray, "/_led/state")

@@ -139,6 +139,7 @@ def test_two_suites_in_one_domain_do_not_meet(ros, suite):
     assert get_variables(ros, "heard", robot="/lab2") == [[0]]
 
 
+@pytest.mark.slow
 def test_several_robots_move_with_their_simulator(ros, suite):
     suite("/robot1", playground="two_robots")
     ros.until(lambda: ros.node.count_publishers("/robot1/blue/_aseba/status"), PATIENCE_S, what="the runtime's robots")

@@ -54,7 +54,7 @@ def is_free(port: int) -> bool:
         return probe.connect_ex(("127.0.0.1", port)) != 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
 def test_the_whole_suite_runs_and_ends(ros, process, number):
     port, foxglove_port = free_port(), free_port()
     ports = ("--port", str(port), "--foxglove-port", str(foxglove_port))
@@ -84,6 +84,7 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     assert left_behind(used) == set()
 
 
+@pytest.mark.slow
 def test_two_interrupts_at_once_end_it_cleanly(ros, process):
     suite = process("thymio_sim_ros.cli.main", "--headless")
     odometry: list[Odometry] = []
@@ -150,10 +151,10 @@ def test_each_executable_ends_with_0(ros, process, module, name):
     ("module", "parameter", "reported"),
     [
         ("simulator.node", "playground:=nowhere", "nowhere"),
-        ("simulator.node", "real_time_factor:=5000.0", "real_time_factor"),
-        ("web.node", "port:=99999", "port"),
+        pytest.param("simulator.node", "real_time_factor:=5000.0", "real_time_factor", marks=pytest.mark.slow),
+        pytest.param("web.node", "port:=99999", "port", marks=pytest.mark.slow),
         ("web.node", "port:=http", "port"),
-        ("foxglove.node", "port:=-1", "port"),
+        pytest.param("foxglove.node", "port:=-1", "port", marks=pytest.mark.slow),
     ],
 )
 def test_a_bad_parameter_is_one_line_and_exit_code_2(process, module, parameter, reported):

@@ -86,7 +86,7 @@ def test_a_run_with_a_program_is_replayed_without_it(tmp_path: Path) -> None:
     assert replay(path).differs is None
 
 
-@pytest.mark.parametrize("recorded", ["plain", "compiled"])
+@pytest.mark.parametrize("recorded", [pytest.param("plain", marks=pytest.mark.slow), "compiled"])
 def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: str
 ) -> None:

@@ -42,6 +42,7 @@ def written(folder: Path, sweep: Sweep, rows: dict[int, list[Row]]) -> bytes:
     return path.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_changes_nothing(tmp_path: Path, sweep: Sweep, rows: dict[int, list[Row]]) -> None:
     function = partial(run_and_kill_once, tmp_path / "mark", sweep, 5)
     found = [one for outcomes in engine.run_all(function, range(len(sweep)), workers=2) for one in outcomes]

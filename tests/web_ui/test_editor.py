@@ -297,6 +297,7 @@ def test_common_names_come_first_in_completion_and_help(editor):
     playwright.expect(editor.locator(".reference .entry-help button").first).to_have_text("motor.left.target")
 
 
+@pytest.mark.slow
 def test_each_of_two_robots_has_its_program(world, page):
     open_page(page, world("two_robots"))
     open_editor(page)
@@ -337,6 +338,7 @@ def text_of(page):
     return page.locator(".cm-content .cm-line").all_inner_texts()
 
 
+@pytest.mark.slow
 def test_a_mistake_is_explained_and_corrected_by_its_button(editor):
     for source, words, repaired in MISTAKES:
         write(editor, source)

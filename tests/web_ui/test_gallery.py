@@ -76,6 +76,7 @@ def test_one_is_chosen_by_keys_in_another_language(world, page):
     playwright.expect(page.locator("[data-playground=maze]")).to_have_attribute("aria-current", "true")
 
 
+@pytest.mark.slow
 def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brought_back(world, page):
     open_gallery(page, world("base"))
     own = page.locator("section.own")

@@ -137,6 +137,7 @@ def test_floor_and_robot_are_seen_at_rest_at_every_level(driving):
     assert driving.evaluate("window.emptyFrames") == 0
 
 
+@pytest.mark.slow
 def test_floor_and_robot_are_seen_after_whatever_hides_or_changes_the_view(driving):
     page = driving
     pause(page, True)

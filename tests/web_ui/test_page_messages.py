@@ -63,6 +63,7 @@ def test_the_tab_does_not_show_the_error_of_another_attempt(at_rest, page, tmp_p
     playwright.expect(fault).to_be_hidden()
 
 
+@pytest.mark.slow
 def test_success_notices_disappear_and_errors_stay_until_closed(world, page, tmp_path):
     program, unknown = tmp_path / "good.aesl", tmp_path / "song.mp3"
     program.write_text("var a = 1\n")

@@ -36,6 +36,7 @@ def of(namespace):
     return ("--ros-args", "-r", f"__ns:={namespace}", "-r", f"/clock:={namespace}/clock")
 
 
+@pytest.mark.slow
 def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp_path):
     program = tmp_path / "switch.aesl"
     program.write_text(SWITCH)

@@ -21,6 +21,7 @@ def of(namespace):
     return ("--ros-args", "-r", f"__ns:={namespace}", "-r", f"/clock:={namespace}/clock")
 
 
+@pytest.mark.slow
 def test_a_real_robot_is_driven_and_its_time_is_left_alone(suite, page, other_page, tmp_path):
     program = tmp_path / "drive.aesl"
     program.write_text(DRIVE)

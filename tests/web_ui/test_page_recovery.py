@@ -24,6 +24,7 @@ pytestmark = MARKS
 PAUSED = "() => window.thymio.state().simulator?.paused === true"
 
 
+@pytest.mark.slow
 def test_the_page_reconnects_to_a_restarted_simulator_and_discards_old_state(suite, page):
     ports = (free_port(), free_port())
     open_page(page, suite("--playground", "two_robots", "--program", "none", ports=ports))

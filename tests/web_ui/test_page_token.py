@@ -20,6 +20,7 @@ def connection(page, address, state):
     page.wait_for_function("(state) => window.thymio?.state().connection === state", arg=state)
 
 
+@pytest.mark.slow
 def test_the_token_in_the_address_gives_control_and_survives_a_reload(suite, page):
     address = suite(*TOKENS)
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))

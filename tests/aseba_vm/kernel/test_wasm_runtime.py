@@ -86,6 +86,7 @@ def test_a_broken_package_is_reported_once_and_programs_run(broken):
     check_reported_once(stderr)
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_a_broken_package_is_reported_once_and_crowds_move_the_same(broken, poses):
     stdout, stderr = run(BATCH_SCRIPT, path=broken)
@@ -107,6 +108,7 @@ def test_memories_take_no_more_address_space_than_their_size(poses):
     assert run(BATCH_SCRIPT, address_space=ENOUGH) == (poses, ["True"])
 
 
+@pytest.mark.slow
 @pytest.mark.process
 @pytest.mark.skipif(not is_usable(), reason="wasmtime is not installed")
 def test_where_memory_is_short_everything_works_without(poses):

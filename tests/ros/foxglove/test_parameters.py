@@ -229,6 +229,7 @@ def test_a_watched_node_that_starts_later_gets_requests_then(ros, bridge):
         assert studio.next(ms.ParameterValues).parameters == (ms.Parameter("/later.now", 7),)
 
 
+@pytest.mark.slow
 def test_2000_requests_at_once_are_set_or_rejected_and_others_are_served(ros, bridge, peer):
     port = bridge().port
     with Studio(port, ros.until) as busy, Studio(port, ros.until) as other:

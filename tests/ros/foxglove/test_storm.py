@@ -6,6 +6,7 @@ import gc
 import random
 from collections import Counter
 
+import pytest
 from geometry_msgs.msg import Twist, Vector3
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -56,6 +57,7 @@ def test_many_damaged_frames_do_not_affect_other_clients(ros, bridge, peer):
         other.next(ms.MessageData, lambda data: deserialize_message(data.payload, Twist).linear.x == 0.25)
 
 
+@pytest.mark.slow
 def test_500_clients_that_come_and_go_leave_nothing_of_ros_behind(ros, bridge):
     publisher = ros.node.create_publisher(String, "/chat", 10)
     port = bridge().port

@@ -336,8 +336,8 @@ def ended_by_interrupt(kinds: str) -> tuple[int, list[str], str]:
     [
         ("python", "python_0", []),
         ("c", "c_0", []),
-        (",python,", "python_1", ["well_2 ended", "well_0 ended"]),
-        (",c", "c_1", ["well_0 ended"]),
+        pytest.param(",python,", "python_1", ["well_2 ended", "well_0 ended"], marks=pytest.mark.slow),
+        pytest.param(",c", "c_1", ["well_0 ended"], marks=pytest.mark.slow),
     ],
 )
 def test_a_stuck_thread_is_reported_and_does_not_keep_the_process(ros_domain, kinds, stuck, ended):
@@ -348,6 +348,7 @@ def test_a_stuck_thread_is_reported_and_does_not_keep_the_process(ros_domain, ki
     assert "in run_once" in err
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_an_interrupt_while_a_node_is_built_ends_those_that_run(ros_domain):
     code, out, err = ended_by_interrupt(",slow")

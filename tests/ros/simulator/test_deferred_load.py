@@ -113,6 +113,16 @@ def test_one_request_sets_one_value(ros, loading, send):
     assert loading.threads == []
 
 
+def test_the_thread_ends_with_the_node(ros, loading, send):
+    loading.gate.set()
+    ros.until(send(("map", "hall")).done)
+    (thread,) = loading.threads
+    assert thread.is_alive()
+    loading.loader.close()
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
+
+
 def test_the_node_itself_loads_at_once(loading):
     loading.gate.set()
     assert loading.node.set_parameters([Parameter("map", value="hall")])[0].successful

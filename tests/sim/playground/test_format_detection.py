@@ -200,11 +200,15 @@ HUGE = {
     "nested XML": """"<a>" * 6_000_000""",
     "elements of XML": """"<a>" + "<b/>" * 5_000_000""",
 }
+LANDING = ("text", "nested lists", "numbers", "attribute of XML", "nested XML")
+"""One of each kind of fault, for `make test`."""
 
 
 @pytest.mark.process
 @pytest.mark.skipif(sys.platform == "win32", reason="measures memory as POSIX does")
-@pytest.mark.parametrize("kind", HUGE)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=() if kind in LANDING else pytest.mark.slow) for kind in HUGE]
+)
 def test_a_huge_text_is_refused_at_little_cost(kind: str) -> None:
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
     code = MEMORY.format(text=HUGE[kind])

@@ -44,7 +44,7 @@ class DeferredLoad(Generic[T]):
     def __init__(self, node: Node, parameter: str, load: Callable[[str], T]) -> None:
         """`load` is also called on another thread; it must not change state of the node's thread."""
         self._parameter, self._load = parameter, load
-        self._queue: SimpleQueue[_Request[T]] = SimpleQueue()
+        self._queue: SimpleQueue[_Request[T] | None] = SimpleQueue()
         self._thread: threading.Thread | None = None
         self._mailbox: Mailbox[_Request[T]] = Mailbox(node, self._finish)
         self._waiting = 0
@@ -68,6 +68,7 @@ class DeferredLoad(Generic[T]):
     def close(self) -> None:
         """Stop loading and answering; a value that is being loaded is dropped."""
         self._is_closed = True
+        self._queue.put(None)  # ends the thread
         self._mailbox.close()
 
     def _defer(self, service: Service) -> None:
@@ -107,8 +108,7 @@ class DeferredLoad(Generic[T]):
             self._thread.start()
 
     def _run(self) -> None:
-        while not self._is_closed:
-            waiting = self._queue.get()
+        while (waiting := self._queue.get()) is not None and not self._is_closed:
             try:
                 waiting.loaded = self._load(waiting.value)
             except Exception as error:
