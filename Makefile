@@ -120,7 +120,7 @@ $(VENV)/.ready-test: pyproject.toml $(VENV)/.created | web
 
 $(VENV)/.ready-lint: pyproject.toml $(VENV)/.created | web
 	@$(PIP) install --editable '.$(subst ],$(comma)lint],$(EXTRAS_TEST))'
-	@touch $@
+	@touch $@ $(VENV)/.ready-test $(VENV)/.ready-run
 comma := ,
 
 $(VENV)/.ready-docs: pyproject.toml $(VENV)/.created
