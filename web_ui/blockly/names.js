@@ -1,12 +1,14 @@
 // Names of variables and subroutines in Aseba: any name of a workspace becomes one that the compiler accepts.
 
+import ROBOT_VARIABLES from "./robot_variables.texts.js";
+
 const KEYWORDS =
   "when emit _emit for in step while do if then else elseif end " +
   "var const call sub callsub onevent abs return or and not";
 const ROBOT = "event button buttons prox motor acc temperature rc5 mic timer math sound leds sd";
 
 /** Words that the language or the robot uses. */
-export const RESERVED = new Set(`${KEYWORDS} ${ROBOT}`.split(" "));
+export const RESERVED = new Set([...`${KEYWORDS} ${ROBOT}`.split(" "), ...ROBOT_VARIABLES]);
 
 /**
  * The characters that Aseba allows: blanks become underscores, letters of Western Europe and dots stay.
