@@ -1,13 +1,15 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { newAesl, readAesl } from "../../web_ui/editor/aesl.js";
+import { BLOCKS } from "../../web_ui/blockly/blocks/index.js";
 import { difference } from "../../web_ui/blockly/compare.js";
 import { newFile, readFile, withoutBlocks, writeFile } from "../../web_ui/blockly/file.js";
 import { generate } from "../../web_ui/blockly/generator.js";
 import { emptyState, sameWorkspace } from "../../web_ui/blockly/state.js";
 import { writeWorkspace } from "../../web_ui/blockly/write_workspace.js";
-import { PROGRAMS, golden, stateOf } from "./blockly_support.js";
+import { FOLDER, PROGRAMS, golden, stateOf } from "./blockly_support.js";
 
 const XHTML = ' xmlns="http://www.w3.org/1999/xhtml"';
 
@@ -173,6 +175,42 @@ for (const name of PROGRAMS) {
     assert.equal(`${writeWorkspace(state)}\n`, golden(`${name}.xml`));
   });
 }
+
+const ORIGINAL = JSON.parse(readFileSync(new URL("../original_blocks.json", FOLDER), "utf8"));
+
+for (const [type, expected] of Object.entries(ORIGINAL)) {
+  test(`${type} has the names, options and defaults that the original program writes`, () => {
+    const args = BLOCKS.get(type)?.args ?? [];
+    const found = args.map(({ kind, name, options, shadow, initial }) => {
+      if (kind === "choice") return [name, { options: options?.map(([, value]) => value), initial }];
+      return [name, kind === "value" ? (shadow ?? null) : kind === "body" ? kind : initial];
+    });
+    assert.deepEqual(Object.fromEntries(found), expected);
+  });
+}
+
+test("the operand of an operator with one side is VALUE, and A in files of earlier versions", () => {
+  const block = (/** @type {string} */ name) =>
+    `<xml><block type="thymio_variable_set"><field name="VAR">v</field><value name="VALUE"><block type="thymio_unary">
+    <field name="OP">abs</field><value name="${name}"><block type="thymio_unary"><field name="OP">~</field>
+    <value name="${name}"><block type="math_number"><field name="NUM">5</field></block></value></block></value></block></value></block></xml>`;
+  for (const name of ["VALUE", "A"]) {
+    const state = stateOf(block(name));
+    assert.equal(generate(state).code, "var v\n\n\nv = abs ~5\n");
+    assert.equal(writeWorkspace(state).match(/name="VALUE"/g)?.length, 3);
+    assert.doesNotMatch(writeWorkspace(state), /name="A"/);
+  }
+});
+
+test("inputs and fields of Scratch blocks have their former names in files of earlier versions", () => {
+  const older = `<xml><block type="thymio_setOdomoter"><value name="D"><block type="math_number"><field name="NUM">1</field></block></value>
+    <value name="X"><block type="math_number"><field name="NUM">2</field></block></value>
+    <value name="Y"><block type="math_number"><field name="NUM">3</field></block></value>
+    <next><block type="thymio_nextDial"><field name="D">right</field></block></next></block></xml>`;
+  const { code } = generate(stateOf(older));
+  for (const line of ["odo.direction = 1", "odo.x = 2", "odo.y = 3", "dial.number = dial.number + 1"])
+    assert.ok(code.includes(line), line);
+});
 
 test("flags, comments, data and comments of the workspace are kept", () => {
   const inside = `  <comment x="1" y="2" h="30" w="40">Note &amp; more</comment>

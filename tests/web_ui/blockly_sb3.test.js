@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { newFile, readFile } from "../../web_ui/blockly/file.js";
 import { generate } from "../../web_ui/blockly/generator.js";
 import { importProject, importSb3 } from "../../web_ui/scratch/import_sb3.js";
 import { ZipError, readZip } from "../../web_ui/scratch/zip.js";
@@ -119,6 +120,57 @@ test("conditions, loops, operators and variables are imported", () => {
   assert.match(code, /move\.steps = 50\n/);
   assert.match(code, /rounds = rounds \+ step/);
   assert.deepEqual(leftOut, [{ key: "leftOutInitial", values: { name: "step", text: "2", count: 1 } }]);
+});
+
+test("inputs of blocks are found by name, in any order", () => {
+  const { code, problems, leftOut } = imported({
+    hat: { ...FLAG },
+    a: { opcode: "thymio_arc", next: "b", inputs: { A: [1, [4, "90"]], R: [1, [4, "200"]] }, fields: {} },
+    b: {
+      opcode: "thymio_setOdomoter",
+      next: "c",
+      inputs: { P: [1, [4, "3"]], O: [1, [4, "2"]], N: [1, [4, "1"]] },
+      fields: {},
+    },
+    c: { opcode: "thymio_nextDial", next: "d", inputs: {}, fields: { L: ["right", null] } },
+    d: { opcode: "thymio_setLeds", next: null, inputs: { C: [1, [4, "66"]], L: [1, "m"] }, fields: {} },
+    m: menu("light", "bottom-left"),
+  });
+  assert.deepEqual([problems, leftOut], [[], []]);
+  for (const line of [
+    "call math.max(move.longest, abs 200, 100)",
+    "call math.muldiv(move.left, move.longest + 45, 90 * 10, 573)",
+    "odo.direction = 1",
+    "odo.x = 2",
+    "odo.y = 3",
+    "dial.number = dial.number + 1",
+    "color.number[1] = 66",
+    "color.lights = 2",
+  ])
+    assert.ok(code.includes(`${line}\n`), line);
+});
+
+test("a button is a condition, and the imported program can be shown", async () => {
+  const blocks = {
+    hat: { ...FLAG },
+    a: { opcode: "control_if", next: null, inputs: { CONDITION: [2, "b"], SUBSTACK: [2, "s"] }, fields: {} },
+    b: { opcode: "thymio_valButton", inputs: { B: [1, "m"] }, fields: {} },
+    m: menu("buttons", "back"),
+    s: { opcode: "thymio_stopMotors", next: null, inputs: {}, fields: {} },
+  };
+  const { state, code } = imported(blocks);
+  assert.match(code, /button\.backward != 0/);
+  assert.deepEqual(readFile(newFile(state, code)).problems, []);
+});
+
+test("a report of all sensors at once is listed", () => {
+  const value = { VALUE: [3, "p", [10, "0"]] };
+  const { leftOut } = imported({
+    hat: { ...FLAG },
+    a: { opcode: "data_setvariableto", next: null, inputs: value, fields: { VARIABLE: ["v", "id"] } },
+    p: { opcode: "thymio_proxHorizontal", inputs: {}, fields: {} },
+  });
+  assert.deepEqual(leftOut, [{ key: "leftOutBlock", values: { opcode: "thymio_proxHorizontal", count: 1 } }]);
 });
 
 test("what the robot cannot do is listed with how often it occurs", () => {

@@ -79,3 +79,13 @@ def test_an_arc_goes_clockwise_and_the_odometer_follows() -> None:
     # the same in Scratch, where direction 90 is along x and angles are clockwise
     assert math.remainder(direction - 180, 360) == pytest.approx(0, abs=8)
     assert (x_mm, y_mm) == pytest.approx((150, -100), abs=20)
+
+
+def test_each_color_light_has_a_place_on_the_color_wheel() -> None:
+    runner = runner_of("scratch_colors")
+    runner.run(0.5)
+    variables = runner.devices["thymio"].variables
+    # 0 is red, 33 yellow, 99 cyan: the left light went from 66 to 99, the right one from 0 to 33
+    assert variables.get("leds.top") == (32, 0, 0)
+    assert variables.get("leds.bottom.left") == (0, 32, 32)
+    assert variables.get("leds.bottom.right") == (32, 32, 0)

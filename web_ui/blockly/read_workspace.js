@@ -66,6 +66,11 @@ function argOf({ type }, name) {
   return BLOCKS.get(type)?.args.find((arg) => arg.name === known && ["value", "body"].includes(arg.kind));
 }
 
+/** The name that a block has today for an argument of a file. @param {BlockState} block @param {string} found */
+function currentName({ type }, found) {
+  return BLOCKS.get(type)?.args.find(({ former }) => former === found)?.name ?? found;
+}
+
 /** @param {string | undefined} value @returns {number | undefined} */
 const numberOf = (value) => (value === undefined || !Number.isFinite(Number(value)) ? undefined : Number(value));
 
@@ -126,7 +131,7 @@ class Reader {
 
   /** @param {Element} child @param {BlockState} block */
   #readChild(child, block) {
-    const { name = "" } = child.attributes;
+    const name = currentName(block, child.attributes.name ?? "");
     switch (child.name) {
       case "field":
       case "title": // of the oldest files

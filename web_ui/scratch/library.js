@@ -14,6 +14,8 @@
 export const HALF_TRACK = 45;
 /** Colors on the wheel of `setLeds`: 33 between two of red, yellow, green, cyan, blue and magenta. */
 export const COLORS = 198;
+/** The color lights, in the order of the bits of color.lights. */
+export const COLOR_LIGHTS = ["leds.top", "leds.bottom.left", "leds.bottom.right"];
 
 /** @type {Record<string, Part>} */
 export const LIBRARY = {
@@ -72,21 +74,31 @@ export const LIBRARY = {
       "\todo.rest[2] = odo.rest[2] % 640",
     ],
   },
-  // Shows color.number, a place on the wheel, on all color lights.
+  // Shows color.number, for each color light a place on the wheel, on the lights of the bits of color.lights: 1 top,
+  // 2 bottom left, 4 bottom right.
   "color.show": {
-    variables: { "color.number": 0, "color.part": 0, "color.rgb": 3 },
+    variables: { "color.number": 3, "color.lights": 0, "color.light": 0, "color.part": 0, "color.rgb": 3 },
     subroutine: [
       "sub color.show",
-      `\tcolor.number = (color.number % ${COLORS} + ${COLORS}) % ${COLORS}`,
-      "\tcolor.part = 0",
-      "\twhile color.part < 3 do",
-      "\t\tcolor.rgb[color.part] = abs((color.number + 198 - color.part * 66) % 198 - 99) - 33",
-      "\t\tcolor.part = color.part + 1",
+      "\tcolor.light = 0",
+      "\twhile color.lights != 0 do",
+      `\t\tcolor.number[color.light] = (color.number[color.light] % ${COLORS} + ${COLORS}) % ${COLORS}`,
+      "\t\tcolor.part = 0",
+      "\t\twhile color.part < 3 do",
+      "\t\t\tcolor.rgb[color.part] = abs((color.number[color.light] + 198 - color.part * 66) % 198 - 99) - 33",
+      "\t\t\tcolor.part = color.part + 1",
+      "\t\tend",
+      "\t\tcall math.clamp(color.rgb, color.rgb, [0, 0, 0], [32, 32, 32])",
+      "\t\tif color.lights & 1 != 0 then",
+      ...COLOR_LIGHTS.flatMap((native, index) => [
+        `\t\t\t${index === 0 ? "if" : "elseif"} color.light == ${index} then`,
+        `\t\t\t\tcall ${native}(color.rgb[0],color.rgb[1],color.rgb[2])`,
+      ]),
+      "\t\t\tend",
+      "\t\tend",
+      "\t\tcolor.lights = color.lights >> 1",
+      "\t\tcolor.light = color.light + 1",
       "\tend",
-      "\tcall math.clamp(color.rgb, color.rgb, [0, 0, 0], [32, 32, 32])",
-      "\tcall leds.top(color.rgb[0],color.rgb[1],color.rgb[2])",
-      "\tcall leds.bottom.left(color.rgb[0],color.rgb[1],color.rgb[2])",
-      "\tcall leds.bottom.right(color.rgb[0],color.rgb[1],color.rgb[2])",
     ],
   },
   // Shows one light of the circle, number dial.

@@ -61,7 +61,7 @@ export const OPERATORS = {
   }),
   operator_mathop: (converter, { inputs = {}, fields = {} }) => {
     if (fields.OPERATOR?.[0] !== "abs") return null;
-    return { type: "thymio_unary", fields: { OP: "abs" }, inputs: filled({ A: converter.socket(inputs.NUM) }) };
+    return { type: "thymio_unary", fields: { OP: "abs" }, inputs: filled({ VALUE: converter.socket(inputs.NUM) }) };
   },
   control_if: (converter, { inputs = {} }) => ({
     type: "controls_if",
@@ -79,6 +79,9 @@ export const OPERATORS = {
       ELSE: { block: converter.chain(inputs.SUBSTACK2?.[1])[0] },
     }),
   }),
+  // all sensors at once, as one text
+  thymio_proxHorizontal: () => null,
+  thymio_proxGroundDelta: () => null,
   data_variable: (converter, { fields = {} }) => ({
     type: "variables_get",
     fields: { VAR: converter.variable(fields.VARIABLE) },

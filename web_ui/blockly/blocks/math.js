@@ -1,7 +1,7 @@
 // Numbers and what is computed from them.
 
 import { ABS, ADD, ATOM, BIT_AND, BIT_NOT, BIT_OR, BIT_XOR, MULTIPLY, SHIFT, UNARY } from "../precedence.js";
-import { choice, number, numberValue } from "./spec.js";
+import { choice, number, numberValue, renamed } from "./spec.js";
 
 /** @typedef {import("./spec.js").BlockSpec} BlockSpec */
 /** @typedef {import("./spec.js").Option} Option */
@@ -72,26 +72,26 @@ export const MATH = [
     type: "thymio_arithmetic",
     shape: "Number",
     style: "math_blocks",
-    args: [number("A", 0), choice("OP", "arithmetic", ARITHMETIC), number("B", 0)],
+    args: [number("A", 1), choice("OP", "arithmetic", ARITHMETIC), number("B", 1)],
     value: binary,
   },
   {
     type: "thymio_unary",
     shape: "Number",
     style: "math_blocks",
-    args: [choice("OP", "unary", UNARY_OPTIONS), number("A", 0)],
+    args: [choice("OP", "unary", UNARY_OPTIONS), renamed("A", number("VALUE", 0))],
     value(g, block) {
       const operator = g.field(block, "OP");
-      if (operator === "abs") return numberValue(`abs ${g.number(block, "A", ABS)}`, ABS);
+      if (operator === "abs") return numberValue(`abs ${g.number(block, "VALUE", ABS)}`, ABS);
       const order = operator === "~" ? BIT_NOT : UNARY;
-      return numberValue(`${operator}${g.number(block, "A", order)}`, order);
+      return numberValue(`${operator}${g.number(block, "VALUE", order)}`, order);
     },
   },
   {
     type: "thymio_binary",
     shape: "Number",
     style: "math_blocks",
-    args: [number("A", 0), choice("OP", "binary", BINARY), number("B", 0)],
+    args: [number("A", 1), choice("OP", "binary", BINARY), number("B", 1)],
     value: binary,
   },
   {

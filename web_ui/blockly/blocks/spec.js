@@ -23,6 +23,7 @@ import { ATOM } from "../precedence.js";
  * @property {"Number" | "Boolean" | null} [check]  value: what may be plugged in, null for anything
  * @property {number} [shadow]                value: what a new block has in it
  * @property {boolean} [fractions]            value: whether a number written in it may have a fraction
+ * @property {string} [former]                the name in files of earlier versions of this project, which is read
  */
 /** @typedef {readonly [word: string, value: string]} Option  the word names its text, the value is in files */
 /**
@@ -42,8 +43,14 @@ import { ATOM } from "../precedence.js";
  * @property {(runner: ScriptRunner, block: BlockState, start: Line[]) => void} [trigger]  a hat that starts a script
  */
 
-/** @param {string} name @param {string} set @param {readonly Option[]} options @returns {Arg} */
-export const choice = (name, set, options) => ({ kind: "choice", name, set, options, initial: options[0][1] });
+/**
+ * @param {string} name
+ * @param {string} set
+ * @param {readonly Option[]} options
+ * @param {string} [initial]
+ * @returns {Arg}
+ */
+export const choice = (name, set, options, initial = options[0][1]) => ({ kind: "choice", name, set, options, initial });
 
 /** @param {string} name @param {string} initial @returns {Arg} */
 export const variable = (name, initial) => ({ kind: "variable", name, initial });
@@ -62,6 +69,9 @@ export const number = (name, shadow) => ({ kind: "value", name, check: "Number",
 
 /** @param {string} name @param {number} [shadow] @returns {Arg} */
 export const seconds = (name, shadow) => ({ ...number(name, shadow), fractions: true });
+
+/** An argument that files of earlier versions call otherwise. @param {string} former @param {Arg} arg @returns {Arg} */
+export const renamed = (former, arg) => ({ ...arg, former });
 
 /** @param {string} name @returns {Arg} */
 export const condition = (name) => ({ kind: "value", name, check: "Boolean" });

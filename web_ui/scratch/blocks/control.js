@@ -97,6 +97,7 @@ export const CONTROL = [
         "S",
         "side",
         Object.keys(PARTS).map((side) => [side, side]),
+        "front",
       ),
       choice("N", "distance", [
         ["near", "near"],

@@ -2,7 +2,8 @@
 
 import { ADD, UNARY } from "../../blockly/precedence.js";
 import { SYSTEM_SOUNDS } from "../../blockly/blocks/actuators.js";
-import { call, choice, number, seconds } from "../../blockly/blocks/spec.js";
+import { call, choice, number, renamed, seconds } from "../../blockly/blocks/spec.js";
+import { COLOR_LIGHTS } from "../library.js";
 
 /** @typedef {import("../../blockly/blocks/spec.js").BlockSpec} BlockSpec */
 /** @typedef {import("../../blockly/blocks/spec.js").Arg} Arg */
@@ -13,21 +14,21 @@ const light = (type, args, statement) => ({ type, shape: "statement", style: "lo
 /** @param {string} type @param {Arg[]} args @param {BlockSpec["statement"]} statement @returns {BlockSpec} */
 const sound = (type, args, statement) => ({ type, shape: "statement", style: "sound_blocks", args, statement });
 
-/** @param {string} type @param {string} native @param {readonly string[]} inputs */
-const native = (type, native, inputs) =>
-  light(
-    type,
-    inputs.map((name) => number(name, 32)),
-    (g, block) => [
-      g.line(
-        block,
-        call(
-          native,
-          inputs.map((input) => g.number(block, input)),
-        ),
-      ),
-    ],
-  );
+/**
+ * A native function whose arguments are the inputs A, B, ….
+ *
+ * @param {string} type
+ * @param {string} native
+ * @param {readonly number[]} initial
+ */
+function native(type, native, initial) {
+  const inputs = initial.map((_, index) => String.fromCharCode(65 + index));
+  const args = inputs.map((name, index) => number(name, initial[index]));
+  return light(type, args, (g, block) => {
+    const values = inputs.map((input) => g.number(block, input));
+    return [g.line(block, call(native, values))];
+  });
+}
 
 /** @param {string} type @param {string} native @param {number} initial */
 const sample = (type, native, initial) =>
@@ -35,7 +36,7 @@ const sample = (type, native, initial) =>
 
 /** Menu of the color lights → functions. @type {Record<string, readonly string[]>} */
 const RGB = {
-  all: ["leds.top", "leds.bottom.left", "leds.bottom.right"],
+  all: COLOR_LIGHTS,
   top: ["leds.top"],
   bottom: ["leds.bottom.left", "leds.bottom.right"],
   "bottom-left": ["leds.bottom.left"],
@@ -56,23 +57,37 @@ const ALL = [
   ["leds.sound", 1],
 ];
 
-/** @param {number} count */
-const letters = (count) => Array.from({ length: count }, (_, index) => String.fromCharCode(65 + index));
+const GROUP = choice(
+  "L",
+  "rgb",
+  Object.keys(RGB).map((value) => [value.replace("-", "_"), value]),
+);
+
+/**
+ * A light whose color is a place on the color wheel; each color light has a place of its own.
+ *
+ * @param {string} type
+ * @param {number} initial
+ * @param {(place: string, value: string) => string} statement  sets the place of one light
+ * @param {number} [outer]  the operator around the value
+ */
+const colored = (type, initial, statement, outer) =>
+  light(type, [GROUP, number("C", initial)], (g, block) => {
+    g.scripts.use("color.show");
+    const lights = RGB[g.field(block, "L")].map((name) => COLOR_LIGHTS.indexOf(name));
+    const value = g.number(block, "C", outer);
+    return [
+      ...lights.map((index) => g.line(block, statement(`color.number[${index}]`, value))),
+      g.line(block, `color.lights = ${lights.reduce((mask, index) => mask | (1 << index), 0)}`),
+      g.line(block, "callsub color.show"),
+    ];
+  });
 
 /** @type {readonly BlockSpec[]} */
 export const LIGHTS = [
   light(
     "thymio_leds",
-    [
-      choice(
-        "L",
-        "rgb",
-        Object.keys(RGB).map((value) => [value.replace("-", "_"), value]),
-      ),
-      number("R", 32),
-      number("G", 0),
-      number("B", 0),
-    ],
+    [GROUP, number("R", 32), number("G", 0), number("B", 0)],
     (g, block) =>
       RGB[g.field(block, "L")].map((name) =>
         g.line(
@@ -84,40 +99,36 @@ export const LIGHTS = [
         ),
       ),
   ),
-  light("thymio_setLeds", [number("C", 0)], (g, block) => {
-    g.scripts.use("color.show");
-    return [g.line(block, `color.number = ${g.number(block, "C")}`), g.line(block, "callsub color.show")];
-  }),
-  light("thymio_changeLeds", [number("C", 33)], (g, block) => {
-    g.scripts.use("color.show");
-    const change = `color.number = color.number + ${g.number(block, "C", ADD)}`;
-    return [g.line(block, change), g.line(block, "callsub color.show")];
-  }),
+  colored("thymio_setLeds", 0, (place, value) => `${place} = ${value}`),
+  colored("thymio_changeLeds", 33, (place, value) => `${place} = ${place} + ${value}`, ADD),
   light("thymio_clearLeds", [], (g, block) =>
     ALL.map(([name, count]) => g.line(block, call(name, Array(count).fill("0")))),
   ),
   light(
     "thymio_nextDial",
     [
-      choice("D", "direction", [
-        ["left", "left"],
-        ["right", "right"],
-      ]),
+      renamed(
+        "D",
+        choice("L", "direction", [
+          ["left", "left"],
+          ["right", "right"],
+        ]),
+      ),
     ],
     (g, block) => {
       g.scripts.use("dial.show");
-      const sign = g.field(block, "D") === "left" ? "-" : "+";
+      const sign = g.field(block, "L") === "left" ? "-" : "+";
       return [g.line(block, `dial.number = dial.number ${sign} 1`), g.line(block, "callsub dial.show")];
     },
   ),
-  native("thymio_ledsCircle", "leds.circle", letters(8)),
-  native("thymio_ledsProxH", "leds.prox.h", letters(8)),
-  native("thymio_ledsProxV", "leds.prox.v", letters(2)),
-  native("thymio_ledsButtons", "leds.buttons", letters(4)),
-  native("thymio_ledsTemperature", "leds.temperature", letters(2)),
-  native("thymio_ledsRc", "leds.rc", letters(1)),
-  native("thymio_ledsSound", "leds.sound", letters(1)),
-  sound("thymio_soundSystem", [choice("S", "system_sound", SYSTEM_SOUNDS)], (g, block) => [
+  native("thymio_ledsCircle", "leds.circle", [0, 8, 16, 32, 0, 8, 16, 32]),
+  native("thymio_ledsProxH", "leds.prox.h", [0, 8, 16, 32, 0, 8, 16, 32]),
+  native("thymio_ledsProxV", "leds.prox.v", [32, 32]),
+  native("thymio_ledsButtons", "leds.buttons", [16, 32, 16, 32]),
+  native("thymio_ledsTemperature", "leds.temperature", [32, 8]),
+  native("thymio_ledsRc", "leds.rc", [16]),
+  native("thymio_ledsSound", "leds.sound", [32]),
+  sound("thymio_soundSystem", [choice("S", "system_sound", SYSTEM_SOUNDS, "1")], (g, block) => [
     g.line(block, `call sound.system(${g.field(block, "S")})`),
   ]),
   // seconds become sixtieths of a second

@@ -1,7 +1,7 @@
 // Blocks that move the robot. `move`, `turn` and `arc` go on with the next block when the move is over.
 
 import { UNARY } from "../../blockly/precedence.js";
-import { choice, number, numberValue, seconds } from "../../blockly/blocks/spec.js";
+import { choice, number, numberValue, renamed, seconds } from "../../blockly/blocks/spec.js";
 import { HALF_TRACK } from "../library.js";
 
 /** @typedef {import("../../blockly/blocks/spec.js").BlockSpec} BlockSpec */
@@ -110,13 +110,13 @@ export const MOTION = [
   move("thymio_moveWithSpeed", [number("N", 50), number("S", 50)], straight, withSpeed),
   move("thymio_moveWithTime", [number("N", 50), seconds("S", 1)], straight, withTime),
   move("thymio_turn", [number("N", 45)], onTheSpot, turnSpeed),
-  move("thymio_turnWithSpeed", [number("N", 45), number("S", 50)], onTheSpot, withSpeed),
-  move("thymio_turnWithTime", [number("N", 45), seconds("S", 1)], onTheSpot, withTime),
+  move("thymio_turnWithSpeed", [number("N", 90), number("S", 50)], onTheSpot, withSpeed),
+  move("thymio_turnWithTime", [number("N", 90), seconds("S", 1)], onTheSpot, withTime),
   move(
     "thymio_arc",
-    [number("R", 150), number("N", 45)],
+    [number("R", 150), renamed("N", number("A", 45))],
     (script, block) => {
-      const angle = script.g.number(block, "N", UNARY);
+      const angle = script.g.number(block, "A", UNARY);
       script.line(block, `call math.max(move.longest, abs ${script.g.number(block, "R", UNARY)}, ${SMALLEST_RADIUS})`);
       // 1 rad is 57.3 degrees
       script.line(block, `call math.muldiv(move.left, move.longest + ${HALF_TRACK}, ${angle} * 10, 573)`);
@@ -124,15 +124,19 @@ export const MOTION = [
     },
     (script, block) => script.line(block, `move.speed = ${ARC_SPEED}`),
   ),
-  command("thymio_setOdomoter", [number("D", 0), number("X", 0), number("Y", 0)], (g, block) => {
-    g.scripts.use("odometer");
-    return [
-      g.line(block, `odo.direction = ${g.number(block, "D")}`),
-      g.line(block, "call math.muldiv(odo.heading, odo.direction, 32767, 180)"),
-      g.line(block, `odo.x = ${g.number(block, "X")}`),
-      g.line(block, `odo.y = ${g.number(block, "Y")}`),
-    ];
-  }),
+  command(
+    "thymio_setOdomoter",
+    [renamed("D", number("N", 90)), renamed("X", number("O", 0)), renamed("Y", number("P", 0))],
+    (g, block) => {
+      g.scripts.use("odometer");
+      return [
+        g.line(block, `odo.direction = ${g.number(block, "N")}`),
+        g.line(block, "call math.muldiv(odo.heading, odo.direction, 32767, 180)"),
+        g.line(block, `odo.x = ${g.number(block, "O")}`),
+        g.line(block, `odo.y = ${g.number(block, "P")}`),
+      ];
+    },
+  ),
   {
     type: "thymio_odometer",
     shape: "Number",

@@ -25,9 +25,9 @@ const numbered = (words) => words.map((word, index) => [word, String(index)]);
 /** @param {string} type @param {Arg[]} args @param {NonNullable<BlockSpec["value"]>} value @returns {BlockSpec} */
 const reporter = (type, args, value) => ({ type, shape: "Number", style: "sensing_blocks", sensor: true, args, value });
 
-/** @param {string} type @param {string} variable @param {readonly string[]} words */
-const element = (type, variable, words) =>
-  reporter(type, [choice("N", "sensor", numbered(words))], (g, block) =>
+/** @param {string} type @param {string} variable @param {readonly string[]} words @param {string} [initial] */
+const element = (type, variable, words, initial = "0") =>
+  reporter(type, [choice("N", "sensor", numbered(words), initial)], (g, block) =>
     numberValue(`${variable}[${g.field(block, "N")}]`),
   );
 
@@ -35,11 +35,15 @@ const GROUND = ["ground_left", "ground_right"];
 
 /** @type {readonly BlockSpec[]} */
 export const SENSING = [
-  reporter("thymio_valButton", [choice("B", "button", BUTTON_MENU)], (g, block) => {
-    const word = BUTTON_MENU.find(([, value]) => value === g.field(block, "B"))?.[0];
-    return numberValue(`button.${word}`);
-  }),
-  element("thymio_proximity", "prox.horizontal", SENSORS),
+  // a condition in Scratch, a number in earlier versions of this project
+  {
+    ...reporter("thymio_valButton", [choice("B", "button", BUTTON_MENU)], (g, block) => {
+      const word = BUTTON_MENU.find(([, value]) => value === g.field(block, "B"))?.[0];
+      return numberValue(`button.${word}`);
+    }),
+    anywhere: true,
+  },
+  element("thymio_proximity", "prox.horizontal", SENSORS, "2"),
   element("thymio_proxHorizontal", "prox.horizontal", SENSORS),
   element("thymio_ground", "prox.ground.delta", GROUND),
   element("thymio_proxGroundDelta", "prox.ground.delta", GROUND),
