@@ -50,6 +50,10 @@ RULES = {
     "aseba_vm": Rule(_names("aseba_vm"), never=NO_WALL_CLOCK),
     # one compiler of kernels to WebAssembly for natives of the machine and laws of the simulator
     f"{OURS}.sim": Rule(_names("sim", "registry") | KERNELS, frozenset({"numpy"}), NO_WALL_CLOCK),
+    # one decoding of text files for programs and playgrounds
+    f"{OURS}.sim.formats.xml_tree": Rule(
+        _names("sim") | {"aseba_vm.aesl.text_decoding", "aseba_vm.errors"}, never=NO_WALL_CLOCK
+    ),
     # the one place where the core measures real time: a picture that takes too much to draw is refused
     f"{OURS}.sim.formats.svg_worker": Rule(frozenset(), frozenset({"resvg_py"}), NO_WALL_CLOCK - {"time"}),
     f"{OURS}.sim.physics": Rule(_names("sim") | KERNELS, frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from thymio_sim_ros.sim.formats import css
 from thymio_sim_ros.sim.formats.css import Declaration, parse
 
 WANTED = frozenset({"filter", "isolation"})
@@ -82,3 +83,53 @@ def test_rules_are_found(text: str) -> None:
 @pytest.mark.parametrize("text", ["\\", "'\\", "a:\\", "url(", "url('", "/*", "@", "-", "\\110000 ", "\\0 ", "\\d800 "])
 def test_text_that_ends_too_early_is_read_all_the_same(text: str) -> None:
     assert parse(text, WANTED).declarations == ()
+
+
+ELEMENTS: dict[str, css.Path] = {
+    "plain": (("svg", {}), ("rect", {})),
+    "class": (("svg", {}), ("g", {"class": "top"}), ("rect", {"class": "a b", "id": "r"})),
+    "deep": (("svg", {}), ("g", {"class": "top"}), ("g", {}), ("rect", {"class": "a"})),
+}
+
+
+@pytest.mark.parametrize(
+    ("selector", "selected"),
+    [
+        ("*", {"plain", "class", "deep"}),
+        ("rect", {"plain", "class", "deep"}),
+        (".a", {"class", "deep"}),
+        (".a.b", {"class"}),
+        ("rect.b#r", {"class"}),
+        (".top > .a", {"class"}),
+        (".top .a", {"class", "deep"}),
+        ("svg > g > g > rect", {"deep"}),
+        ("g g .a, #r", {"class", "deep"}),
+        ("[class='a b']", {"class"}),
+        ("g > [ class ]", {"class", "deep"}),
+        (".top > .b:first-child", {"class"}),
+        (":is(.b, .c)", {"plain", "class", "deep"}),
+        ("circle", set()),
+        ("rect + .b", {"class"}),
+        ("g::before rect", {"class", "deep"}),
+    ],
+)
+def test_a_rule_counts_for_the_elements_that_it_may_select(selector: str, selected: set[str]) -> None:
+    sheet = css.Sheet()
+    sheet.add(f"@media all {{ {selector} {{ fill: red; filter: url(#f) }} }}", {"filter"})
+    assert {name for name, path in ELEMENTS.items() if sheet.styles(path)} == selected
+
+
+def test_references_of_fonts_are_those_of_no_element() -> None:
+    assert css.rules("@font-face { src: url(a.woff) } @import url(b.css); .a { fill: red }", {"filter"}) == ()
+
+
+def test_rules_within_rules_count() -> None:
+    found = css.rules(".a { .b { fill: url(#x) } & > .c { fill: url(#y) } fill: url(#z)", {"filter"})
+    assert [rule.style.urls for rule in found] == [("#x",), ("#y",), ("#z",)]
+    assert [rule.selectors[0].parts[-1].classes for rule in found] == [["b"], ["c"], ["a"]]
+
+
+def test_a_long_selector_is_compared_without_trying_all_ways() -> None:
+    sheet = css.Sheet()
+    sheet.add("g " * 500 + ".x .a { filter: x }", {"filter"})
+    assert sheet.styles((*((("g", {}),) * 190), ("rect", {"class": "a"}))) == []

@@ -12,6 +12,7 @@ import pytest
 from tests.sim.images import BLACK, CLEAR, RED, WHITE, pixels, png, png_uri, svg_uri
 from thymio_sim_ros.sim.formats import image_io
 from thymio_sim_ros.sim.formats.image_io import MAX_PICTURE_BYTES, Pixels, data_uri
+from thymio_sim_ros.sim.formats.svg import Drawing
 from thymio_sim_ros.sim.model.fields import FieldError
 
 image = pytest.importorskip("PIL.Image")
@@ -98,61 +99,140 @@ def test_the_size_of_an_svg_may_be_written_in_many_ways(attributes: str) -> None
     assert (found.columns, found.rows, color_at(found, 100, 50)) == (200, 100, BLACK)
 
 
+def drawn(body: str, attributes: str = 'viewBox="0 0 100 50"') -> tuple[Pixels, list[str]]:
+    """An SVG as it is drawn, and what is missing in it."""
+    pytest.importorskip("resvg_py")
+    with image_io.budgeted() as budget:
+        budget.svg_seconds = 60.0
+        return image_io.decode(svg_uri(body, attributes), key="image", width_m=0.1), budget.notes
+
+
+RECT = '<rect x="50" width="50" height="50"/>'
+"""The right half."""
+WHOLE = 'width="100" height="50"'
+
+
 @pytest.mark.parametrize(
     ("body", "found"),
     [
         ("<text>Hello</text>", "<text>"),
-        ('<image href="/etc/hostname" width="10" height="10"/>', "<image>"),
+        ("<switch><foreignObject><p/></foreignObject></switch>", "<foreignObject>"),
+        ('<g><image href="/etc/hostname" width="10" height="10"/></g>', "<image>"),
         ('<use xlink:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
         ('<use href="#a" xlink:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
         ('<use xmlns:x="http://www.w3.org/1999/xlink" x:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
-        ('<filter id="f"><feTurbulence numOctaves="9999999"/></filter>', "<filter>"),
         ("<script>alert(1)</script>", "<script>"),
-        ('<rect fill="url(other.svg#a)"/>', "a reference to 'other.svg#a'"),
-        ('<rect style="fill:u\\72l( other.svg )"/>', "a reference to 'other.svg'"),
+        (f'<rect fill="url(other.svg#a)" {WHOLE}/>', "a reference to 'other.svg#a'"),
+        (f'<rect style="fill:u\\72l( other.svg )" {WHOLE}/>', "a reference to 'other.svg'"),
+        (f'<style>.a {{ fill: url(other.svg#a) }}</style><g class="b a"><rect {WHOLE}/></g>', "other.svg#a"),
         ("<style>@import 'other.css';</style>", "@import in <style>"),
         ("<style>a{}@\\69mport 'other.css';</style>", "@import in <style>"),
-        ("<style>rect { fill: URL(#a) }</style>", "url(…) in <style>"),
+        (f'<g xmlns:s="http://www.w3.org/2000/svg" s:style="filter:blur(9px)"><rect {WHOLE}/></g>', "svg:style"),
     ],
 )
-def test_an_svg_that_depends_on_something_else_is_refused(body: str, found: str) -> None:
-    error = refused(svg_uri(body))
-    assert (error.key, error.found) == ("image (SVG line 1)", found)
+def test_what_depends_on_something_else_costs_its_element_and_a_note(body: str, found: str) -> None:
+    picture, notes = drawn(body + RECT)
+    assert (color_at(picture, 25, 25), color_at(picture, 75, 25)) == (CLEAR, BLACK)
+    assert len(notes) == 1
+    assert notes[0].startswith("image (SVG line 1): ")
+    assert found in notes[0]
+    assert "skipped, expected " in notes[0]
 
 
-EFFECTS = ("filter", "mask", "mix-blend-mode", "isolation", "marker-start")
+EFFECTS = ("filter", "mask", "mix-blend-mode")
 
 
 @pytest.mark.parametrize("effect", EFFECTS)
 @pytest.mark.parametrize(
     "body",
     [
-        '<g style="{0}:x"/>',
-        '<g style="fill:red; {1} : x"/>',
-        '<g style="{0}/* */:x !important"/>',
-        '<g style="{2}:x"/>',
-        "<style>g {{ {0}: x }}</style>",
-        "<style><![CDATA[@media all {{ g {{ fill: red; {1}/**/:x }} }}]]></style>",
+        '<g style="{0}:x">{3}</g>',
+        '<g style="fill:red; {1} : x">{3}</g>',
+        '<g style="{0}/* */:x !important">{3}</g>',
+        '<g style="{2}:x">{3}</g>',
+        "<style>g {{ {0}: x }}</style><g>{3}</g>",
+        '<g class="st0">{3}</g><style type="text/css">.st0{{{0}:x;}} .st1{{fill:none}}</style>',
+        '<style>svg > .a .b, #c:hover {{ {0}: x }}</style><g class="a"><g class="c b">{3}</g></g>',
+        "<style><![CDATA[@media all {{ g {{ fill: red; {1}/**/:x }} }}]]></style><g>{3}</g>",
     ],
 )
-def test_an_effect_in_css_is_refused(effect: str, body: str) -> None:
+def test_an_effect_in_css_costs_its_element_and_a_note(effect: str, body: str) -> None:
     escaped = f"\\{ord(effect[0]):x} {effect[1:]}"
-    error = refused(svg_uri(body.format(effect, effect.upper(), escaped)))
-    assert (error.key, error.found) == ("image (SVG line 1)", f"'{effect}' in a style")
+    picture, notes = drawn(body.format(effect, effect.upper(), escaped, f"<rect {WHOLE}/>") + RECT)
+    assert (color_at(picture, 25, 25), color_at(picture, 75, 25)) == (CLEAR, BLACK)
+    assert [note.partition(" skipped")[0] for note in notes] == [f"image (SVG line 1): <g> with '{effect}' in a style"]
 
 
 @pytest.mark.parametrize("effect", EFFECTS)
-def test_an_effect_as_an_attribute_is_refused(effect: str) -> None:
-    assert refused(svg_uri(f'<g {effect}="x"/>')).found == f'{effect}="x"'
+def test_an_effect_as_an_attribute_costs_its_element_and_a_note(effect: str) -> None:
+    picture, notes = drawn(f'<g {effect}="x"><rect {WHOLE}/></g>{RECT}')
+    assert (color_at(picture, 25, 25), color_at(picture, 75, 25)) == (CLEAR, BLACK)
+    assert notes[0].startswith(f'image (SVG line 1): <g> with {effect}="x" skipped, expected no ')
 
 
-def test_an_attribute_in_the_name_space_of_svg_is_refused() -> None:
-    body = '<g xmlns:s="http://www.w3.org/2000/svg" s:style="filter:blur(9px)"/>'
-    assert refused(svg_uri(body)).found == "the attribute svg:style with a namespace"
+def test_a_rule_costs_only_the_elements_that_it_selects() -> None:
+    sheet = "<style>.a .b, .c>rect, #d.e, circle { filter: url(#f) }</style>"
+    body = (
+        f'{sheet}<g class="b"><rect class="a" {WHOLE}/></g><g class="c"><g>{RECT}</g></g><rect id="d"/><g class="e"/>'
+    )
+    picture, notes = drawn(body)
+    assert (color_at(picture, 25, 25), notes) == (BLACK, [])
 
 
-def test_a_mask_is_refused() -> None:
-    assert refused(svg_uri('<mask id="m"><rect/></mask>')).found == "<mask>"
+def test_shapes_are_drawn_without_their_markers() -> None:
+    markers = '<defs><marker id="m"><rect width="9" height="9"/></marker></defs><style>.a{marker-end:url(#m)}</style>'
+    picture, notes = drawn(f'{markers}<rect class="a" {WHOLE}/><path marker-start="url(#m)" d="M0 0L9 9"/>')
+    assert color_at(picture, 25, 25) == BLACK
+    assert len(notes) == 2
+    assert all("skipped, expected no markers" in note for note in notes)
+
+
+def test_definitions_of_effects_that_nothing_uses_are_no_loss() -> None:
+    unused = '<mask id="m"><rect/></mask><filter id="f"><feTurbulence numOctaves="9999999"/></filter>'
+    assert drawn(f"<defs>{unused}</defs><rect {WHOLE}/>")[1] == []
+
+
+def test_equal_losses_are_one_note() -> None:
+    text = "<text>A</text>\n" * 9
+    assert drawn(text)[1] == [
+        "image (SVG lines 1, 2, 3, 4, 5 and 4 more): <text> skipped, "
+        "expected paths (in Inkscape: Path > Object to Path)"
+    ]
+
+
+def test_isolated_groups_are_drawn_as_illustrator_writes_them() -> None:
+    sheet = "<style>.cls-1 { isolation: isolate; }</style>"
+    picture, notes = drawn(f'{sheet}<g class="cls-1"><rect {WHOLE}/></g>')
+    assert (color_at(picture, 25, 25), notes) == (BLACK, [])
+
+
+@pytest.mark.parametrize(
+    "sheet",
+    [
+        ".a{clip-path:url(#c);fill:#000}",
+        ".st0, .a { clip-path : url('#c') }",
+        "rect.a{clip-path:url( #c )}",
+        "#r{clip-path:url(#c)}",
+        "svg>rect{clip-path:url(#c)}",
+        "*[class]{clip-path:url(#c)}",
+        "[id='r']{clip-path:url(#c)}",
+        "svg .a{clip-path:url(#c)!important}",
+    ],
+)
+def test_a_reference_in_a_style_sheet_is_that_of_an_attribute(sheet: str) -> None:
+    clip = '<defs><clipPath id="c"><rect width="50" height="50"/></clipPath></defs>'
+    picture, notes = drawn(f'<style>{sheet}</style>{clip}<rect id="r" class="a" {WHOLE}/>')
+    assert (color_at(picture, 25, 25), color_at(picture, 75, 25), notes) == (BLACK, CLEAR, [])
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "iso-8859-1", "windows-1252"])
+def test_an_svg_may_have_any_encoding(encoding: str) -> None:
+    pytest.importorskip("resvg_py")
+    declared = encoding.removesuffix("-sig")
+    text = f'<?xml version="1.0" encoding="{declared}"?><svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 2 1">'
+    text += '<title>Zoë</title><rect width="1" height="1"/></svg>'
+    found = decode(data_uri(text.encode(encoding), "image/svg+xml"))
+    assert (color_at(found, 25, 25), color_at(found, 75, 25)) == (BLACK, CLEAR)
 
 
 def test_effects_that_are_none_are_drawn_as_drawing_programs_write_them() -> None:
@@ -223,8 +303,16 @@ def test_a_circle_of_references_is_refused() -> None:
     assert "elements to draw" in refused(svg_uri(body)).found
 
 
-def test_references_in_a_style_sheet_are_refused() -> None:
-    assert refused(svg_uri("<style>rect { fill: url(#a) }</style>")).found == "url(…) in <style>"
+def test_an_svg_that_repeats_itself_by_its_style_sheet_is_refused() -> None:
+    step = '<pattern id="g{n}" width="1" height="1">' + '<rect class="a{m}" width="1" height="1"/>' * 2 + "</pattern>"
+    steps = "".join(step.format(n=n + 1, m=n) for n in range(30))
+    sheet = "".join(f".a{n}{{fill:url(#g{n})}}" for n in range(31))
+    assert "elements to draw" in refused(svg_uri(f'<style>{sheet}</style>{steps}<rect class="a30"/>')).found
+
+
+def test_style_sheets_with_too_many_rules_for_their_elements_are_refused() -> None:
+    sheet = "*{fill:url(#a)}" * 2000
+    assert "too many rules" in refused(svg_uri(f"<style>{sheet}</style>" + "<g/>" * 600)).found
 
 
 def test_an_svg_of_a_large_ground_is_drawn_coarser() -> None:
@@ -294,7 +382,7 @@ def test_an_svg_that_takes_too_long_is_refused() -> None:
 
 
 def test_the_images_of_a_playground_share_the_time_to_draw(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(image_io.svg, "draw", lambda *_, seconds: (png([[WHITE]]), seconds / 2 + 0.6))
+    monkeypatch.setattr(image_io.svg, "draw", lambda *_, seconds: Drawing(png([[WHITE]]), seconds / 2 + 0.6, ()))
     with image_io.budgeted() as budget:
         for _ in range(2):
             image_io.decode(svg_uri("<rect/>"), key="image", width_m=0.1)

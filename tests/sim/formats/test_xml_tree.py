@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from thymio_sim_ros.sim.formats import xml_tree
 from thymio_sim_ros.sim.formats.xml_tree import MAX_DEPTH, XmlError, parse
 
 
@@ -28,6 +29,30 @@ def test_names_are_those_without_a_name_space_but_for_one() -> None:
 def test_attributes_in_the_name_space_of_svg_keep_it() -> None:
     root = parse('<a xmlns:s="http://www.w3.org/2000/svg" s:style="1" style="2"/>')
     assert root.attributes == {"svg:style": "1", "style": "2"}
+
+
+@pytest.mark.parametrize("text", ["<a><b x='1>'/><c>t</c  ><d\n/><e></e><f>/></f><g><!-- / --></g></a>", "<a><b/></a>"])
+def test_elements_know_where_they_begin_and_end(text: str) -> None:
+    found = [text[each.offset : each.end] for each in parse(text).walk()]
+    assert found[0] == text
+    assert "".join(found[1:]) == text.removeprefix("<a>").removesuffix("</a>")
+
+
+@pytest.mark.parametrize("declared", ["utf-8", "utf-16", "iso-8859-1", "ISO-8859-15", "windows-1252"])
+def test_a_text_has_the_encoding_that_it_declares(declared: str) -> None:
+    text = f'<?xml version="1.0" encoding="{declared}"?><a>Zoë</a>'
+    assert xml_tree.text_of(text.encode(declared)) == (text, None)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-be"])
+def test_a_text_without_a_declaration_is_in_unicode(encoding: str) -> None:
+    assert xml_tree.text_of("<a>Zoë</a>".encode(encoding)) == ("<a>Zoë</a>", None)
+
+
+@pytest.mark.parametrize("head", ["", '<?xml version="1.0" encoding="utf-8"?>'])
+def test_a_text_that_is_not_in_its_encoding_is_read_as_older_programs_wrote_it(head: str) -> None:
+    text = f"{head}<a>Zoë “</a>"
+    assert xml_tree.text_of(text.encode("windows-1252")) == (text, "UTF-8")
 
 
 def test_text_is_that_directly_in_an_element() -> None:

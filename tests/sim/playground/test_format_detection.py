@@ -25,6 +25,11 @@ WORLD = (
     '<aseba-playground><color name="w" r="1" g="1" b="1"/>'
     '<world w="100" h="100" color="w" groundTexture="ground.png"/><robot x="50" y="50"/></aseba-playground>'
 )
+ASEBA_ZOE = (
+    "<aseba-playground><description>Zoë &ndash; ok</description>"
+    '<color name="w" r="1" g="1" b="1"/><world w="100" h="100" color="w"/><robot x="50" y="50" name="Zoë"/>'
+    "</aseba-playground>"
+)
 OURS = json.dumps(
     {
         "format": 1,
@@ -73,6 +78,37 @@ def test_a_playground_file_finds_its_image_in_its_folder(tmp_path: Path) -> None
 def test_a_text_alone_cannot_have_an_image_beside_it() -> None:
     with pytest.raises(PlaygroundError, match=r"groundTexture \(shapes\[1\].image\): found the file 'ground.png'"):
         reader.loads(WORLD, "mine.playground")
+
+
+@pytest.mark.parametrize(
+    ("encoding", "declared"),
+    [
+        *(("utf-8-sig", each) for each in ("", "utf-8")),
+        *(("utf-16", each) for each in ("", "utf-16")),
+        ("utf-16-be", "UTF-16"),
+        ("iso-8859-1", "iso-8859-1"),
+        ("iso-8859-15", "ISO-8859-15"),
+        ("windows-1252", "windows-1252"),
+    ],
+)
+def test_a_playground_of_aseba_may_have_any_encoding(encoding: str, declared: str) -> None:
+    head = f'<?xml version="1.0" encoding="{declared}"?>' if declared else ""
+    loaded = reader.loads(f"{head}{ASEBA_ZOE}".encode(encoding), "zoe")
+    assert [robot.name for robot in loaded.robots] == ["zoe"]
+    assert loaded.description == "Zoë – ok"
+    assert loaded.notes == ()
+
+
+@pytest.mark.parametrize("head", ["", '<?xml version="1.0" encoding="UTF-8"?>'])
+def test_a_text_that_is_not_in_its_encoding_is_read_as_older_programs_wrote_it(head: str) -> None:
+    loaded = reader.loads(f"{head}{ASEBA_ZOE}".encode("windows-1252"), "zoe")
+    assert [robot.name for robot in loaded.robots] == ["zoe"]
+    assert loaded.notes == ("read as Windows-1252, as the file is not in UTF-8",)
+
+
+def test_json_in_utf_16_is_read() -> None:
+    text = json.dumps({"format": 1, "title": "Zoë", "shapes": [FLOOR], "robots": [ROBOT]}, ensure_ascii=False)
+    assert reader.loads(text.encode("utf-16"), "zoe").title == "Zoë"
 
 
 def test_a_byte_order_mark_does_no_harm() -> None:

@@ -16,7 +16,7 @@ def without_html_entities(data: bytes) -> bytes:
     """Return XML with each named character of HTML by its number; comments and CDATA stay as they are.
 
     Nothing is declared and nothing expanded more than once, so the text grows by a small factor at most. The encoding
-    must have ASCII letters as single bytes; in any other nothing is replaced.
+    is UTF-8.
     """
     return _REFERENCE.sub(_numbered, data)
 

@@ -16,7 +16,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import ModuleType
 from typing import Any
 
@@ -60,11 +60,15 @@ _PILLOW_ERRORS = (OSError, SyntaxError, ValueError, EOFError, OverflowError, str
 
 @dataclass(slots=True)
 class Budget:
-    """What the images of one playground may still cost together. Invariant: only `decode` reduces it."""
+    """What the images of one playground may still cost together. Invariant: only `decode` reduces it.
+
+    `notes` say what is missing in the images.
+    """
 
     pixels: int = MAX_PIXELS_IN_ALL
     svg_bytes: int = MAX_SVG_BYTES_IN_ALL
     svg_seconds: float = svg_process.MAX_SECONDS
+    notes: list[str] = field(default_factory=list)
 
 
 _budget: ContextVar[Budget] = ContextVar("budget of pictures")
@@ -118,8 +122,10 @@ def decode(uri: str, *, key: str, width_m: float) -> Pixels:
         if budget.svg_bytes < 0:
             found = f"more than {MAX_SVG_BYTES_IN_ALL} bytes of SVG so far"
             raise FieldError(key, found, "fewer or simpler SVG images, or PNG images")
-        data, seconds = svg.draw(data, key, width_m, seconds=budget.svg_seconds)
-        budget.svg_seconds -= seconds
+        drawing = svg.draw(data, key, width_m, seconds=budget.svg_seconds)
+        budget.svg_seconds -= drawing.seconds
+        budget.notes.extend(drawing.notes)
+        data = drawing.png
     return _unpack(data, key, budget)
 
 

@@ -1,26 +1,28 @@
-"""SVG images as pixels, drawn by resvg; rejected if their cost has no limit or their look depends on the machine.
+"""SVG images as pixels, drawn by resvg, without what has no limited cost or depends on the machine.
 
-An SVG may contain no text (fonts, and with them readings, differ between machines), no images and external references,
-and no filters, masks, blend modes and markers (their cost has no limit), be it as elements, attributes or CSS. These
-checks give clear messages; everything else is limited by the drawing process (`svg_process`).
+Not drawn are text (fonts, and with them readings, differ between machines), images and external references, and
+filters, masks, blend modes and markers (their cost has no limit), be it as elements, attributes or CSS. An element that
+is one of them or has one of them is skipped, with a note; a shape with markers is drawn without them. References are
+followed wherever they are: in attributes, in styles and in style sheets, whose rules count for at least the elements
+that they select (`css`). Everything else is limited by the drawing process (`svg_process`).
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.formats import css, svg_process, xml_tree
-from thymio_sim_ros.sim.formats.css import Style
+from thymio_sim_ros.sim.formats.css import Sheet, Style
 from thymio_sim_ros.sim.formats.svg_process import DrawError
 from thymio_sim_ros.sim.formats.svg_worker import CSS_DPI
 from thymio_sim_ros.sim.formats.xml_tree import Element, XmlError
 from thymio_sim_ros.sim.model.fields import FieldError
 from thymio_sim_ros.sim.model.optional_import import imported
 
-__all__ = ["draw"]
+__all__ = ["Drawing", "draw"]
 
 PIXEL_M = 0.001
 """Size of a pixel of a drawn SVG in m, that of the ground; edges are anti-aliased."""
@@ -31,38 +33,45 @@ MAX_PARTS = 20_000
 MAX_DEPTH = 40
 """Largest depth of nested elements, references included; each may need a buffer while it is drawn."""
 
-_REFUSED = {
+_NO_IMAGES = "shapes and paths, or a PNG instead of the SVG"
+_NO_MASKS = "no masks (clip paths are allowed)"
+_NO_MARKERS = "no markers (convert them to paths)"
+_SKIPPED = {
     "text": "paths (in Inkscape: Path > Object to Path)",
-    "image": "shapes and paths, or a PNG instead of the SVG",
+    "image": _NO_IMAGES,
     "foreignObject": "shapes and paths",
     "script": "no scripts",
-    "marker": "no markers (convert them to paths)",
-    "filter": "no filters",
-    "mask": "no masks (clip paths are allowed)",
     "animate": "no animation",
+    "animateMotion": "no animation",
     "animateTransform": "no animation",
     "set": "no animation",
 }
+"""Elements that are not drawn, and what to use."""
+_DEFINITIONS = frozenset({"filter", "mask", "marker"})
+"""Elements that are drawn only where another one names them; that one has the note."""
 _EFFECTS = {
     "filter": "no filters",
     "backdrop-filter": "no filters",
-    "mask": "no masks (clip paths are allowed)",
-    "mask-image": "no masks (clip paths are allowed)",
-    "mask-border": "no masks (clip paths are allowed)",
-    "mask-border-source": "no masks (clip paths are allowed)",
-    "mask-box-image": "no masks (clip paths are allowed)",
+    "mask": _NO_MASKS,
+    "mask-image": _NO_MASKS,
+    "mask-border": _NO_MASKS,
+    "mask-border-source": _NO_MASKS,
+    "mask-box-image": _NO_MASKS,
     "mix-blend-mode": "no blend modes",
-    "isolation": "no isolated groups",
-    "marker": "no markers (convert them to paths)",
-    "marker-start": "no markers (convert them to paths)",
-    "marker-mid": "no markers (convert them to paths)",
-    "marker-end": "no markers (convert them to paths)",
+    "marker": _NO_MARKERS,
+    "marker-start": _NO_MARKERS,
+    "marker-mid": _NO_MARKERS,
+    "marker-end": _NO_MARKERS,
 }
-"""Properties that are rejected, as attributes and in CSS, except with a value of `_WITHOUT_EFFECT`."""
+"""Properties of elements that are not drawn, as attributes and in CSS, except with a value of `_WITHOUT_EFFECT`."""
 _WITHOUT_EFFECT = frozenset({"none", "auto", "normal", "initial", "unset"})
-"""Inkscape writes `filter:none;mix-blend-mode:normal;isolation:auto` into every style."""
+"""Inkscape writes `filter:none;mix-blend-mode:normal` into every style."""
 MAX_STYLES = 300_000
 """Largest number of characters of CSS, equal styles counted once."""
+MAX_SELECTIONS = 1_000_000
+"""Largest number of comparisons of a selector of a style sheet with an element."""
+MAX_LINES = 5
+"""Number of lines that a note names."""
 _HREFS = ("href", "xlink:href")
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(px|pt|pc|mm|cm|in|q)?\s*", re.IGNORECASE)
 _INCHES = {"px": 1 / 96, "pt": 1 / 72, "pc": 1 / 6, "in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "q": 1 / 101.6}
@@ -83,16 +92,29 @@ class _Weight:
 _ENDLESS = _Weight(MAX_PARTS + 1, 1)
 
 
-def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[bytes, float]:
-    """Return an SVG as the PNG that resvg draws, with the resolution of the ground for `width_m`, and the time it took.
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A drawn SVG: the file in PNG, the processor time it took in s, and a note for each kind of what is missing."""
+
+    png: bytes
+    seconds: float
+    notes: tuple[str, ...]
+
+
+def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> Drawing:
+    """Return an SVG as resvg draws it, with the resolution of the ground for `width_m`.
 
     Raises FieldError, with this key, for an SVG that is rejected or cannot be drawn within `seconds`.
     """
     try:
-        root = xml_tree.parse(data)
+        text, _ = xml_tree.text_of(data)
+        root = xml_tree.parse(text)
     except XmlError as error:
         raise FieldError(f"{key} (SVG line {error.line})", error.found, error.expected) from error
-    _check(root, key)
+    if root.tag != "svg":
+        raise FieldError(key, f"<{root.tag}>", "<svg>")
+    pruned = _Pruned(root, key)
+    _weigh(root, pruned.by_id(), pruned.references, {}, key)
     size = _size(root, key)
     ratio = size[1] / size[0]
     columns = round(min(MAX_SIDE, max(1.0, width_m / PIXEL_M)))
@@ -100,31 +122,132 @@ def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[byte
     rows = max(1, round(columns * ratio))
     resvg = imported("resvg_py", "resvg-py", key)
     try:
-        text = _resized(data.decode("utf-8"), root, size, columns, rows)
+        text = _resized(pruned.cut(text.encode("utf-8")), root, size, columns, rows)
     except ValueError as error:
-        raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a complete SVG in UTF-8") from error
+        raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a complete SVG") from error
     try:
-        return svg_process.draw(text, resvg, seconds=seconds)
+        png, taken = svg_process.draw(text, resvg, seconds=seconds)
     except DrawError as error:
         raise FieldError(key, error.found, error.expected) from error
+    return Drawing(png, taken, pruned.notes())
 
 
-def _check(root: Element, key: str) -> None:
-    if root.tag != "svg":
-        raise FieldError(key, f"<{root.tag}>", "<svg>")
-    styles = _Styles(key)
-    for element in root.walk():
-        where = f"{key} (SVG line {element.line})"
-        if element.tag in _REFUSED:
-            raise FieldError(where, f"<{element.tag}>", _REFUSED[element.tag])
-        for target in _targets(element):
+class _Pruned:
+    """An SVG without what is not drawn.
+
+    Attributes:
+        references: id of the Python object of an element → the ids that it is drawn with.
+    """
+
+    def __init__(self, root: Element, key: str) -> None:
+        self._root = root
+        self._key = key
+        self._styles = _Styles(key)
+        self._sheet = Sheet()
+        self._cut: list[Element] = []
+        self._lines: dict[tuple[str, str], list[int]] = {}
+        """What was found and what was expected → the lines."""
+        self.references: dict[int, list[str]] = {}
+        for element in root.walk():
+            if element.tag == "style":
+                self._read_sheet(element)
+        self._prune(root)
+
+    def by_id(self) -> dict[str, list[Element]]:
+        """Return what is drawn by its id."""
+        found: dict[str, list[Element]] = {}
+        for element in self._root.walk():
+            found.setdefault(element.attributes.get("id", ""), []).append(element)
+        return found
+
+    def cut(self, data: bytes) -> bytes:
+        """Return the text in UTF-8 without the skipped elements."""
+        pieces, begin = [], 0
+        for element in self._cut:
+            pieces.append(data[begin : element.offset])
+            begin = element.end
+        return b"".join((*pieces, data[begin:]))
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what is missing in the drawing, one note for each kind."""
+        return tuple(self._note(*kind, lines) for kind, lines in self._lines.items())
+
+    def _note(self, found: str, expected: str, lines: list[int]) -> str:
+        lines = list(dict.fromkeys(lines))
+        named = ", ".join(map(str, lines[:MAX_LINES]))
+        more = f" and {len(lines) - MAX_LINES} more" if len(lines) > MAX_LINES else ""
+        place = f"SVG line{'s' if len(lines) > 1 else ''} {named}{more}"
+        return f"{self._key} ({place}): {found} skipped, expected {expected}"
+
+    def _read_sheet(self, element: Element) -> None:
+        if "import" in self._styles.parse(element.text).rules:
+            self._remark(element, "@import in <style>", "styles within the image")
+        self._sheet.add(element.text, _EFFECTS)
+
+    def _remark(self, element: Element, found: str, expected: str) -> None:
+        self._lines.setdefault((found, expected), []).append(element.line)
+
+    def _prune(self, root: Element) -> None:
+        """Take skipped elements out of the tree, in the order of the text, and note the references of the others."""
+        waiting: list[tuple[Element, css.Path]] = [(root, ((root.tag, root.attributes),))]
+        while waiting:
+            element, path = waiting.pop()
+            if self._is_skipped(element, path):
+                if element is root:
+                    ((found, expected), _) = self._lines.popitem()
+                    raise FieldError(f"{self._key} (SVG line {root.line})", found, expected)
+                self._cut.append(element)
+                element.tag, element.children = "", []
+            else:
+                waiting.extend((child, (*path, (child.tag, child.attributes))) for child in reversed(element.children))
+        for element in root.walk():
+            element.children = [child for child in element.children if child.tag]
+
+    def _is_skipped(self, element: Element, path: css.Path) -> bool:
+        """Return whether an element is not drawn; if something would be missing, there is a note."""
+        if element.tag in _DEFINITIONS:
+            return True
+        if element.tag in _SKIPPED:
+            self._remark(element, f"<{element.tag}>", _SKIPPED[element.tag])
+            return True
+        for name in element.attributes:
+            if name.startswith("svg:"):
+                self._remark(element, f"the attribute {name} with a namespace", "attributes without a namespace")
+                return True
+        styles = self._sheet.styles(path)
+        if self._sheet.checks > MAX_SELECTIONS:
+            raise FieldError(self._key, "style sheets with too many rules for its elements", "a simpler image")
+        targets = [*self._styles.urls(element), *(target for style in styles for target in style.urls)]
+        named = _targets(element)
+        for target in (*named, *targets):
             if not target.startswith("#"):
-                raise FieldError(where, f"a reference to '{target[:40]}'", "references within the image")
-        _check_style(element, styles, where)
-    by_id: dict[str, list[Element]] = {}
-    for element in root.walk():
-        by_id.setdefault(element.attributes.get("id", ""), []).append(element)
-    _weigh(root, by_id, styles, {}, key)
+                self._remark(element, f"a reference to '{target[:40]}'", "references within the image")
+                return True
+        if any(self._has_effect(element, *effect) for effect in self._effects(element, styles)):
+            return True
+        found = [target[1:] for target in targets]
+        if element.tag == "use":
+            found += (target[1:] for target in named)
+        self.references[id(element)] = found
+        return False
+
+    def _effects(self, element: Element, styles: Sequence[Style]) -> Iterator[tuple[str, str]]:
+        """Iterate over name and text of each property of `_EFFECTS` that an element may have."""
+        for name, value in element.attributes.items():
+            if name in _EFFECTS and value.strip().lower() not in _WITHOUT_EFFECT:
+                yield name, f'{name}="{value[:40]}"'
+        own = (self._styles.parse(element.attributes["style"]),) if "style" in element.attributes else ()
+        for style in (*own, *styles):
+            for declaration in style.declarations:
+                if not (len(declaration.value) == 1 and declaration.value[0] in _WITHOUT_EFFECT):
+                    yield declaration.name, f"'{declaration.name}' in a style"
+
+    def _has_effect(self, element: Element, name: str, found: str) -> bool:
+        """Note an effect; return whether the element cannot be drawn without it."""
+        expected = _EFFECTS[name]
+        is_needed = expected is not _NO_MARKERS
+        self._remark(element, f"<{element.tag}> with {found}" if is_needed else found, expected)
+        return is_needed
 
 
 class _Styles:
@@ -152,35 +275,10 @@ class _Styles:
                 yield from self.parse(value).urls
 
 
-def _check_style(element: Element, styles: _Styles, where: str) -> None:
-    """Raise FieldError for effects of unlimited cost and external references in attributes or a style sheet."""
-    for name, value in element.attributes.items():
-        if name.startswith("svg:"):
-            raise FieldError(where, f"the attribute {name} with a namespace", "attributes without a namespace")
-        if name in _EFFECTS and value.strip().lower() not in _WITHOUT_EFFECT:
-            raise FieldError(where, f'{name}="{value[:40]}"', _EFFECTS[name])
-    for target in styles.urls(element):
-        if not target.startswith("#"):
-            raise FieldError(where, f"a reference to '{target[:40]}'", "references within the image")
-    texts = [element.attributes["style"]] if "style" in element.attributes else []
-    if element.tag == "style":
-        texts.append(element.text)
-        sheet = styles.parse(element.text)
-        if "import" in sheet.rules:
-            raise FieldError(where, "@import in <style>", "styles within the image")
-        if sheet.urls:
-            raise FieldError(where, "url(…) in <style>", "references in the attributes of elements")
-    for text in texts:
-        for declaration in styles.parse(text).declarations:
-            if not (len(declaration.value) == 1 and declaration.value[0] in _WITHOUT_EFFECT):
-                found = f"'{declaration.name}' in a style"
-                raise FieldError(where, found, _EFFECTS[declaration.name])
-
-
 def _weigh(
     element: Element,
     by_id: dict[str, list[Element]],
-    styles: _Styles,
+    references: dict[int, list[str]],
     known: dict[int, _Weight],
     key: str,
     above: int = 0,
@@ -196,8 +294,8 @@ def _weigh(
     weight = known.get(id(element))
     if weight is None:
         known[id(element)] = _ENDLESS
-        named = [other for name in _references(element, styles) if name for other in by_id.get(name, ())]
-        inner = [_weigh(other, by_id, styles, known, key, above + 1) for other in (*element.children, *named)]
+        named = [other for name in references[id(element)] if name for other in by_id.get(name, ())]
+        inner = [_weigh(other, by_id, references, known, key, above + 1) for other in (*element.children, *named)]
         weight = known[id(element)] = _Weight(
             1 + sum(one.parts for one in inner), 1 + max((one.depth for one in inner), default=0)
         )
@@ -206,14 +304,6 @@ def _weigh(
     if above + weight.depth > MAX_DEPTH:
         raise FieldError(key, f"elements nested more than {MAX_DEPTH} deep", "a simpler image")
     return weight
-
-
-def _references(element: Element, styles: _Styles) -> list[str]:
-    """Return the ids of the elements that this one is drawn with."""
-    found = [target[1:] for target in styles.urls(element)]
-    if element.tag == "use":
-        found += (target[1:] for target in _targets(element))
-    return found
 
 
 def _targets(element: Element) -> list[str]:
@@ -248,9 +338,8 @@ def _pixels(length: str) -> float:
         return math.nan
 
 
-def _resized(text: str, root: Element, size: tuple[float, float], columns: int, rows: int) -> str:
+def _resized(data: bytes, root: Element, size: tuple[float, float], columns: int, rows: int) -> str:
     """Return the SVG with its size set to this number of pixels: resvg rounds a size up before it scales."""
-    data = text.encode("utf-8")
     match = _ROOT.match(data, root.offset)
     if match is None:
         raise ValueError("its root element was not found")

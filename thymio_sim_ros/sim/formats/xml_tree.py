@@ -1,5 +1,8 @@
 """XML text as a small tree with line numbers; entities and external references are rejected.
 
+The encoding of a file is that of its byte order mark or its XML declaration, else UTF-8. A file that is not valid in it
+is read as Windows-1252, as older programs wrote their files.
+
 Used for `.playground` files and SVG images, which are untrusted: a document type that declares entities is an error,
 nothing is ever loaded from elsewhere, and depth and number of elements are limited.
 """
@@ -10,14 +13,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
+from aseba_vm.aesl.text_decoding import decode
+from aseba_vm.errors import TextError
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["Element", "XmlError", "parse"]
+__all__ = ["Element", "XmlError", "parse", "text_of"]
 
 MAX_DEPTH = 200
 MAX_ELEMENTS = 100_000
 
 
+OTHER_ENCODING = "Windows-1252"
+"""Of files that are not in the encoding that they should have."""
 _SPACE = " "
 """Separates namespace and name; no name contains a space."""
 _KNOWN = {f"http://www.w3.org/1999/xlink{_SPACE}href": "xlink:href"}
@@ -46,7 +53,9 @@ class Element:
     attributes: Mapping[str, str]
     line: int
     offset: int
-    """Offset of its first character in bytes, if the text is UTF-8."""
+    """Offset of its first character in bytes of the text in UTF-8."""
+    end: int = 0
+    """Offset of the character after its last one."""
     children: list[Element] = field(default_factory=list)
     text: str = ""
 
@@ -59,16 +68,30 @@ class Element:
             waiting.extend(reversed(element.children))
 
 
+def text_of(data: bytes) -> tuple[str, str | None]:
+    """Return the text of an XML file without byte order mark, and the encoding that it should have and has not.
+
+    Raises XmlError for an unknown encoding.
+    """
+    try:
+        return decode(data).text, None
+    except TextError as error:
+        if error.kind != "text-undecodable":
+            raise XmlError(1, "an unknown encoding", "UTF-8") from error
+        return data.decode(OTHER_ENCODING, "replace"), str(error.arguments[1])
+
+
 def parse(data: bytes | str) -> Element:
     """Return the root of a document. Raises XmlError for text that is not XML, declares entities, or is too large."""
-    return _Builder().build(data)
+    return _Builder(data if isinstance(data, str) else text_of(data)[0]).build()
 
 
 class _Builder:
     """Parses one document."""
 
-    def __init__(self) -> None:
-        self._parser = expat.ParserCreate(namespace_separator=_SPACE)
+    def __init__(self, text: str) -> None:
+        self._data = text.encode("utf-8", "surrogatepass")
+        self._parser = expat.ParserCreate("utf-8", namespace_separator=_SPACE)
         self._open: list[Element] = []
         self._root: Element | None = None
         self._count = 0
@@ -81,13 +104,11 @@ class _Builder:
         self._parser.EntityDeclHandler = self._entity
         self._parser.ExternalEntityRefHandler = self._external
 
-    def build(self, data: bytes | str) -> Element:
+    def build(self) -> Element:
         try:
-            self._parser.Parse(data, True)
+            self._parser.Parse(self._data, True)
         except expat.ExpatError as error:
             raise XmlError(error.lineno, expat.ErrorString(error.code), "XML") from error
-        except (ValueError, LookupError) as error:
-            raise XmlError(1, "an unknown encoding", "UTF-8") from error
         assert self._root is not None
         return self._root
 
@@ -107,7 +128,12 @@ class _Builder:
         self._texts.append([])
 
     def _end(self, _name: str) -> None:
-        self._open.pop().text = "".join(self._texts.pop())
+        element = self._open.pop()
+        element.text = "".join(self._texts.pop())
+        place = self._parser.CurrentByteIndex
+        # after <name/>, else at the start of </name>
+        is_short = not element.children and not element.text and self._data[place - 2 : place] == b"/>"
+        element.end = place if is_short else self._data.index(b">", place) + 1
 
     def _text(self, data: str) -> None:
         self._texts[-1].append(data)

@@ -7,6 +7,7 @@ anything is decompressed, and files are read from one folder or archive only.
 
 from __future__ import annotations
 
+import codecs
 import io
 import json
 import lzma
@@ -42,7 +43,8 @@ Beside = Callable[[str], bytes]
 """Reads a file beside the playground by its name, at most one byte more than `MAX_PICTURE_BYTES`; raises FieldError."""
 
 _ZIP = b"PK\x03\x04"
-_BOM = b"\xef\xbb\xbf"
+_UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE, b"<\0", b"\0<")
+"""First bytes of a text in UTF-16, and of XML in it without byte order mark."""
 _GZIP = 16
 """Added to the window size of zlib for data with a header of gzip."""
 _PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
@@ -96,7 +98,7 @@ def read_source(data: bytes, name: str, beside: Beside) -> Source:
         raise FieldError("", f"more than {MAX_BYTES} bytes", "a smaller file")
     if data.startswith(_ZIP):
         data, beside = _unzip(data)
-    data = data.removeprefix(_BOM)
+    data = _without_mark(data)
     if data.lstrip().startswith(b"<"):
         return _read_xml(data, name, beside)
     _check_parts(data)
@@ -117,7 +119,7 @@ def is_recognized(data: bytes) -> bool:
             data, _ = _unzip(data)
         except FieldError:
             return False
-    return _MARKS.search(data) is not None
+    return _MARKS.search(_without_mark(data)) is not None
 
 
 def nothing_beside(name: str) -> bytes:
@@ -154,13 +156,23 @@ def unpacked_svg(data: bytes) -> bytes:
     return unpacked
 
 
+def _without_mark(data: bytes) -> bytes:
+    """Return a text without byte order mark; one in UTF-16, as some editors save it, in UTF-8."""
+    if data.startswith(_UTF_16):
+        big = data.startswith((codecs.BOM_UTF16_BE, b"\0<"))
+        data = data.decode("utf-16-be" if big else "utf-16-le", "replace").encode("utf-8", "replace")
+    return data.removeprefix(codecs.BOM_UTF8)
+
+
 def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
     try:
-        root = xml_tree.parse(without_html_entities(data))
+        text, refused = xml_tree.text_of(data)
+        root = xml_tree.parse(without_html_entities(text.encode("utf-8")).decode("utf-8"))
     except XmlError as error:
         raise FieldError(f"line {error.line}", error.found, error.expected) from error
     converted = aseba.convert(root, name)
-    return Source(converted.data(), beside, tuple(converted.notes), converted.places, sets_free=True)
+    guessed = () if refused is None else (f"read as {xml_tree.OTHER_ENCODING}, as the file is not in {refused}",)
+    return Source(converted.data(), beside, (*guessed, *converted.notes), converted.places, sets_free=True)
 
 
 def _unzip(data: bytes) -> tuple[bytes, Beside]:

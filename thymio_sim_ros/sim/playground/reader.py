@@ -175,8 +175,9 @@ def _build(found: format_detection.Source, name: str) -> Playground:
     _check_pictures(shapes)
     robots = tuple(read(RobotStart, item, f"robots[{index}]") for index, item in enumerate(robot_items))
     checks.check_names(shapes, robots)
-    with image_io.budgeted():
-        primitives = _primitives(shapes)
+    with image_io.budgeted() as budget:
+        primitives = _primitives(shapes, budget.notes)
+    notes += tuple(_picture_note(note, found.places) for note in dict.fromkeys(budget.notes))
     solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
     floors = tuple(primitive for primitive in primitives if isinstance(primitive, Floor))
     if found.sets_free:
@@ -266,9 +267,17 @@ class _Label:
     name: Name
 
 
-def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
+def _picture_note(note: str, places: Mapping[str, str]) -> str:
+    """Return a note about an image of a shape with the place of the shape in the original."""
+    item, _, rest = note.partition(".")
+    return f"{places[item]}: {rest}" if item in places else note
+
+
+def _primitives(shapes: tuple[NamedShape, ...], notes: list[str]) -> list[Primitive]:
+    """Return the parts of the shapes; notes that are added to `notes` get the shape in front."""
     found: list[Primitive] = []
     for index, named in enumerate(shapes):
+        known = len(notes)
         try:
             found.extend(named.shape.primitives(named.name))
         except FieldError as error:
@@ -278,6 +287,7 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
         except Exception as error:  # of a shape that another package added
             found_error = f"{type(error).__name__}: {error}"
             raise FieldError(f"shapes[{index}]", found_error, f"a valid {named.kind}") from error
+        notes[known:] = [f"shapes[{index}].{note}" for note in notes[known:]]
         if len(found) > MAX_PRIMITIVES:
             raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts", "a simpler playground")
     return found
