@@ -35,6 +35,9 @@ __all__ = [
     "program_option",
 ]
 
+_WITHOUT_ROBOT = (NO_PROGRAM, SuiteConfig.program)
+"""Programs that need no robot: none, and the default."""
+
 EXAMPLE = """\
 example:
   thymio-sim --playground obstacle --program my_robot.aesl
@@ -140,6 +143,8 @@ def check_files(playground: str, program: str, behaviour: str, layout: str) -> t
     try:
         check_behaviour(behaviour, layout)
         loaded = load_playground(playground)[1]
+        if program not in _WITHOUT_ROBOT and not loaded.robots:
+            raise UsageError("; ".join((f"{playground}: found no robot, expected one for {program}", *loaded.notes)))
         return loaded, read_assignments(program, [robot.name for robot in loaded.robots], layout)
     except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
         raise UsageError(str(error)) from error

@@ -187,7 +187,9 @@ def test_a_world_without_an_area_is_refused(size: str, found: str) -> None:
     ("body", "note"),
     [
         ('<robot type="e-puck" x="50" y="30"/>', "<robot> skipped: robot type 'e-puck'"),
+        ('<e-puck x="50" y="30"/>', "<e-puck> skipped: robot type 'e-puck'"),
         ('<robot x="50" y="30" port="33333"/>', "<robot>: port skipped"),
+        ('<thymio2 x="50" y="30" port="33333"/>', "<thymio2>: port skipped"),
         ('<robot x="50" y="30" nodeId="2"/>', "<robot>: nodeId skipped"),
         ('<feeder x="5" y="5"/>', "<feeder> skipped"),
         ('<process command=":asebahttp"/>', "<process> skipped"),
@@ -200,6 +202,15 @@ def test_what_cannot_be_expressed_is_told_with_its_line(body: str, note: str) ->
     (found,) = converted(body).notes
     assert found.startswith("line 3: ")
     assert note in found
+
+
+def test_robots_of_aseba_1_5_are_elements_of_their_type() -> None:
+    old = converted('<thymio2 x="50" y="40" angle="1.57"/><robot x="10" y="10"/><thymio2 x="70" y="20" name="Second"/>')
+    new = converted(
+        '<robot type="thymio2" x="50" y="40" angle="1.57"/><robot x="10" y="10"/><robot x="70" y="20" name="Second"/>'
+    )
+    assert old.robots == new.robots
+    assert [robot["name"] for robot in old.robots] == ["thymio_0", "thymio_1", "second"]
 
 
 def test_remarks_come_in_the_order_of_the_lines() -> None:

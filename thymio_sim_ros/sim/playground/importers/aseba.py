@@ -33,6 +33,10 @@ LEAST_HEIGHT_M = 0.001
 DEFAULT_COLOR = "#808080"
 """Of things whose color is not declared: the format does not say which it is."""
 
+_THYMIO = "thymio2"
+_ROBOTS = ("robot", _THYMIO, "e-puck", "epuck")
+"""Elements of robots: <robot type="…">, or, up to Aseba 1.5, an element that is named after the type."""
+
 _SILENT = {"author", "thanks", "externalLink", "color", "area", "description", "world"}
 _NOT_EXPRESSED = {
     "camera": "the view is chosen in the page",
@@ -79,11 +83,12 @@ class _Reader:
             "cylinder": self._cylinder,
             "door": self._door,
             "activation": self._activation,
-            "robot": self._robot,
+            **dict.fromkeys(_ROBOTS, self._robot),
         }
-        for tag, reader in readers.items():
-            for element in self._elements(tag):
-                reader(element)
+        for reader in dict.fromkeys(readers.values()):
+            for element in self._root.children:
+                if readers.get(element.tag) == reader:
+                    reader(element)
         for element in self._root.children:
             if element.tag not in readers and element.tag not in _SILENT:
                 self._note(element, _NOT_EXPRESSED.get(element.tag, "unknown element"))
@@ -227,8 +232,8 @@ class _Reader:
         )
 
     def _robot(self, element: Element) -> None:
-        kind = element.attributes.get("type", "thymio2")
-        if kind != "thymio2":
+        kind = element.attributes.get("type", _THYMIO) if element.tag == _ROBOTS[0] else element.tag
+        if kind != _THYMIO:
             self._note(element, f"robot type '{kind}', only the Thymio II is simulated")
             return
         index = len(self._out.robots)
