@@ -13,7 +13,7 @@ from tests.sim.builders import FLOOR, ROBOT, box
 from thymio_sim_ros.sweep.description import Description
 
 PROGRAM = """<!DOCTYPE aesl-source>
-<network><constant value="100" name="SPEED"/><event size="0" name="beat"/>
+<network><constant value="100" name="SPEED"/><event size="0" name="beat"/><event size="0" name="other"/>
 <node nodeId="1" name="thymio-II">var n = 0
 var offset = 0
 var history[3]

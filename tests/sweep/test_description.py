@@ -79,6 +79,13 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         ({"programs": ("explorr",)}, "no program 'explorr'.*did you mean 'explorer'"),
         ({"playgrounds": ("hal",)}, "no playground 'hal'"),
         ({"measures": ("x",)}, "measure: found 'x', expected one of seconds, x_m"),
+        ({"measures": ("event.beet",)}, "no program has the event 'beet', .* of beat, other; did you mean 'beat'"),
+        ({"measures": ("x_m", "first.n")}, "measure first.n: no program has the event 'n', expected one of beat"),
+        ({"measures": ("variable.hist",)}, "has the variable 'hist', expected one of .*history"),
+        ({"measures": ("variable.beat",)}, "measure variable.beat: no program has the variable 'beat'"),
+        ({"measures": ("variable.history[3]",)}, r"history\[3\]: found index 3, expected one below 3, the size"),
+        ({"measures": ("variable.prox.horizontal[7]",)}, "found index 7, expected one below 7"),
+        ({"programs": ("explorer",), "measures": ("event.beat",)}, "the event 'beat', expected one of menu.back"),
         ({"parameters": {"SPED": (1,)}}, "SPED: pulse.aesl has no constant or .*; did you mean 'SPEED'"),
         ({"parameters": {"SPEED": (1, 40_000)}}, "SPEED: found 40000, expected an integer from -32768 to 32767"),
         ({"parameters": {"SPEED": (True,)}}, "parameter SPEED: found true, expected an integer"),
@@ -102,3 +109,8 @@ def test_a_program_with_an_error_is_named(describe: Callable[..., Description], 
     (folder / "bad.aesl").write_text("motor.left.target = x\n")
     with pytest.raises(SweepError, match=r"bad\.aesl: line 1, column 21"):
         describe(programs=("bad.aesl",)).sweep()
+
+
+def test_a_measure_needs_one_program_that_has_its_name(describe: Callable[..., Description]) -> None:
+    measures = ("event.beat", "variable.n", "variable.prox.horizontal[6]", "first.beat")
+    assert len(describe(programs=("pulse.aesl", "explorer"), measures=measures).sweep()) == 2

@@ -17,7 +17,7 @@ from thymio_sim_ros.loading import load_playground, read_text
 from thymio_sim_ros.sim.playground.writer import dumps
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Source, Sweep, Value
-from thymio_sim_ros.sweep.measures import MEASURES, measure_of
+from thymio_sim_ros.sweep.measures import MEASURES, check_measure, measure_of
 from thymio_sim_ros.sweep.parameters import check
 
 __all__ = ["Description", "described", "read_description"]
@@ -183,8 +183,9 @@ def _is_number(value: object) -> bool:
 def _check(sweep: Sweep) -> None:
     """Check a run for each program, playground and value; not for each combination, of which there may be many."""
     first = replace(sweep, seeds=sweep.seeds[:1], parameters=tuple((name, some[:1]) for name, some in sweep.parameters))
-    for number in range(len(first)):
-        check(first.run(number))
+    programs = [program for number in range(len(first)) for program in check(first.run(number))]
+    for measure in sweep.measures:
+        check_measure(measure, programs)
     for index, (name, values) in enumerate(sweep.parameters):
         for value in values[1:]:
             changed = [*first.parameters]

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import NamedTuple
 
 from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.track_line import EVERY, TrackLine, TrackProgress
 from thymio_sim_ros.sim.robot.robot import Robot
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Value
 
-__all__ = ["MEASURES", "Measure", "RobotRecord", "measure_of"]
+__all__ = ["MEASURES", "Measure", "RobotRecord", "check_measure", "measure_of"]
 
 CELL_M = 0.05
 """Side of the squares in which the visited area is counted."""
@@ -124,6 +127,31 @@ def measure_of(name: str) -> Measure:
     return Measure(
         float, "time at which an event was first emitted, s", lambda record: record.event_times.get(of, [None])[0]
     )
+
+
+def check_measure(name: str, programs: Collection[ThymioProgram]) -> None:
+    """Check that a program has the event or variable of a measure. Raises SweepError that names what there is."""
+    found = None if name in MEASURES else _NAMED.fullmatch(name)
+    if found is None:
+        return
+    of, index = found["name"], int(found["index"] or 0)
+    events = {event for program in programs for event, _ in program.events}
+    sizes: dict[str, int] = {}
+    for program in programs:
+        of_robot = {variable.name: variable.size for variable in target(program.layout).variables}
+        own = {variable: size for variable, (_, size) in program.program.addresses.items()}
+        for variable, size in (of_robot | own).items():
+            sizes[variable] = max(size, sizes.get(variable, 0))
+    what = "variable" if found["kind"] == "variable" else "event"
+    known = sorted(sizes if what == "variable" else events)
+    if of not in known:
+        near = difflib.get_close_matches(of, known, 1)
+        raise SweepError(
+            f"measure {name}: no program has the {what} '{of}', expected one of {', '.join(known) or 'none'}"
+            + (f"; did you mean '{near[0]}'?" if near else "")
+        )
+    if found["kind"] == "variable" and index >= sizes[of]:
+        raise SweepError(f"measure {name}: found index {index}, expected one below {sizes[of]}, the size of {of}")
 
 
 def _word(record: RobotRecord, variable: str, index: int) -> int | None:

@@ -42,9 +42,12 @@ _INT16 = range(-0x8000, 0x8000)
 Words = tuple[tuple[str, int], ...]
 
 
-def check(run: Run) -> None:
-    """Raise SweepError if a parameter of the run does not fit its program or playground; without a world."""
-    _prepared(run)
+def check(run: Run) -> list[ThymioProgram]:
+    """Return the programs of a run, without a world.
+
+    Raises SweepError if a parameter does not fit program or playground.
+    """
+    return [*_prepared(run)[1].values()]
 
 
 def start(run: Run) -> Runner:
