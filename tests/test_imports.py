@@ -104,13 +104,15 @@ RULES = {
     f"{OURS}.rl": Rule(_names("loading", "rl", "runner", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
     f"{OURS}.testing": Rule(
-        _names("device", "loading", "runlog.run_log", "runner", "sim", "testing"), frozenset({"pytest"})
+        _names("device", "loading", "resources", "runlog.run_log", "runner", "sim", "testing"), frozenset({"pytest"})
     ),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.lockstep": Rule(_names("errors", "lockstep", "type_names"), ROS),
     f"{OURS}.grading": Rule(_names("aseba_vm", "grading", "runlog.test_files", "batch_runs"), frozenset({"pytest"})),
     f"{OURS}.grading.gradescope": Rule(frozenset(), frozenset({"yaml"})),
-    f"{OURS}.grading.test_process": Rule(_names("grading", "runlog.test_files", "testing"), frozenset({"pytest"})),
+    f"{OURS}.grading.test_process": Rule(
+        _names("grading", "pytest_plugin", "runlog.test_files", "testing"), frozenset({"pytest"})
+    ),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
     f"{OURS}.cli.banner": Rule(ALL_OF_OURS, frozenset({"segno"})),

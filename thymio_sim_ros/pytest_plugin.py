@@ -7,10 +7,11 @@ it needs. Fixtures that need ROS skip the test if ROS is not installed.
 from __future__ import annotations
 
 import importlib.util
+import os
 import threading
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,25 @@ NO_ROS = (
     "ROS is not here: rclpy cannot be imported. Source a ROS 2 Jazzy installation,"
     " or on Linux x86-64: pip install 'thymio_sim_ros[ros]'"
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Graded:
+    """What fixtures do under `thymio-sim grade`, in the stash of pytest's configuration.
+
+    The files beside a test are those of a submission, too. Services, parameters and topics of the world belong to the
+    test: programs do not reach them.
+    """
+
+    folder: Path
+    """The files of the assignment alone: playgrounds come from here."""
+    handed_in: frozenset[str] = frozenset()
+    """Files that a submission must contain, relative to the folder of the tests: what is handed in is not replaced."""
+    output_bytes: int = 10_000_000
+    """What a program may print."""
+
+
+GRADED = pytest.StashKey[Graded]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -64,6 +84,26 @@ def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
     return wanted | {name: value for name, value in parameters.items() if name in KEYWORDS}
 
 
+def _is_graded(request: pytest.FixtureRequest) -> bool:
+    return GRADED in request.config.stash
+
+
+def _playground(request: pytest.FixtureRequest, value: Any) -> Any:
+    """What a test calls a playground, as Classroom and Simulator take it."""
+    from thymio_sim_ros.loading import is_playground_text
+    from thymio_sim_ros.resources import playgrounds
+    from thymio_sim_ros.testing.sources import playground_source
+
+    if not isinstance(value, str | Path):
+        return value
+    graded = request.config.stash.get(GRADED, None)
+    is_file = isinstance(value, Path) or not (value in playgrounds() or is_playground_text(value))
+    if graded is None or not is_file or os.path.isabs(value):
+        return playground_source(value, request.path.parent)
+    name = os.path.relpath(request.path.parent / value, request.config.rootpath)
+    return str((request.config.rootpath if name in graded.handed_in else graded.folder) / name)
+
+
 @pytest.fixture
 def classroom(request: pytest.FixtureRequest) -> Iterator[Classroom]:
     """A simulated world with its robots, without ROS; the mark `thymio` has its options."""
@@ -71,6 +111,8 @@ def classroom(request: pytest.FixtureRequest) -> Iterator[Classroom]:
     from thymio_sim_ros.testing import Classroom
 
     wanted = _wanted(request)
+    if "playground" in wanted:
+        wanted["playground"] = _playground(request, wanted["playground"])
     programs = wanted.pop("programs", None)
     program = wanted.pop("program", "none")
     if programs is None:
@@ -112,7 +154,9 @@ def ros(request: pytest.FixtureRequest) -> Iterator[Ros]:
         warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported with the first node's messages
         from thymio_sim_ros.testing.ros import Ros
 
-        ros = Ros(domain, folder=request.path.parent)
+        graded = request.config.stash.get(GRADED, None)
+        limits = {} if graded is None else {"output_limit": graded.output_bytes}
+        ros = Ros(domain, folder=request.path.parent, **limits)
     yield ros
     ros.close()
     left = [thread.name for thread in set(threading.enumerate()) - threads if not thread.daemon]
@@ -136,16 +180,16 @@ def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simula
     """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters."""
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
     from thymio_sim_ros.testing.ros import Simulation
-    from thymio_sim_ros.testing.sources import beside
 
     def make(**parameters: Any) -> Simulation:
         known = {field.name for field in fields(SimulatorParams)}
         marked = {name: value for name, value in _wanted(request).items() if name in known}
         wanted = {"playground": "base", **marked, **parameters}
-        wanted["playground"] = beside(wanted["playground"], request.path.parent)
+        wanted["playground"] = _playground(request, wanted["playground"])
         wanted.setdefault("log", str(_run_log(request) or ""))
         defaults = replace(SimulatorParams(start_paused=True), **wanted)
-        made = Simulation(ros, ros.live(Simulator(ros.context, defaults)), folder=request.path.parent)
+        simulator = Simulator(ros.context, defaults, is_closed=_is_graded(request))
+        made = Simulation(ros, ros.live(simulator), folder=request.path.parent)
         ros.settle()
         return made
 
@@ -160,15 +204,16 @@ def runtime(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., AsebaRunt
     """
     from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
     from thymio_sim_ros.testing.ros import Simulation
-    from thymio_sim_ros.testing.sources import beside, is_name
+    from thymio_sim_ros.testing.sources import is_name, program_source
 
     def make(source: str = "", *, path: str = "", **parameters: Any) -> AsebaRuntime:
         folder = request.path.parent
         if not source and not path:
-            marked = beside(_wanted(request).get("program", ""), folder)
+            marked = program_source(_wanted(request).get("program", ""), folder)
             source, path = ("", marked) if is_name(marked) else (marked, "")
-        defaults = RuntimeParams(source=source, path=beside(path, folder), **parameters)
-        node: AsebaRuntime = ros.live(AsebaRuntime(ros.context, defaults, use_sim_time=True))
+        defaults = RuntimeParams(source=source, path=program_source(path, folder), **parameters)
+        made = AsebaRuntime(ros.context, defaults, use_sim_time=True, is_closed=_is_graded(request))
+        node: AsebaRuntime = ros.live(made)
         if isinstance(ros.simulation, Simulation):
             ros.simulation.run_program(node)
         ros.settle()

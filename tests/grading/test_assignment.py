@@ -53,3 +53,38 @@ def test_an_invalid_assignment_is_explained(tmp_path: Path, text: str, reported:
 def test_another_kind_of_file_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(GradingError, match=r"expected a pytest file \(\*.py\) or an assignment"):
         load(tmp_path / "a.json")
+
+
+HIDDEN = 'tests = ["test_a.py"]\nhidden = ["test_b.py"]\n'
+
+
+@pytest.mark.parametrize(
+    ("shown", "hidden", "secret"),
+    [
+        ("'one.json'", "'two.json'", ["two.json", "helper.py", "image.png"]),
+        ("'one.json' 'two.json'", "'two.json'", ["helper.py", "image.png"]),
+        ("import helper", "'two.json'", ["two.json", "image.png"]),
+        ("'mine_one.json'", "f'{n}.json'", ["one.json", "two.json", "helper.py", "image.png"]),
+        ("'folder/one.json' 'two.json'", "", ["helper.py", "image.png"]),
+        ("import helpers", "", ["one.json", "two.json", "helper.py", "image.png"]),
+    ],
+)
+def test_data_that_no_visible_test_names_is_hidden(tmp_path: Path, shown: str, hidden: str, secret: list[str]) -> None:
+    data = {"one.json": "{}", "two.json": "{}", "helper.py": "'one.json'", "image.png": "", "conftest.py": ""}
+    for name, text in {"test_a.py": shown, "test_b.py": hidden, **data}.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "a.toml").write_text(f"{HIDDEN}data = {list(data)}")
+    assignment = load(tmp_path / "a.toml")
+    assert assignment.hidden_data() == secret
+    visible, secrets = assignment.parts()
+    assert (visible.tests, secrets.tests) == (("test_a.py",), ("test_b.py",))
+    assert set(visible.content) == {"test_a.py", "conftest.py", *data} - set(secret)
+    assert set(secrets.content) == {"test_b.py", *data}
+
+
+def test_without_hidden_tests_there_is_one_part_with_all_files(tmp_path: Path) -> None:
+    for name in ("test_a.py", "one.json"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "a.toml").write_text('tests = ["test_a.py"]\ndata = ["one.json"]')
+    (only,) = load(tmp_path / "a.toml").parts()
+    assert set(only.content) == {"test_a.py", "one.json"}

@@ -8,7 +8,7 @@ import pytest
 
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.resources import ResourceError
-from thymio_sim_ros.testing.sources import beside, is_name, playground_of, program_of
+from thymio_sim_ros.testing.sources import beside, is_name, playground_of, playground_source, program_of, program_source
 
 
 def test_a_file_in_the_folder_is_found_and_anything_else_stays(tmp_path: Path) -> None:
@@ -19,6 +19,17 @@ def test_a_file_in_the_folder_is_found_and_anything_else_stays(tmp_path: Path) -
     assert beside("mine.aesl", None) == "mine.aesl"
     long_text = '{"title": "' + "x" * 5000 + '"}'
     assert beside(long_text, tmp_path) == long_text
+
+
+def test_no_file_beside_the_test_replaces_what_is_shipped(tmp_path: Path) -> None:
+    for name in ("line", "explorer", "none"):
+        (tmp_path / name).write_text("")
+    assert playground_source("line", tmp_path) == "line"
+    assert program_source("explorer", tmp_path) == "explorer"
+    assert program_source("none", tmp_path) == "none"
+    assert playground_source(Path("line"), tmp_path) == str(tmp_path / "line")
+    assert playground_of("line", tmp_path) == playground_of("line")
+    assert program_of("explorer", tmp_path).name == "explorer.aesl"
 
 
 def test_a_program_is_a_name_a_path_or_a_text(tmp_path: Path) -> None:

@@ -59,6 +59,8 @@ def run(argv: Sequence[str]) -> int:
         _print(f"isolation: {level} ({LEVELS[level]})")
         total = number(sum((test.points for test in tests), start=Fraction(0)))
         _print(f"{len(found)} submissions, {len(tests)} tests, {total} points")
+        if hidden := assignment.hidden_data():
+            _print(f"for hidden tests only: {', '.join(hidden)}")
         return _Execution(options, assignment, found, tests, level).run()
     except (GradingError, EngineError) as error:
         raise UsageError(str(error)) from error

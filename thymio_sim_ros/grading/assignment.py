@@ -13,9 +13,10 @@ An assignment is a pytest file, or a TOML file beside its tests:
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -65,6 +66,38 @@ class Assignment:
     def is_hidden(self, test: str) -> bool:
         """Whether a test, given by its pytest node ID, is one of a hidden file."""
         return test.partition("::")[0] in self.hidden
+
+    def parts(self) -> list[Assignment]:
+        """The visible tests and the hidden ones, each with the files that they need: each part has its own sandbox."""
+        visible = tuple(test for test in self.tests if test not in self.hidden)
+        secret = {*self.hidden, *self.hidden_data()}
+        files = {name: data for name, data in self.content.items() if name not in secret}
+        hidden_files = {name: data for name, data in self.content.items() if name not in visible}
+        parts = [replace(self, tests=visible, content=files, hidden=frozenset())]
+        parts.append(
+            replace(self, tests=tuple(test for test in self.tests if test in self.hidden), content=hidden_files)
+        )
+        return [part for part in parts if part.tests]
+
+    def hidden_data(self) -> list[str]:
+        """The data that only hidden tests get: all that no visible test names, nor a file that one names.
+
+        A test names a file by the last part of its path, a module without `.py`. `conftest.py` belongs to all tests.
+        """
+        if not self.hidden:
+            return []
+        data = [name for name in self.content if name not in self.tests]
+        shown = {name for name in data if PurePosixPath(name).name == "conftest.py"}
+        shown |= set(self.tests) - self.hidden
+        while new := {name for name in data if name not in shown and self._is_named(name, shown)}:
+            shown |= new
+        return [name for name in data if name not in shown]
+
+    def _is_named(self, name: str, files: Iterable[str]) -> bool:
+        path = PurePosixPath(name)
+        word = path.stem if path.suffix == ".py" else path.name
+        pattern = re.compile(rb"(?<!\w)" + re.escape(word.encode()) + rb"(?!\w)")
+        return any(pattern.search(self.content[file]) for file in files)
 
 
 def load(path: Path) -> Assignment:

@@ -26,7 +26,7 @@ def collect(assignment: Assignment, level: str) -> tuple[GradedTest, ...]:
     job = Job(level, assignment.tests, assignment.content, {}, None, assignment.limits)
     report = run_job(job)
     if not report.collected:
-        reason = report.remark or "; ".join(report.notes) or "no tests found"
+        reason = ": ".join(filter(None, [report.remark, "; ".join(report.notes)])) or "no tests found"
         raise GradingError(
             f"assignment {assignment.name}: its tests cannot be collected without a submission: {reason}"
         )
@@ -65,10 +65,19 @@ def run_submission(submission: Submission, *, assignment: Assignment, tests: tup
     """
     if reason := _why_unavailable(level):
         raise GradingError(f"isolation {level} is not available on {socket.gethostname()}: {reason}")
-    try:
-        return run_job(Job(level, assignment.tests, assignment.content, submission.files, tests, assignment.limits))
-    except GradingError as error:
-        return Report({}, remark=str(error))
+    outcomes: dict[str, Outcome] = {}
+    for part in assignment.parts():
+        selected = tuple(test for test in tests if test.partition("::")[0] in part.tests)
+        job = Job(level, part.tests, part.content, submission.files, selected, part.limits, assignment.expected)
+        try:
+            report = run_job(job)
+        except GradingError as error:
+            return Report({}, remark=str(error))
+        if report.remark:  # what is printed beside hidden tests is not for pupils
+            said = () if assignment.hidden.issuperset(part.tests) else report.notes
+            return Report({}, remark=": ".join([report.remark, *said]))
+        outcomes |= report.outcomes
+    return Report(outcomes)
 
 
 _why_unavailable = cache(why_unavailable)

@@ -7,10 +7,12 @@ Usage: python -m thymio_sim_ros.grading.test_process <folder for logs> <test fil
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import linecache
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -18,8 +20,10 @@ from typing import Any
 
 import pytest
 
+from thymio_sim_ros.grading.integrity import TestFunctions
 from thymio_sim_ros.grading.points import points_of
 from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.pytest_plugin import GRADED, Graded
 from thymio_sim_ros.runlog.test_files import trace_path
 
 __all__ = ["GradingPlugin", "main"]
@@ -36,8 +40,9 @@ def main(argv: Sequence[str]) -> None:
     for file in (int(report), int(control)):
         os.set_inheritable(file, False)
     task = json.loads(commands.readline())
+    graded = Graded(Path(task["assignment"]), frozenset(task["handed_in"]), task["output_bytes"])
     plugin = GradingPlugin(
-        Path(folder), _Reporter(int(report), task["secret"]).send, commands.readline, task["selected"]
+        Path(folder), _Reporter(int(report), task["secret"]).send, commands.readline, task["selected"], graded
     )
     options = ["-p", "thymio_sim_ros.pytest_plugin", "-p", "no:cacheprovider", "-p", "no:faulthandler", "-s"]
     options += ["-c", os.devnull, "--rootdir", os.getcwd(), "--confcutdir", os.getcwd(), "--run-logs", folder]
@@ -75,14 +80,23 @@ class GradingPlugin:
     """pytest plug-in that reports to the supervisor, and waits for it between collecting and running."""
 
     def __init__(
-        self, folder: Path, send: Callable[..., None], wait: Callable[[], str], selected: Sequence[str] | None
+        self,
+        folder: Path,
+        send: Callable[..., None],
+        wait: Callable[[], str],
+        selected: Sequence[str] | None,
+        graded: Graded,
     ) -> None:
         """`folder`: where pictures go. `selected`: the tests that run, in order; None: they are only collected."""
         self._folder, self._send, self._wait, self._selected = folder, send, wait, selected
+        self._graded = graded
+        self._functions = TestFunctions()
         self._broken: list[str] = []
         self._skipped: list[str] = []
         self._points: dict[str, Fraction] = {}
         self._reports: list[pytest.TestReport] = []
+        self._failures: list[str] = []
+        """Exceptions of the test that runs, whatever its reports say."""
         self._path = list(sys.path)
         self._has_run = False
 
@@ -90,6 +104,7 @@ class GradingPlugin:
     def pytest_configure(self, config: pytest.Config) -> None:
         """Remove pytest's own output, so that only that of the submission is left."""
         config.pluginmanager.unregister(name="terminalreporter")
+        config.stash[GRADED] = self._graded
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Note test files that cannot be imported, or are skipped as a whole."""
@@ -116,6 +131,8 @@ class GradingPlugin:
             self._send("broken", message="\n".join(self._broken)[-_LONGEST:])
             os._exit(0)
         _keep_sources(Path.cwd())
+        _import_for(session.items)
+        self._functions.remember(Path.cwd())
         tests = [(item.nodeid, str(self._points[item.nodeid])) for item in session.items]
         self._send("collected", tests=tests, notes=self._skipped)
         if not self._wait():
@@ -124,9 +141,11 @@ class GradingPlugin:
         self._has_run = True
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
-        """Report the begin of a test."""
+        """Report the begin of a test, and wait until its files are there."""
         self._reports.clear()
+        self._failures.clear()
         self._send("begin", test=nodeid)
+        self._wait()
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Keep the report of a phase."""
@@ -136,17 +155,21 @@ class GradingPlugin:
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
         """Draw the paths of the robots when a test fails, while they are there."""
         report = yield
+        if call.excinfo is not None and not call.excinfo.errisinstance((pytest.skip.Exception, pytest.xfail.Exception)):
+            self._failures.append(call.excinfo.exconly())
         if call.when == "call" and report.failed:  # type: ignore[attr-defined]
             _draw(item, trace_path(self._folder, item.nodeid))
         return report
 
     def pytest_runtest_logfinish(self, nodeid: str) -> None:
         """Report the outcome of a test: that of its first phase that did not pass."""
-        outcome, message = "passed", ""
+        outcome, phase, message = "passed", "", ""
         for report in self._reports:
-            if not report.passed and outcome == "passed":
-                outcome, message = report.outcome, _message(report)
-        self._send("result", test=nodeid, outcome=outcome, message=message[-_LONGEST:])
+            if (report.outcome != "passed" or report.longrepr) and outcome == "passed":
+                outcome, phase, message = report.outcome, report.when, _message(report)
+        if outcome == "passed":  # an expected failure is reported as skipped
+            message = "\n".join([*self._failures, *self._functions.replaced()])
+        self._send("result", test=nodeid, outcome=outcome, phase=phase, message=message[-_LONGEST:])
 
     def finish(self) -> None:
         """Report the end, or why there was nothing to run."""
@@ -167,6 +190,17 @@ def _keep_sources(folder: Path) -> None:
     for path in folder.rglob("*.py"):
         lines = linecache.getlines(str(path))
         linecache.cache[str(path)] = (len(lines), None, lines, str(path))  # without a time, it is never checked again
+
+
+def _import_for(items: Sequence[pytest.Item]) -> None:
+    """Import what the fixtures of tests import, before the submission is there."""
+    import thymio_sim_ros.testing
+
+    used = {name for item in items for name in getattr(item, "fixturenames", ())}
+    if used & {"ros", "simulation", "runtime"} and importlib.util.find_spec("rclpy") is not None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported with the first node's messages
+            import thymio_sim_ros.testing.ros  # noqa: F401
 
 
 def _draw(item: pytest.Item, path: Path) -> None:

@@ -41,7 +41,7 @@ class Event:
 
 
 class Record:
-    """The record of one robot, oldest first; cleared when time jumps back."""
+    """The record of one robot, oldest first. Only `clear` clears it, so that no program under test can."""
 
     def __init__(self) -> None:
         self.moments: list[Moment] = []
@@ -53,7 +53,7 @@ class Record:
 
     def add_tick(self, robot: Robot, now_ns: int) -> None:
         """Record the state of the robot after a tick."""
-        at_s, twist = self._at_s(now_ns), robot.twist
+        at_s, twist = now_ns / SECOND_NS, robot.twist
         self.moments.append(Moment(at_s, robot.pose, twist.linear_m_s, twist.angular_rad_s))
         if robot.body.touching or self._touching:
             touching = frozenset(contact.other for contact in robot.body.touching.values())
@@ -62,7 +62,7 @@ class Record:
 
     def add_event(self, name: str, args: Sequence[int], now_ns: int) -> None:
         """Record an event emitted by the program."""
-        self.events.append(Event(self._at_s(now_ns), name, tuple(args)))
+        self.events.append(Event(now_ns / SECOND_NS, name, tuple(args)))
 
     def since(self, seconds: float) -> list[Moment]:
         """The moments since a simulated time in s."""
@@ -75,9 +75,3 @@ class Record:
         self.events.clear()
         self.cleared += 1
         self._touching = frozenset()
-
-    def _at_s(self, now_ns: int) -> float:
-        at_s = now_ns / SECOND_NS
-        if self.moments and at_s < self.moments[-1].at_s:
-            self.clear()
-        return at_s

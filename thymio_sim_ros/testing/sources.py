@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from thymio_sim_ros import loading
+from thymio_sim_ros import loading, resources
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.sim.playground.reader import Playground
 
-__all__ = ["beside", "is_name", "playground_of", "program_of"]
+__all__ = ["beside", "is_name", "playground_of", "playground_source", "program_of", "program_source"]
 
 
 def beside(value: str | Path, folder: Path | None) -> str:
@@ -20,6 +20,20 @@ def beside(value: str | Path, folder: Path | None) -> str:
     return text
 
 
+def playground_source(value: str | Path, folder: Path | None) -> str:
+    """A playground as `loading.load_playground` reads it: a shipped name, else a file beside the test, else the value.
+
+    Shipped names come first, so that no file beside the test can replace one.
+    """
+    return str(value) if value in resources.playgrounds() else beside(value, folder)
+
+
+def program_source(value: str | Path, folder: Path | None) -> str:
+    """A program by the same rule: a shipped name, else a file beside the test, else the value."""
+    is_shipped = value == loading.NO_PROGRAM or value in resources.behaviours()
+    return str(value) if is_shipped else beside(value, folder)
+
+
 def playground_of(value: str | Path | Playground, folder: Path | None = None) -> Playground:
     """A shipped name, a path (relative ones begin in the folder) or a text as a playground.
 
@@ -27,7 +41,7 @@ def playground_of(value: str | Path | Playground, folder: Path | None = None) ->
     """
     if isinstance(value, Playground):
         return value
-    return loading.load_playground(beside(value, folder))[1]
+    return loading.load_playground(playground_source(value, folder))[1]
 
 
 def program_of(value: str | Path | ThymioProgram, folder: Path | None = None) -> ThymioProgram:
@@ -38,7 +52,7 @@ def program_of(value: str | Path | ThymioProgram, folder: Path | None = None) ->
     """
     if isinstance(value, ThymioProgram):
         return value
-    found = beside(value, folder)
+    found = program_source(value, folder)
     if isinstance(value, Path) or is_name(found):
         return loading.read_program(found)
     return load_program(found, "program")

@@ -16,9 +16,9 @@ def line(do: str, **content: object) -> bytes:
     return json.dumps({"secret": "s", "do": do, **content}).encode()
 
 
-def result(test: str, outcome: str = "passed") -> bytes:
+def result(test: str, outcome: str = "passed", message: str = "") -> bytes:
     """The result of a test."""
-    return line("result", test=test, outcome=outcome, message="")
+    return line("result", test=test, outcome=outcome, phase="" if outcome == "passed" else "call", message=message)
 
 
 COLLECTED = line("collected", tests=[[test, "1"] for test in TESTS], notes=[])
@@ -30,6 +30,13 @@ def test_a_complete_report_is_accepted() -> None:
     lines = [COLLECTED, BEGIN[0], result(TESTS[0]), BEGIN[1], result(TESTS[1], "failed"), line("end")]
     assert [protocol.read(one)[0] for one in lines] == ["collected", "begin", "result", "begin", "result", "end"]
     assert protocol.is_complete
+
+
+def test_what_passed_with_a_failure_has_failed() -> None:
+    protocol = ReportProtocol("s", TESTS)
+    for accepted in (COLLECTED, BEGIN[0]):
+        protocol.read(accepted)
+    assert protocol.read(result(TESTS[0], "passed", "assert False"))[1]["outcome"] == "failed"
 
 
 @pytest.mark.parametrize(
@@ -48,6 +55,7 @@ def test_a_complete_report_is_accepted() -> None:
         [COLLECTED, BEGIN[0], result(TESTS[1])],
         [COLLECTED, BEGIN[0], result(TESTS[0], "perfect")],
         [COLLECTED, BEGIN[0], result(TESTS[0]), result(TESTS[0])],
+        [COLLECTED, BEGIN[0], line("result", test=TESTS[0], outcome="passed", phase="before", message="")],
         [COLLECTED, BEGIN[0], line("broken", message="")],
         [COLLECTED, line("end")],
         [line("read")],

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
-from std_srvs.srv import Trigger
 
 from tests.testing.test_thymio import WALL
 from thymio_sim_ros.sim.playground.reader import RobotStart
@@ -38,7 +37,7 @@ def test_a_reset_begins_the_past_anew(ros, simulation, runtime):
     runtime('<network><event size="0" name="begun"/><node name="thymio-II">emit begun</node></network>')
     ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
     sim.until(~no_contact(sim.thymio), seconds=10)
-    assert ros.call(Trigger, "/simulator/reset").success
+    sim.reset()
     sim.step(0.1)
     assert no_contact(sim.thymio)
     assert len(sim.thymio.path) == 10

@@ -23,14 +23,14 @@ _MARGIN_S = 30
 class Confinement:
     """How a test process is confined. `user`: the user and group that it becomes, None for the present ones.
 
-    `writable` is the only folder that it may write, where Landlock keeps it from others; None without Landlock.
+    `writable` are the only folders that it may write, where Landlock keeps it from others; None without Landlock.
     """
 
     user: int | None
     limits: Limits
     other_processes: int = 0
     """Processes of the user that are not in the sandbox, where the kernel counts them too."""
-    writable: str | None = None
+    writable: tuple[str, ...] | None = None
     readable: tuple[str, ...] = ()
 
 

@@ -26,6 +26,8 @@ class Job:
     submission: Mapping[str, bytes]
     selected: tuple[str, ...] | None
     limits: Limits
+    handed_in: tuple[str, ...] = ()
+    """Files that the submission must contain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +39,16 @@ class Outcome:
     output: str = ""
     cpu_s: float = 0.0
     files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
+    phase: str = ""
+    """Where the test ended if it did not pass: "setup", "call" or "teardown"."""
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """Result of a job. `remark`: why the job as a whole failed; `collected`: tests and points, a fraction as text."""
+    """Result of a job. `remark`: why the job as a whole failed; `collected`: tests and points, a fraction as text.
+
+    `notes`: why test files were skipped; with a `remark`, the last line that was printed.
+    """
 
     outcomes: Mapping[str, Outcome]
     collected: tuple[tuple[str, str], ...] = ()

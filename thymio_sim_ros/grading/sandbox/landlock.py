@@ -29,8 +29,8 @@ def version() -> int:
         return 0
 
 
-def restrict(readable: Sequence[str], listable: str, writable: str) -> None:
-    """Allow this process and its descendants to read these paths and to write one folder, and nothing else.
+def restrict(readable: Sequence[str], listable: str, writable: Sequence[str]) -> None:
+    """Allow this process and its descendants to read these paths and to write some folders, and nothing else.
 
     The names of the files below `listable` can be read, too, as Python does with the folder of a package.
     TCP is forbidden from version 4 on, signals to other processes from version 6 on. `forbid_new_privileges` comes
@@ -49,7 +49,8 @@ def restrict(readable: Sequence[str], listable: str, writable: str) -> None:
     _allow(rules, "/proc", (_READ_FILE | _READ_DIR) & rights)
     for path in ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"):
         _allow(rules, path, (_READ_FILE | 2) & rights)
-    _allow(rules, writable, rights)
+    for path in writable:
+        _allow(rules, path, rights)
     syscalls.syscall(_RESTRICT_SELF, ctypes.c_int(rules), ctypes.c_uint32(0))
     os.close(rules)
 

@@ -42,8 +42,8 @@ def main() -> int:
             user,
             job.limits,
             0 if user is not None else _threads_of_user(),
-            folder if has_landlock else None,
-            tuple(readable_paths()) if has_landlock else (),
+            tuple(f"{folder}/{name}" for name in ("work", "tmp", "out")) if has_landlock else None,
+            (*readable_paths(), f"{folder}/assignment") if has_landlock else (),
         )
         _print(job, Place(Path(folder), confinement, has_own_processes=False, has_own_disk=False))
     return 0

@@ -11,11 +11,12 @@ import os
 import socket
 import struct
 from collections.abc import Callable
+from pathlib import Path
 
 from thymio_sim_ros.grading.sandbox import syscalls
 from thymio_sim_ros.grading.sandbox.readable import DEVICES, readable_paths
 
-__all__ = ["FOLDER", "run_inside", "start_loopback"]
+__all__ = ["FOLDER", "bind_read_only", "run_inside", "start_loopback"]
 
 FOLDER = "/grade"
 """The writable folder of the sandbox."""
@@ -69,6 +70,12 @@ def start_loopback() -> None:
         fcntl.ioctl(any_socket, _SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", flags | _IFF_UP))
 
 
+def bind_read_only(source: Path, target: Path) -> None:
+    """Show a file or folder of the sandbox at another place of it, or at the same, where no process can change it."""
+    syscalls.mount(str(source), str(target), flags=syscalls.MS_BIND)
+    _make_read_only(str(source), str(target))
+
+
 def _build_root(disk_bytes: int, readable: list[str]) -> None:
     syscalls.mount("none", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
     # Bind mounts are made from the old root, before anything is mounted over its folders.
@@ -109,8 +116,12 @@ def _bind(source: str, target: str, *, read_only: bool = True) -> None:
         os.close(os.open(target, os.O_CREAT | os.O_WRONLY, 0o644))
     syscalls.mount(source, target, flags=syscalls.MS_BIND | syscalls.MS_REC)
     if read_only:
-        flags = syscalls.MS_BIND | syscalls.MS_REMOUNT | syscalls.MS_RDONLY | syscalls.MS_NOSUID | _locked(target)
-        syscalls.mount(source, target, flags=flags)
+        _make_read_only(source, target)
+
+
+def _make_read_only(source: str, target: str) -> None:
+    flags = syscalls.MS_BIND | syscalls.MS_REMOUNT | syscalls.MS_RDONLY | syscalls.MS_NOSUID | _locked(target)
+    syscalls.mount(source, target, flags=flags)
 
 
 def _is_needed_as_folder(path: str) -> bool:

@@ -4,11 +4,11 @@ A line is a JSON object with the secret of the process and its kind:
 
     {"secret": "…", "do": "collected", "tests": [["test_it.py::test_a", "3"]], "notes": []}
     {"secret": "…", "do": "begin", "test": "test_it.py::test_a"}
-    {"secret": "…", "do": "result", "test": "test_it.py::test_a", "outcome": "failed", "message": "…"}
+    {"secret": "…", "do": "result", "test": "test_it.py::test_a", "outcome": "failed", "phase": "call", "message": "…"}
     {"secret": "…", "do": "end"}
 
 Every test has one begin and one result, in the order in which they were selected. A test without a result has no
-points.
+points. A test begins when the supervisor answers to its begin.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from thymio_sim_ros.errors import ThymioSimError
 __all__ = ["ForgedError", "ReportProtocol"]
 
 _OUTCOMES = ("passed", "failed", "skipped")
+_PHASES = ("", "setup", "call", "teardown")
 _KINDS = ("collected", "broken", "begin", "result", "end")
 
 
@@ -76,8 +77,11 @@ class ReportProtocol:
         self.current = self._pending.pop(0)
 
     def _result(self, data: dict[str, Any]) -> None:
-        if not self.current or data["test"] != self.current or data["outcome"] not in _OUTCOMES:
+        is_known = data["outcome"] in _OUTCOMES and data["phase"] in _PHASES
+        if not self.current or data["test"] != self.current or not is_known:
             raise ForgedError("the result of a test that does not run")
+        if data["outcome"] == "passed" and data["message"]:
+            data["outcome"] = "failed"  # what failed does not pass because its report says so
         self.current = ""
 
     def _end(self, data: dict[str, Any]) -> None:

@@ -1,12 +1,14 @@
 """Runs the tests of a job in test processes, and replaces a process that ends, or exceeds a limit, within a test.
 
-The files of the tests and of the submission are never there at the same time: the test process collects the tests, the
-supervisor removes their sources and writes the submission, and only then the first test runs.
+The sources of the tests and the submission are never there at the same time: the test process collects the tests, the
+supervisor removes their sources, and only then the first test runs. Before each test it writes data and submission
+afresh, so that no test finds what another has left or changed.
 """
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import secrets
@@ -14,15 +16,16 @@ import shutil
 import signal
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
-from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.grading.sandbox import namespaces, syscalls
 from thymio_sim_ros.grading.sandbox.confinement import Confinement, confine
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
-from thymio_sim_ros.grading.sandbox.readable import python_path
+from thymio_sim_ros.grading.sandbox.readable import python_path, readable_paths
 from thymio_sim_ros.grading.sandbox.report_protocol import ForgedError, ReportProtocol
 from thymio_sim_ros.grading.sandbox.usage import descendants
 from thymio_sim_ros.grading.sandbox.watched_process import Ended, LimitError, WatchedProcess
@@ -33,6 +36,8 @@ __all__ = ["Place", "supervise"]
 _TEST_PROCESS = "thymio_sim_ros.grading.test_process"
 _KEPT_BYTES = 3_000_000
 """Largest file that is kept to explain a failure."""
+_FULL, _NOT_WRITTEN = 3, 4
+"""Exit codes of the process that writes the files of a test."""
 _ENVIRONMENT = ("LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "ROS_DISTRO", "RMW_IMPLEMENTATION")
 
 
@@ -64,6 +69,9 @@ class _Supervisor:
     def __init__(self, job: Job, place: Place) -> None:
         self._job, self._place = job, place
         self._ends_at = time.monotonic() + job.limits.wall_s
+        self._data = {name: data for name, data in job.assignment.items() if not name.endswith(".py")}
+        self._bound: list[Path] = []
+        """Files of the assignment that are mounted read-only beside those of the submission."""
         self.outcomes: dict[str, Outcome] = {}
         self.collected: tuple[tuple[str, str], ...] = ()
         self.remark = ""
@@ -81,7 +89,13 @@ class _Supervisor:
         work = self._prepare_folder()
         protocol = ReportProtocol(secret := secrets.token_hex(16), selected)
         process = self._start(work)
-        process.send(json.dumps({"secret": secret, "selected": selected}))
+        task: dict[str, Any] = {
+            "secret": secret,
+            "selected": selected,
+            "assignment": str(self._place.folder / "assignment"),
+        }
+        task |= {"handed_in": self._job.handed_in, "output_bytes": int(self._job.limits.output_mb * 1e6)}
+        process.send(json.dumps(task))
         try:
             return self._follow(process, protocol, work)
         except ForgedError as error:
@@ -94,7 +108,8 @@ class _Supervisor:
                 return not (isinstance(error, LimitError) and error.is_final)
             where = "before the first test" if protocol.collected is None or not self.outcomes else "between two tests"
             said = process.last_line()
-            self.remark = f"{outcome if is_limit else 'stopped'} {where}: {error}" + (f": {said}" if said else "")
+            self.remark = f"{outcome if is_limit else 'stopped'} {where}: {error}"
+            self.notes = (said,) if said else ()
         finally:
             process.close(self._kill_all)
         return False
@@ -109,11 +124,14 @@ class _Supervisor:
                 self.collected, self.notes = protocol.collected or (), protocol.notes
                 if self._job.selected is None:
                     return False
-                self._replace_tests_by_submission(work)
                 process.take_output()
+                self._write_afresh()
+                process.send("go")
+            elif kind == "begin":
+                self._write_afresh()
                 process.send("go")
             elif kind == "result":
-                self._end_test(process, str(data["test"]), str(data["outcome"]), str(data["message"]))
+                self._end_test(process, str(data["test"]), str(data["outcome"]), str(data["message"]), data["phase"])
             elif kind == "end":
                 return True
         raise AssertionError("a process has ended without an exception")
@@ -145,45 +163,80 @@ class _Supervisor:
     # --- files ---
 
     def _prepare_folder(self) -> Path:
-        """Empty the folder of the job and write the files of the assignment into it."""
+        """Empty the folder of the job and write the files of the assignment into it, as the tests are collected."""
+        self._unbind()
+        user = self._place.confinement.user
         for name in ("tmp", "out", "work"):
             path = self._place.folder / name
             _remove(path)
             path.mkdir()
-            self._give(path)
+            if user is not None:
+                os.chown(path, user, user)
+        if self._place.has_own_disk:
+            _empty(Path("/dev/shm"))
+            _empty(Path("/tmp"), keep={Path(path).parts[:3] for path in readable_paths()})
+        self._write_assignment()
         work = self._place.folder / "work"
-        self._write(work, self._job.assignment)
+        _write(work, self._job.assignment)
         return work
 
-    def _replace_tests_by_submission(self, work: Path) -> None:
-        """Remove the Python files of the assignment, then write the submission, but no file whose name is taken."""
-        for name in self._job.assignment:
-            if name.endswith(".py"):
-                (work / name).unlink()
-        taken = self._job.assignment.keys()
-        self._write(work, {name: data for name, data in self._job.submission.items() if name not in taken})
+    def _write_assignment(self) -> None:
+        """Write the data of the assignment where no submission can change them, if the level gives such a place."""
+        folder = self._place.folder / "assignment"
+        if self._place.has_own_disk and folder.exists():
+            return
+        _remove(folder)
+        folder.mkdir()
+        _write(folder, self._data)
+        if self._place.has_own_disk:
+            namespaces.bind_read_only(folder, folder)
 
-    def _write(self, folder: Path, files: Mapping[str, bytes]) -> None:
-        for name, data in files.items():
-            path = folder / name
-            for parent in reversed(path.relative_to(folder).parents[:-1]):
-                (folder / parent).mkdir(exist_ok=True)
-                self._give(folder / parent)
-            path.write_bytes(data)
-            self._give(path)
+    def _write_afresh(self) -> None:
+        """Write data and submission, but no file of the submission whose name is taken. Raises LimitError, ForgedError.
 
-    def _give(self, path: Path) -> None:
-        user = self._place.confinement.user
-        if user is not None:
-            os.chown(path, user, user)
+        Processes of the submission may run and change paths meanwhile. So a process writes that has no more rights than
+        they have, and what they could not have written themselves, they cannot make it write.
+        """
+        self._unbind()
+        if not self._place.has_own_disk:
+            self._write_assignment()
+        work, taken = self._place.folder / "work", self._job.assignment.keys()
+        submission = {name: data for name, data in self._job.submission.items() if name not in taken}
+        writer = os.fork()
+        if writer == 0:
+            try:
+                confine(self._place.confinement)
+                _empty(work)
+                _write(work, {**self._data, **submission})
+                os._exit(0)
+            except OSError as error:
+                os._exit(_FULL if error.errno in (errno.ENOSPC, errno.EDQUOT) else _NOT_WRITTEN)
+            except BaseException:
+                os._exit(_NOT_WRITTEN)
+        code = os.waitstatus_to_exitcode(os.waitpid(writer, 0)[1])
+        if code == _FULL:
+            raise LimitError("disk limit", "the files that it wrote leave no room for those of the next test")
+        try:
+            if code:
+                raise OSError(f"exit code {code}")
+            for name in self._data if self._place.has_own_disk else ():
+                namespaces.bind_read_only(self._place.folder / "assignment" / name, work / name)
+                self._bound.append(work / name)
+        except OSError as error:
+            raise ForgedError("files of the assignment that could not be written") from error
 
-    def _end_test(self, process: WatchedProcess, test: str, outcome: str, message: str) -> None:
+    def _unbind(self) -> None:
+        while self._bound:
+            with contextlib.suppress(OSError):
+                syscalls.umount(str(self._bound.pop()))
+
+    def _end_test(self, process: WatchedProcess, test: str, outcome: str, message: str, phase: str = "") -> None:
         try:
             output, cpu_s = process.take_output()
         except LimitError as error:
-            outcome, message, output, cpu_s = error.outcome, str(error), "", 0.0
+            outcome, message, output, cpu_s, phase = error.outcome, str(error), "", 0.0, ""
         files = {} if outcome == "passed" else self._kept_files(test)
-        self.outcomes[test] = Outcome(outcome, message, output, round(cpu_s, 2), files)
+        self.outcomes[test] = Outcome(outcome, message, output, round(cpu_s, 2), files, phase)
 
     def _kept_files(self, test: str) -> dict[str, bytes]:
         """Files of the test process that explain a failure. They may be anything: links and large ones are left out."""
@@ -217,6 +270,24 @@ def _signal(processes: set[int], number: signal.Signals) -> None:
     for process in processes:
         with contextlib.suppress(ProcessLookupError):
             os.kill(process, number)
+
+
+def _write(folder: Path, files: Mapping[str, bytes]) -> None:
+    for name, data in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(data)
+
+
+def _empty(folder: Path, keep: Collection[tuple[str, ...]] = ()) -> None:
+    """Remove all that a folder has, but for paths with these parts, where files of the system are mounted."""
+    folder.chmod(folder.stat().st_mode | 0o700)
+    for path in folder.iterdir():
+        if path.parts in keep:
+            continue
+        if path.is_dir() and not path.is_symlink():
+            _remove(path)
+        else:
+            path.unlink()
 
 
 def _remove(folder: Path) -> None:

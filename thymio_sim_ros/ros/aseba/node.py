@@ -22,6 +22,7 @@ from rclpy.duration import Duration
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.parameter_service import ParameterService
 from std_msgs.msg import String
 
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
@@ -41,6 +42,7 @@ from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.aseba.variable_timer import VariableTimer
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, deliver, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
@@ -72,10 +74,11 @@ class AsebaRuntime:
         overrides: Mapping[str, Any] = NO_OVERRIDES,
         link: SimulatorLink | None = None,
         tokens: Tokens | None = None,
+        is_closed: bool = False,
     ) -> None:
         """`overrides`: parameter values by name, like those of a command line; `link`: to a simulator whose endpoints
         do not match those of `context`; `tokens`: those that clients of the network servers need, None: those of the
-        environment or of parameters.
+        environment or of parameters; `is_closed`: only this process reaches its parameters, by `control`.
 
         Raises StartError for a parameter or a program that cannot be used.
         """
@@ -86,7 +89,12 @@ class AsebaRuntime:
             is_set_again=self._is_set_again,
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
+            start_parameter_services=not is_closed,
         )
+        self.control: Node | LocalNode = LocalNode(self.node) if is_closed else self.node
+        """Has the services of the parameters."""
+        if isinstance(self.control, LocalNode):
+            self._parameter_services = ParameterService(self.control)
         try:
             self._start(defaults or RuntimeParams(), link, tokens)
         except (OptionError, WrongValueError, *ROBOT_ERRORS) as error:

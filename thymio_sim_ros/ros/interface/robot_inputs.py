@@ -67,6 +67,11 @@ class RobotInput:
     profile: QoSProfile
     limit_check: LimitCheck = saturation.nothing
 
+    @property
+    def is_of_operator(self) -> bool:
+        """Whether an operator acts on the robot by it: programs of a real robot cannot."""
+        return self.topic == "initialpose" or self.topic.startswith(("_press/", "stimulus/"))
+
 
 def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
     """Return all inputs of a robot; `stamped_cmd_vel`: `cmd_vel` is TwistStamped, as in newer versions of Nav2."""

@@ -7,6 +7,8 @@ import time
 
 from rclpy.node import Node
 
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
+
 __all__ = ["WARN_EVERY_S", "ThrottledLog"]
 
 WARN_EVERY_S = 5.0
@@ -21,7 +23,7 @@ class ThrottledLog:
     rclpy throttles by source location, so one topic's warning would suppress those of all others.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node | LocalNode) -> None:
         self._node = node
         self._told_s: dict[str, float] = {}
 

@@ -11,6 +11,7 @@ from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.interface.raw_topic import RawTopic
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.simulator.clock_publisher import ClockPublisher
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
@@ -33,10 +34,18 @@ POLL_COST_NS = 1_000
 class SimulatorEndpoints:
     """Owns the publishers of the simulator. Readings are converted only for topics with subscribers."""
 
-    def __init__(self, node: Node, params: SimulatorParams, make: Callable[[str, RobotNames], RobotEndpoints]) -> None:
-        """`make` creates the endpoints of a robot from its name in the world and its ROS names."""
+    def __init__(
+        self,
+        node: Node,
+        control: Node | LocalNode,
+        params: SimulatorParams,
+        make: Callable[[str, RobotNames], RobotEndpoints],
+    ) -> None:
+        """`control` publishes what shows the world; `make` creates the endpoints of a robot from its name in the world
+        and its ROS names.
+        """
         self.clock = ClockPublisher(node, is_on=params.publish_clock, rate_hz=params.clock_rate)
-        self.world = WorldEndpoints(node, publish_map=params.publish_map, map_frame=params.map_frame)
+        self.world = WorldEndpoints(node, control, publish_map=params.publish_map, map_frame=params.map_frame)
         self.demand = SubscriberDemand(params.periods_ns)
         self.robots = RobotEndpointSet(make, params.naming)
         self._raw = RawTopic(self.world.raw, self.demand)

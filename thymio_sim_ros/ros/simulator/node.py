@@ -15,6 +15,8 @@ from pathlib import Path
 
 from rclpy.context import Context
 from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.parameter_service import ParameterService
 
 from thymio_sim_ros.domain import describe_domain
 from thymio_sim_ros.ros.compat import dds_profile
@@ -23,6 +25,7 @@ from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
@@ -54,9 +57,19 @@ class Simulator:
     and callbacks of `node` use them. `local_commands` takes commands from other threads.
     """
 
-    def __init__(self, context: Context, defaults: SimulatorParams | None = None) -> None:
-        """Raises StartError for a playground, a parameter or a log file that cannot be used."""
-        self.node = parameter_node("simulator", context=context, is_set_again=lambda name: name == "playground")
+    def __init__(self, context: Context, defaults: SimulatorParams | None = None, *, is_closed: bool = False) -> None:
+        """`is_closed`: only this process reaches services, parameters and topics of the world, by `control`.
+
+        Raises StartError for a playground, a parameter or a log file that cannot be used.
+        """
+        self.node = parameter_node(
+            "simulator",
+            context=context,
+            is_set_again=lambda name: name == "playground",
+            start_parameter_services=not is_closed,
+        )
+        self.control: Node | LocalNode = LocalNode(self.node) if is_closed else self.node
+        """Has the endpoints of the world, and those by which an operator acts on a robot."""
         try:
             reject_sim_time(self.node)
             self.params = CurrentParams(params.declare(self.node, defaults or SimulatorParams()))
@@ -77,7 +90,7 @@ class Simulator:
             raise StartError(str(error)) from error
         self._last_heartbeat_ns = 0
         self._counters = MessageCounters()
-        self.endpoints = SimulatorEndpoints(self.node, values, self._new_robot)
+        self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot)
         self.local_commands = LocalCommands(self.node, self.endpoints.robots.receive)
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
         self._robot_options = replace(values.endpoint_options, extra=extra)
@@ -89,10 +102,14 @@ class Simulator:
         self.runner.start()
         if logged is not None:
             self.runner.step(logged.tick_at(values.replay_from))
-        self._services = WorldServices(self.node, self.runner, self.endpoints.robots, self._counters)
+        self._services = WorldServices(self.control, self.runner, self.endpoints.robots, self._counters)
         self._diagnostics = Diagnostics(self.node, self._counters, self.endpoints.clock.conflict)
         self.parameter_callbacks = ParameterCallbacks(self.node, self.params, self._loader, self.runner)
-        self._interfaces = services.offered(self.node, self.runner, self.params, self.parameter_callbacks)
+        self._interfaces: services.SimInterfaces | None = None
+        if isinstance(self.control, LocalNode):
+            self._parameter_services = ParameterService(self.control)
+        else:
+            self._interfaces = services.offered(self.node, self.runner, self.params, self.parameter_callbacks)
 
     @property
     def startup_message(self) -> str:
@@ -127,7 +144,8 @@ class Simulator:
 
     def _new_robot(self, robot: str, names: RobotNames) -> RobotEndpoints:
         owner = RobotAccess(robot, names, self.runner, self.params, self._counters)
-        return RobotEndpoints(self.node, names, owner, options=self._robot_options, demand=self.endpoints.demand)
+        options, demand = self._robot_options, self.endpoints.demand
+        return RobotEndpoints(self.node, names, owner, options=options, demand=demand, control=self.control)
 
     def _publish_heartbeat(self, now_ns: int) -> None:
         self._last_heartbeat_ns = now_ns

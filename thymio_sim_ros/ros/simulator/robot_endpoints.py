@@ -25,6 +25,7 @@ from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput, 
 from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.ros.simulator.visualization.urdf import urdf
 from thymio_sim_ros.sim import commands
@@ -121,7 +122,14 @@ class RobotEndpoints:
     """Publishers, subscriptions and services of one robot on the simulator's node."""
 
     def __init__(
-        self, node: Node, names: RobotNames, owner: RobotOwner, *, options: EndpointOptions, demand: SubscriberDemand
+        self,
+        node: Node,
+        names: RobotNames,
+        owner: RobotOwner,
+        *,
+        options: EndpointOptions,
+        demand: SubscriberDemand,
+        control: Node | LocalNode | None = None,
     ) -> None:
         """Create all endpoints.
 
@@ -131,9 +139,11 @@ class RobotEndpoints:
             owner: Takes commands and gives the context in which messages are converted.
             options: Which topics to create.
             demand: Counts the topics that are published.
+            control: Has the topics of operators and the true pose, if not the node.
         """
         self.names = names
         self._node = node
+        self._control = node if control is None else control
         self._owner = owner
         self._limited: set[str] = set()
         self._warn = ThrottledLog(node)
@@ -155,8 +165,11 @@ class RobotEndpoints:
         known = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
         inputs = [one for one in known if one.topic not in options.left_out]
         self._handlers = {one.topic: self._handler(one) for one in inputs}
-        self._subscriptions = [
-            node.create_subscription(one.type, names.topic(one.topic), self._handlers[one.topic], one.profile)
+        self._subscriptions: list[tuple[Any, Any]] = [
+            (
+                chosen := self._control if one.is_of_operator else node,
+                chosen.create_subscription(one.type, names.topic(one.topic), self._handlers[one.topic], one.profile),
+            )
             for one in inputs
         ]
         handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
@@ -235,22 +248,25 @@ class RobotEndpoints:
         """Destroy all topics and services of this robot."""
         for service in self._services:
             self._node.destroy_service(service)
-        for subscription in self._subscriptions:
-            self._node.destroy_subscription(subscription)
+        for chosen, subscription in self._subscriptions:
+            chosen.destroy_subscription(subscription)
         for publishers in self._publishers.values():
             for target in publishers:
                 self._send(target, wanted=False)
-                self._node.destroy_publisher(target.publisher)
+                self._node_of(target.row).destroy_publisher(target.publisher)
         if self._description is not None:
             self._node.destroy_publisher(self._description)
 
     def _open(self, row: Row, topic_demand: TopicDemand) -> None:
         topic, target = self.names.topic(row.topic), _SensorPublisher(row, topic_demand, next_ns=topic_demand.every_ns)
         profile = qos.overridable(self._node, topic, row.profile)
-        target.publisher = self._node.create_publisher(row.type, topic, **profile)
+        target.publisher = self._node_of(row).create_publisher(row.type, topic, **profile)
         target.send, target.count = raw_publisher.sender(target.publisher), raw_publisher.counter(target.publisher)
         self._publishers[topic_demand.sensor].append(target)
         self._send(target, wanted=row.always)
+
+    def _node_of(self, row: Row) -> Node | LocalNode:
+        return self._control if row.topic == sensor_topics.TRUTH else self._node
 
     def _send(self, target: _SensorPublisher, *, wanted: bool) -> None:
         if target.is_sent == wanted:

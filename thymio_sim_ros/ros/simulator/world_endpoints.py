@@ -6,7 +6,7 @@ import json
 import logging
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from nav_msgs.msg import OccupancyGrid
@@ -16,6 +16,7 @@ from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, RobotNames
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
 from thymio_sim_ros.ros.simulator.visualization.markers import playground_markers
 from thymio_sim_ros.ros.simulator.visualization.occupancy_grid import occupancy
@@ -36,6 +37,9 @@ OVERVIEW_GAP_NS = 400_000_000
 
 _WORDS = ("~/_state", "~/_raw", "~/_overview", "~/_playgrounds", "~/_sensors", "_markers", "_markers/objects")
 """Topics that are always published here; the clock and the diagnostics have publishers of their own."""
+
+_SHOWING = ("~/_overview", "_markers", "_markers/objects", "map")
+"""Those that show where things are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +94,18 @@ class SceneMessages:
 class WorldEndpoints:
     """Publishers for the world as a whole: state, playgrounds, markers, map, raw readings."""
 
-    def __init__(self, node: Node, *, publish_map: bool = False, map_frame: str = MAP_FRAME) -> None:
+    def __init__(
+        self, node: Node, control: Node | LocalNode, *, publish_map: bool = False, map_frame: str = MAP_FRAME
+    ) -> None:
+        """`control` publishes the topics that show where things are."""
         words = (*_WORDS, "map") if publish_map else _WORDS
-        self._publishers = {
-            name: node.create_publisher(TOPICS[name].type, name, TOPICS[name].profile) for name in words
+        self._publishers: dict[str, Any] = {
+            name: (control if name in _SHOWING else node).create_publisher(
+                TOPICS[name].type, name, TOPICS[name].profile
+            )
+            for name in words
         }
+        self._is_closed = control is not node
         self._map_frame = map_frame
         self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._publishers["~/_sensors"].publish(String(data=json.dumps(displayed_sensors())))
@@ -108,6 +119,8 @@ class WorldEndpoints:
 
     def publish_state(self, state: WorldState) -> None:
         """Publish the retained state as JSON."""
+        if self._is_closed:  # the robots of the state are for runtimes, the rest describes the world
+            state = replace(state, playground="", title="", notes=(), movables=())
         self._publishers["~/_state"].publish(String(data=state.as_json()))
 
     def publish_scene(self, scene: SceneMessages) -> None:

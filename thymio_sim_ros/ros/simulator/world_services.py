@@ -19,6 +19,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.ros.simulator.diagnostics import MessageCounters
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
@@ -77,7 +78,9 @@ def at_current_tick(runner: WorldRunner, handler: Handler) -> Handler:
 class WorldServices:
     """The world services on the node of the simulator."""
 
-    def __init__(self, node: Node, runner: WorldRunner, robots: RobotEndpointSet, counters: MessageCounters) -> None:
+    def __init__(
+        self, node: Node | LocalNode, runner: WorldRunner, robots: RobotEndpointSet, counters: MessageCounters
+    ) -> None:
         self._runner, self._robots, self._counters = runner, robots, counters
         self._warn = ThrottledLog(node)
         handlers: dict[str, Handler] = {

@@ -22,6 +22,7 @@ from rclpy.utilities import get_default_context, try_shutdown
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
 from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
@@ -29,7 +30,7 @@ from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.ros import discovery, student
 from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, START_CPU_S, limited
 from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
-from thymio_sim_ros.testing.ros.program import Program
+from thymio_sim_ros.testing.ros.program import OUTPUT_BYTES, Program
 from thymio_sim_ros.testing.ros.program_files import find
 from thymio_sim_ros.testing.ros.programs import Programs
 from thymio_sim_ros.testing.ros.recorder import Recorder
@@ -81,12 +82,15 @@ class Ros:
     A wait for nodes in another process may need more on a machine that is busy.
     """
 
-    def __init__(self, domain: int, *, folder: Path | None = None) -> None:
-        """`folder`: where files of nodes under test are searched first."""
+    def __init__(self, domain: int, *, folder: Path | None = None, output_limit: int = OUTPUT_BYTES) -> None:
+        """`folder`: where files of nodes under test are searched first.
+
+        `output_limit`: bytes that a program may print.
+        """
         self.domain = domain
         self.simulation: Stepped | None = None
         """The simulation of this test, if there is one; it owns simulated time."""
-        self._folder = folder
+        self._folder, self._output_limit = folder, output_limit
         self._threads = set(threading.enumerate())
         # Code under test may use the default context (`rclpy.ok()`). If it is in use already, it is left alone.
         self.context = get_default_context()
@@ -221,7 +225,13 @@ class Ros:
         simulation = self._simulated()
         target = find(source, executable, self._folder)
         values = {"use_sim_time": True, **(parameters or {})}
-        program = Program(target.title, check=check, cpu_limit=cpu_limit, until=simulation.until)
+        program = Program(
+            target.title,
+            check=check,
+            until=simulation.until,
+            cpu_limit=cpu_limit,
+            output_limit=self._output_limit,
+        )
         ros_arguments = student.remap_arguments(name, namespace, remappings or {}, values)
         self.programs.start(program, target, [*arguments, *ros_arguments], stdin=stdin, now_ns=self._now_ns())
         for _ in range(NOTICE):
@@ -340,6 +350,12 @@ class Ros:
         __tracebackhide__ = True
         name = self.node.resolve_topic_name(topic)
         recorder = Recorder(kind, name, self.until, self.now, where)
+        if (local := self._local_topic(name)) is not None:
+            for message in local.retained if transient_local is not False else ():
+                recorder.add(message)
+            local.callbacks.append(recorder.add)
+            self._recorders.append(recorder)
+            return recorder
         if qos is None:
             self.until(lambda: self.node.count_publishers(name), what=f"a publisher of {name}")
             qos = discovery.as_published(self.node, name, DEPTH, transient_local=transient_local)
@@ -352,6 +368,8 @@ class Ros:
     def publisher(self, kind: Any, topic: str, *, depth: int = 10) -> Any:
         """Create a publisher, and wait until it has a subscriber."""
         __tracebackhide__ = True
+        if (local := self._local_topic(self.node.resolve_topic_name(topic))) is not None:
+            return local
         publisher = self.node.create_publisher(kind, topic, depth)
         self.until(publisher.get_subscription_count, what=f"a subscriber of {publisher.topic_name}")
         self.settle()
@@ -360,11 +378,22 @@ class Ros:
     def call(self, kind: Any, name: str, request: Any = None) -> Any:
         """Call a service and return its response."""
         __tracebackhide__ = True
+        full = self.node.resolve_service_name(name)
+        if (answer := next(filter(None, (one.service(full) for one in self._local_nodes())), None)) is not None:
+            return answer(kind.Request() if request is None else request)
         client = self.node.create_client(kind, name)
         self.until(client.service_is_ready, what=f"service {name}")
         future = client.call_async(kind.Request() if request is None else request)
         self.until(future.done, what=f"answer of {name}")
         return future.result()
+
+    def _local_topic(self, name: str) -> LocalTopic | None:
+        return next(filter(None, (one.topic(name) for one in self._local_nodes())), None)
+
+    def _local_nodes(self) -> list[LocalNode]:
+        """Those of the nodes of this package whose endpoints only this process reaches."""
+        controls = (getattr(life, "control", None) for life in self._lives)
+        return [control for control in controls if isinstance(control, LocalNode)]
 
     def _all_nodes(self) -> list[Node]:
         return [*self._nodes, *(life.node for life in self._lives)]

@@ -23,7 +23,7 @@ from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.ros.cpu_limit import START_CPU_S
 from thymio_sim_ros.testing.ros.process_watch import BLOCKED_S, ProcessWatch
 
-__all__ = ["INTERRUPTED_NS", "Program"]
+__all__ = ["INTERRUPTED_NS", "OUTPUT_BYTES", "Program"]
 
 INTERRUPTED_NS = 2 * SECOND_NS
 """Simulated time that an interrupted program has for its end."""
@@ -33,11 +33,19 @@ _LOOK_S = 0.05
 
 _LAST_LINES = 6
 
+OUTPUT_BYTES = 10_000_000
+"""What a program may print, unless the test says otherwise."""
+
+_SHOWN = 20_000
+"""Characters of its output, from its end, that the report of the test has."""
+
 
 class Program:
     """A program under test. Invariant: it runs only in its turns, whose order and times the test determines."""
 
-    def __init__(self, title: str, *, check: bool, cpu_limit: float, until: Callable[..., Any]) -> None:
+    def __init__(
+        self, title: str, *, check: bool, cpu_limit: float, until: Callable[..., Any], output_limit: int = OUTPUT_BYTES
+    ) -> None:
         """`title`: how reports call it; `until`: `Simulation.until`."""
         self.title = title
         self.exit_code: int | None = None
@@ -45,7 +53,7 @@ class Program:
         self.marks: dict[str, int] = {}
         self.endpoints: dict[str, dict[str, int]] = {}
         self._check = check
-        self._cpu_limit = cpu_limit
+        self._cpu_limit, self._output_limit = cpu_limit, output_limit
         self._until = until
         self._now_ns = 0
         self._lines: list[tuple[int, str]] = []
@@ -54,6 +62,7 @@ class Program:
         self._turns = 0
         self._is_waiting = False
         """Whether it has ended its turn by waiting, not by its end."""
+        self._has_shown_errors = False
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  # open as long as the program
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115
         self._stacks = tempfile.TemporaryFile()  # noqa: SIM115
@@ -182,7 +191,10 @@ class Program:
             self._channel.close()
 
     def close(self) -> None:
-        """Close the files of its output."""
+        """Print its output, which belongs to the report of the test, and close the files."""
+        for words, text in (("printed", self.output), ("reported", "" if self._has_shown_errors else self.errors)):
+            if text:
+                print(f"--- {self.title} {words}:\n{text[-_SHOWN:]}")
         for file in (self._output, self._errors, self._stacks):
             file.close()
 
@@ -193,6 +205,7 @@ class Program:
         while not select.select([self._channel.read_fd], [], [], _LOOK_S)[0]:
             if self._process.poll() is not None:
                 raise ClosedError
+            self._check_output()
             if self._watch.used_s() > limit_s:
                 self._fail(f"used more than {limit_s:g} s of processor time without a wait")
             if self._watch.is_blocked():
@@ -218,8 +231,16 @@ class Program:
         self.exit_code = self._process.wait(LAST_RESORT_S)
         self._channel.close()
         self.endpoints = {}
+        self._check_output()
         if self._check and self.exit_code:
+            self._has_shown_errors = True
             pytest.fail(f"{self.title} ended with exit code {self.exit_code}\n{self.errors}".rstrip())
+
+    def _check_output(self) -> None:
+        __tracebackhide__ = True
+        if sum(os.fstat(file.fileno()).st_size for file in (self._output, self._errors)) > self._output_limit:
+            self.kill()
+            pytest.fail(f"{self.title} printed more than {self._output_limit / 1e6:g} MB")
 
 
 def _text(file: Any) -> str:

@@ -127,6 +127,12 @@ class Simulation:
             if robot is not None:
                 thymio.record.add_tick(robot, self.world.now_ns)
 
+    def reset(self) -> None:
+        """Reset world, time and noise to the start, and clear the records of the robots."""
+        self.simulator.runner.reset()
+        for thymio in self:
+            thymio.record.clear()
+
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Step until the condition is true, for at most `seconds` of simulated time; returns its value.
 

@@ -1,0 +1,70 @@
+"""Finds functions of the tests that a submission has replaced in the process of the test.
+
+Code in the same interpreter can change whatever it wants, this check included. It finds assignments to functions and
+methods of the fixtures, the checks, pytest and the tests.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+__all__ = ["TestFunctions"]
+
+_PACKAGES = ("thymio_sim_ros", "aseba_vm", "_pytest", "pluggy")
+
+
+class TestFunctions:
+    """The functions that verdicts depend on, as they were before a submission was there."""
+
+    __test__ = False
+
+    def __init__(self) -> None:
+        self._known: list[tuple[str, Any, str, Any, tuple[Any, ...]]] = []
+        """Path of a name, its owner, name, value, and the code that the value runs."""
+
+    def remember(self, folder: Path) -> None:
+        """Remember the functions of pytest, of this package, and of the tests in a folder."""
+        modules = [module for module in list(sys.modules.values()) if _is_of_tests(module, folder)]
+        self._known = [
+            (f"{path}.{name}", owner, name, value, _code(value))
+            for module in modules
+            for path, owner in _owners(module)
+            for name, value in list(vars(owner).items())
+            if _code(value)
+        ]
+
+    def replaced(self) -> list[str]:
+        """Return a message for each function that is another one now."""
+        return [
+            f"the submission replaced {path}, a function of the tests"
+            for path, owner, name, value, code in self._known
+            if vars(owner).get(name) is not value or _code(value) != code
+        ]
+
+
+def _is_of_tests(module: ModuleType, folder: Path) -> bool:
+    name = getattr(module, "__name__", "")
+    return name.partition(".")[0] in _PACKAGES or str(getattr(module, "__file__", "")).startswith(f"{folder}/")
+
+
+def _owners(module: ModuleType) -> Iterator[tuple[str, Any]]:
+    """The module and the classes that it defines, with their paths."""
+    yield module.__name__, module
+    for name, value in list(vars(module).items()):
+        if isinstance(value, type) and value.__module__ == module.__name__:
+            yield f"{module.__name__}.{name}", value
+
+
+def _code(value: object) -> tuple[Any, ...]:
+    """The code that a function, method or property runs; empty for anything else."""
+    if isinstance(value, FunctionType):
+        return (value.__code__,)
+    if isinstance(value, staticmethod | classmethod):
+        return _code(value.__func__)
+    if isinstance(value, property):
+        return tuple(code for part in (value.fget, value.fset) for code in _code(part))
+    return ()
