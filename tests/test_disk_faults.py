@@ -20,7 +20,7 @@ import pytest
 from aseba_vm.cli.main import main as aseba
 from tests.disk import FailingDisk
 from tests.sim.builders import make
-from thymio_sim_ros.classroom.folder import ClassFolder
+from thymio_sim_ros.classroom.folder import ClassFolder, Work
 from thymio_sim_ros.cli.main import main as thymio_sim
 from thymio_sim_ros.cli.runner_sound import run_with_sound
 from thymio_sim_ros.device.firmware.sd_card import SdCard
@@ -124,7 +124,7 @@ def _class_folder(folder: Path, second: bool) -> None:
 def _pupils_program(folder: Path, second: bool) -> None:
     kept = ClassFolder(folder)
     (place,) = kept.places(["Ada"])
-    kept.keep_program(place, f"motor.left.target = {int(second)}\n")
+    kept.keep(place, Work(f"motor.left.target = {int(second)}\n", program_name=f"{int(second)}.aesl"))
 
 
 def _reports(folder: Path, second: bool) -> None:
@@ -154,7 +154,7 @@ WRITERS = [
     Writer("sweep as CSV", _table(".csv"), ("table.csv",)),
     Writer("sweep as Parquet", _table(".parquet"), ("table.parquet",)),
     Writer("folder of a class", _class_folder, ("class.json",)),
-    Writer("program of a pupil", _pupils_program, ("class.json", "pupils/ada/program.aesl")),
+    Writer("program of a pupil", _pupils_program, ("class.json", "pupils/ada/program.aesl", "pupils/ada/work.json")),
     Writer("kept report of a grading", _kept_report, (f"kept/{_KEPT}",)),
     Writer("reports", _reports, (
         "marks.csv", "junit.xml", "index.html", f"{_PUPIL}/index.html", f"{_PUPIL}/results.json",

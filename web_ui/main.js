@@ -119,7 +119,14 @@ async function main() {
     },
     wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
     urgency: (topic) => urgencyOf(store.state, topic),
-    parameters: [PARAMETERS.playground, PARAMETERS.factor, PARAMETERS.notice, PARAMETERS.noticeLink],
+    parameters: [
+      PARAMETERS.playground,
+      PARAMETERS.factor,
+      PARAMETERS.notice,
+      PARAMETERS.noticeLink,
+      PARAMETERS.pupil,
+      PARAMETERS.pausedByTeacher,
+    ],
   });
   const actions = new Actions({
     client,

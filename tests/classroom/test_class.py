@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import base64
 import io
 import os
 import signal
@@ -20,8 +22,13 @@ from websockets.exceptions import WebSocketException
 
 from tests.bridge.peers import Client, run
 from tests.classroom.class_support import RunningClass
+from tests.patience import PATIENCE_S
+from thymio_sim_ros import resources
 from thymio_sim_ros.bridge.protocol import messages as ms
+from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS
+from thymio_sim_ros.classroom.cdr import read_string
+from thymio_sim_ros.classroom.suite_state import read_state
 from thymio_sim_ros.cli import main as commands
 
 pytestmark = pytest.mark.process
@@ -29,6 +36,7 @@ pytestmark = pytest.mark.process
 ADA, BEN = 1, 2
 """Numbers of the pupils."""
 PROGRAM = "onevent button.forward\nmotor.left.target = 100\n"
+DRAFT = PROGRAM + "motor.right.target ="
 
 
 @pytest.fixture(scope="module")
@@ -62,10 +70,14 @@ def asked(port: int, token: str, request: ms.ClientMessage, names: tuple[str, ..
     return run(talk())
 
 
-def notice(group: RunningClass, port: int, name: str) -> Any:
-    wanted = ("/web_ui.notice", "/web_ui.notice_link")
-    values = asked(port, token_of(group, name), ms.GetParameters(wanted), wanted)
-    return values.get(wanted[0]), values.get(wanted[1])
+def values_of(group: RunningClass, number: int, name: str, *wanted: str) -> tuple[Any, ...]:
+    """Parameters of a pupil's suite."""
+    values = asked(group.port_of(number), token_of(group, name), ms.GetParameters(wanted), wanted)
+    return tuple(values.get(parameter) for parameter in wanted)
+
+
+def notice(group: RunningClass, number: int, name: str) -> Any:
+    return values_of(group, number, name, "/web_ui.notice", "/web_ui.notice_link")
 
 
 def suite_pid(port: int) -> int:
@@ -96,35 +108,80 @@ def test_one_is_paused_and_the_other_runs(group: RunningClass) -> None:
     group.until("ada", lambda one: not one["paused"])
 
 
+def test_a_pause_of_the_teacher_holds_until_the_teacher_ends_it(group: RunningClass) -> None:
+    group.request("pause", {"pupils": ["ada"], "paused": True})
+    group.until("ada", lambda one: one["paused"])
+    page = "/web_ui.paused_by_teacher"
+    assert values_of(group, ADA, "Ada", page, "/web_ui.pupil") == (True, "Ada")
+    assert values_of(group, BEN, "Ben", page, "/web_ui.pupil") == (False, "Ben")
+    for _ in range(2):
+        states = run(states_after_resuming(group))
+        assert states == [True, False, True]  # the pupil lets time run, and the class pauses it
+    group.request("pause", {"pupils": None, "paused": False})
+    group.until("ada", lambda one: not one["paused"])
+    assert values_of(group, ADA, "Ada", page) == (False,)
+
+
+async def states_after_resuming(group: RunningClass) -> list[bool]:
+    """Whether time is paused, at each change, when the page of a pupil asks to let it run."""
+    url = f"ws://127.0.0.1:{group.port_of(ADA)}/?token={token_of(group, 'Ada')}"
+    seen: list[bool] = []
+    service: int | None = None
+    async with asyncio.timeout(PATIENCE_S), connect(url, subprotocols=SUBPROTOCOLS, max_size=None) as connection:
+        client = Client(connection)
+        async for frame in connection:
+            match wire.decode_server(frame):
+                case ms.AdvertiseServices(services=services):
+                    service = next((one.id for one in services if one.name == "/simulator/pause"), service)
+                case ms.Advertise(channels=channels):
+                    states = [ms.Subscription(1, one.id) for one in channels if one.topic == "/simulator/_state"]
+                    await client.send(*(ms.Subscribe((one,)) for one in states))
+                case ms.MessageData(payload=payload):
+                    paused = read_state(read_string(payload)).paused
+                    if service is not None and not seen:
+                        await client.send(ms.ServiceRequest(service, 1, "json", b'{"data": false}'))
+                    if service is not None and seen[-1:] != [paused]:
+                        seen.append(paused)
+                    if len(seen) == 3:
+                        break
+    return seen
+
+
 def test_a_message_and_a_robot_that_is_shown_arrive_on_the_page(group: RunningClass) -> None:
     group.request("message", {"pupils": ["ada"], "text": "Bitte schön"})
     group.request("show", {"pupil": "ben"})
     watch = group.pupil("ben")["watch"]
-    group.until("ada", lambda _one: notice(group, group.port_of(ADA), "Ada") == ("Bitte schön", watch))
+    group.until("ada", lambda _one: notice(group, ADA, "Ada") == ("Bitte schön", watch))
     group.request("show", {"pupil": None})
-    group.until("ada", lambda _one: notice(group, group.port_of(ADA), "Ada") == ("Bitte schön", ""))
-    assert notice(group, group.port_of(BEN), "Ben") == ("", "")
+    group.until("ada", lambda _one: notice(group, ADA, "Ada") == ("Bitte schön", ""))
+    assert notice(group, BEN, "Ben") == ("", "")
 
 
-def test_a_suite_that_is_killed_starts_again_with_its_program_and_message(group: RunningClass) -> None:
+def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: RunningClass) -> None:
+    room = resources.playgrounds()["line"].read_bytes()
+    playground = f"data:application/octet-stream;name=Zimmer%201.json;base64,{base64.b64encode(room).decode()}"
     changes = (
-        ms.Parameter("/aseba_runtime.script.name", "mine.aesl"),
+        ms.Parameter("/aseba_runtime.script.name", "Kreis für Zoë.aesl"),
         ms.Parameter("/aseba_runtime.script.source", PROGRAM),
+        ms.Parameter("/simulator.playground", playground),
+        ms.Parameter("/web_ui.draft", DRAFT),
     )
     asked(group.port_of(ADA), token_of(group, "Ada"), ms.SetParameters(changes, "set"), ())
     group.request("message", {"pupils": ["ada"], "text": "still there"})
-    group.until("ada", lambda one: zipped(group) == {"ada/program.aesl": PROGRAM})
+    works = {"ada/program.aesl": PROGRAM, "ada/draft.aesl": DRAFT, "missing.txt": "Ben\n"}
+    group.until("ada", lambda _one: zipped(group) == works)
+    plan = group.until("ada", lambda one: one["plan"] != group.pupil("ben")["plan"])["plan"]
     before = group.pupil("ada")
     os.killpg(suite_pid(group.port_of(ADA)), signal.SIGKILL)
     after = group.until("ada", lambda one: one["restarts"] == 1 and one["phase"] == "running" and one["programs"])
     assert after["reason"] == "ended by SIGKILL"
     assert after["link"] == before["link"]
-    assert after["programs"][0]["program"] == "program.aesl"
+    assert after["programs"][0]["program"] == "Kreis für Zoë.aesl"
+    assert after["plan"] == plan
     assert group.pupil("ben")["restarts"] == 0
-    source = "/aseba_runtime.script.path"
-    kept = asked(group.port_of(ADA), token_of(group, "Ada"), ms.GetParameters((source,)), (source,))[source]
-    assert Path(str(kept)).read_text() == PROGRAM
-    group.until("ada", lambda _one: notice(group, group.port_of(ADA), "Ada")[0] == "still there")
+    names = ("/aseba_runtime.script.source", "/simulator.playground")
+    assert values_of(group, ADA, "Ada", *names) == (PROGRAM, playground)
+    group.until("ada", lambda _one: notice(group, ADA, "Ada")[0] == "still there")
 
 
 @pytest.mark.slow

@@ -9,19 +9,20 @@ from pathlib import Path
 import pytest
 
 from thymio_sim_ros.classroom.errors import ClassError
-from thymio_sim_ros.classroom.folder import ClassFolder
+from thymio_sim_ros.classroom.folder import ClassFolder, Work
 
 
 def test_links_and_programs_stay_when_the_list_of_names_changes(tmp_path: Path) -> None:
     first = ClassFolder(tmp_path / "class")
     ada, ben = first.places(["Ada", "Ben"])
-    first.keep_program(ada, "var a = 1\n")
+    work = Work("var a = 1\n", "Adas Kreis.aesl", "var a = 2\r\n", '{"format": 1}', "desk")
+    first.keep(ada, work)
     later = ClassFolder(tmp_path / "class")
     zoe, again = later.places(["Zoë", "Ada"])
     assert again == ada
-    assert later.program(again) == "var a = 1\n"
+    assert later.work(again) == work
     assert zoe.number not in (ada.number, ben.number)
-    assert later.program(zoe) is None
+    assert later.work(zoe) == Work()
     assert later.teacher_token == first.teacher_token
 
 
@@ -48,3 +49,12 @@ def test_a_damaged_file_is_refused_with_its_path(tmp_path: Path, text: str) -> N
 def test_places_are_kept_as_json(tmp_path: Path) -> None:
     ClassFolder(tmp_path).places(["Jürg"])
     assert json.loads((tmp_path / "class.json").read_text())["pupils"][0]["id"] == "jurg"
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"playground": 3}', "null"])
+def test_a_damaged_file_of_a_pupil_leaves_the_program(tmp_path: Path, text: str) -> None:
+    folder = ClassFolder(tmp_path)
+    [ada] = folder.places(["Ada"])
+    folder.keep(ada, Work("var a = 1\n", playground="line"))
+    (folder.pupil(ada) / "work.json").write_text(text)
+    assert folder.work(ada) == Work("var a = 1\n")

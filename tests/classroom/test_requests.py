@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from thymio_sim_ros.classroom.classroom import Classroom
-from thymio_sim_ros.classroom.folder import ClassFolder
+from thymio_sim_ros.classroom.folder import ClassFolder, Work
 from thymio_sim_ros.classroom.requests import Answer, RefusalError, answer
 from thymio_sim_ros.classroom.suite_process import SuiteOptions
 
@@ -24,7 +24,7 @@ class Teacher:
 
     def __init__(self, path: Path) -> None:
         self.folder = ClassFolder(path)
-        self.places = self.folder.places(["Ada", "Ben"])
+        self.places = self.folder.places(["Ada", "Ben", "Eve", "Zoë"])
 
     def ask(self, *requests: tuple[str, str, Any]) -> list[Answer]:
         """The answers to requests: method, name, fields."""
@@ -51,21 +51,44 @@ def test_a_message_is_for_one_or_for_all(teacher: Teacher) -> None:
         ("GET", "state", None),
     )
     pupils = json.loads(state.body)["pupils"]
-    assert [(pupil["id"], pupil["notice"]) for pupil in pupils] == [("ada", "Look up"), ("ben", "Well done")]
+    assert [(pupil["id"], pupil["notice"]) for pupil in pupils[:2]] == [("ada", "Look up"), ("ben", "Well done")]
+
+
+def test_a_pause_of_the_teacher_is_told_from_one_of_the_pupil(teacher: Teacher) -> None:
+    *_, state = teacher.ask(("POST", "pause", {"pupils": ["ada"], "paused": True}), ("GET", "state", None))
+    assert [pupil["held"] for pupil in json.loads(state.body)["pupils"]] == [True, False, False, False]
 
 
 def test_programs_are_collected_by_pupil(teacher: Teacher) -> None:
-    teacher.folder.keep_program(teacher.places[1], "onevent prox\n")
-    [packed] = teacher.ask(("GET", "programs.zip", None))
+    ada, ben, eve, _ = teacher.places
+    teacher.folder.keep(ada, Work("onevent prox\n", draft="onevent prox\n"))
+    teacher.folder.keep(ben, Work("onevent tap\n", draft="onevent tap\nvar"))
+    teacher.folder.keep(eve, Work(draft="onevent"))
+    packed, missing = teacher.ask(("GET", "programs.zip", None), ("GET", "missing", None))
+    assert json.loads(missing.body) == ["Zoë"]
     with zipfile.ZipFile(io.BytesIO(packed.body)) as archive:
-        assert archive.namelist() == ["ben/program.aesl"]
-        assert archive.read("ben/program.aesl") == b"onevent prox\n"
+        assert {name: archive.read(name).decode() for name in archive.namelist()} == {
+            "ada/program.aesl": "onevent prox\n",
+            "ben/program.aesl": "onevent tap\n",
+            "ben/draft.aesl": "onevent tap\nvar",
+            "eve/draft.aesl": "onevent",
+            "missing.txt": "Zoë\n",
+        }
+
+
+def test_no_one_is_missing_when_all_have_a_program(teacher: Teacher) -> None:
+    for place in teacher.places:
+        teacher.folder.keep(place, Work("onevent prox\n"))
+    packed, missing = teacher.ask(("GET", "programs.zip", None), ("GET", "missing", None))
+    assert json.loads(missing.body) == []
+    with zipfile.ZipFile(io.BytesIO(packed.body)) as archive:
+        assert "missing.txt" not in archive.namelist()
 
 
 def test_the_sheet_has_a_link_for_each_pupil(teacher: Teacher) -> None:
     [sheet] = teacher.ask(("GET", "sheet", None))
     links = json.loads(sheet.body)
-    assert [link["name"] for link in links] == ["Ada", "Ben"]
+    assert [link["name"] for link in links] == ["Ada", "Ben", "Eve", "Zoë"]
     assert links[0]["url"] == f"http://localhost:21301/#token={teacher.places[0].token}"
 
 
@@ -85,7 +108,7 @@ def test_plans_are_those_of_pupils(teacher: Teacher) -> None:
         ("POST", "message", [], 400),
         ("POST", "message", {"text": 3}, 400),
         ("POST", "message", {"text": "x" * 501}, 400),
-        ("POST", "pause", {"pupils": ["eve"], "paused": True}, 400),
+        ("POST", "pause", {"pupils": ["mia"], "paused": True}, 400),
         ("POST", "pause", {"pupils": "ada", "paused": True}, 400),
         ("POST", "pause", {"paused": 1}, 400),
         ("POST", "show", {"pupil": ["ada"]}, 400),

@@ -15,15 +15,17 @@ PLACE = Place("ada", "Ada", 2, "secret-token", "other-token")
 
 
 def test_a_pupil_has_two_ports_a_domain_and_no_servers_for_other_programs() -> None:
-    line = " ".join(command(OPTIONS, PLACE, "welcome"))
+    line = " ".join(command(OPTIONS, PLACE, "welcome", Path("/class/parameters.yaml")))
     assert "--port 8105 --foxglove-port 8106" in line
     assert "--no-aseba --no-tdm" in line
-    assert line.endswith("--ros-args -p simulator:batch_ticks:=3 -p simulator:clock_rate:=20.0")
+    assert line.endswith(
+        "--ros-args -p simulator:batch_ticks:=3 -p simulator:clock_rate:=20.0 --params-file /class/parameters.yaml"
+    )
     assert environment(OPTIONS, PLACE, {})["ROS_DOMAIN_ID"] == "3"
 
 
 def test_tokens_are_in_the_environment_only() -> None:
-    assert "token" not in " ".join(command(OPTIONS, PLACE, "welcome"))
+    assert "token" not in " ".join(command(OPTIONS, PLACE, "welcome", Path("/class/parameters.yaml")))
     assert environment(OPTIONS, PLACE, {"PATH": "/bin"})["THYMIO_SIM_TOKEN"] == "secret-token"
 
 

@@ -306,3 +306,24 @@ test("an error disappears when the action succeeds", async () => {
   await done.step(1);
   assert.deepEqual(refused.store.state.notices, []);
 });
+
+test("a teacher's pause holds, and the page says so", async () => {
+  const { actions, asked, store } = prepared();
+  store.dispatch({ type: "parameters", parameters: [{ name: "/web_ui.paused_by_teacher", value: true }] });
+  await actions.pause(false);
+  assert.deepEqual(asked, []);
+  assert.equal(store.state.notices[0].text, "time.pausedByTeacher");
+  store.dispatch({ type: "parameters", parameters: [{ name: "/web_ui.paused_by_teacher", value: false }] });
+  await actions.pause(false);
+  assert.deepEqual(asked, [["call", "/simulator/pause", { data: false }]]);
+});
+
+test("what a pupil writes is sent to the class, and what others write is not", async () => {
+  const { actions, asked, store } = prepared();
+  store.dispatch({ type: "connected" });
+  await actions.sendDraft("var a");
+  assert.deepEqual(asked, []);
+  store.dispatch({ type: "parameters", parameters: [{ name: "/web_ui.pupil", value: "Ada" }] });
+  await actions.sendDraft("var a");
+  assert.deepEqual(asked, [["set", [{ name: "/web_ui.draft", value: "var a" }]]]);
+});

@@ -9,7 +9,7 @@ import { needsHelp, pupilState, slowPercent } from "../../web_ui/classroom/pupil
 /** @param {Partial<Pupil>} given @returns {Pupil} */
 function pupil(given) {
   const program = { state: "running", program: "mine.aesl", line: "", fault: "" };
-  const known = { id: "ada", name: "Ada", reason: "", restarts: 0, paused: false, achieved: 1, fallen: [], programs: [program] };
+  const known = { id: "ada", name: "Ada", reason: "", restarts: 0, paused: false, held: false, achieved: 1, fallen: [], programs: [program] };
   return { ...known, phase: "running", overview: {}, plan: "1", notice: "", link: "", watch: "", ...given };
 }
 
@@ -17,6 +17,7 @@ test("a pupil's state is one word, and the worst of several robots", () => {
   const program = { program: "mine.aesl", line: "", fault: "" };
   assert.equal(pupilState(pupil({})), "runs");
   assert.equal(pupilState(pupil({ paused: true })), "paused");
+  assert.equal(pupilState(pupil({ paused: true, held: true })), "held");
   assert.equal(pupilState(pupil({ programs: [] })), "idle");
   assert.equal(pupilState(pupil({ fallen: ["thymio"] })), "fell");
   assert.equal(pupilState(pupil({ phase: "broken" })), "broken");
@@ -26,8 +27,8 @@ test("a pupil's state is one word, and the worst of several robots", () => {
 
 test("a pupil needs help with a mistake or a broken simulator, not while waiting", () => {
   assert.deepEqual(
-    [pupil({}), pupil({ phase: "broken" }), pupil({ phase: "starting" }), pupil({ fallen: ["thymio"] })].map(needsHelp),
-    [false, true, false, true],
+    [pupil({}), pupil({ phase: "broken" }), pupil({ phase: "starting" }), pupil({ paused: true, held: true }), pupil({ fallen: ["thymio"] })].map(needsHelp),
+    [false, true, false, false, true],
   );
 });
 

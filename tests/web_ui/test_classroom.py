@@ -21,6 +21,10 @@ def group(browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running
     running.end()
 
 
+def page_of(group: RunningClass, pupil: str) -> str:
+    return str(group.pupil(pupil)["link"]).replace("/#", "/?tour=off#").replace("localhost", "127.0.0.1")
+
+
 def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     group: RunningClass, page, other_page, tmp_path
 ) -> None:
@@ -36,14 +40,14 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     assert "token" not in page.url
 
     page.click("[data-verb=pauseAll]")
-    ada.locator(".chip", has_text="paused").wait_for()
+    ada.locator(".chip", has_text="paused by you").wait_for()
     ada.locator("[data-verb=run]").click()
     ada.locator("[data-verb=pause]").wait_for()
 
     ada.locator("[data-verb=message]").click()
-    page.fill("#message", "Look at the <b>board</b>")
+    page.get_by_role("textbox", name="Message to Ada").fill("Look at the <b>board</b>")
     page.click("[data-verb=send]")
-    open_page(other_page, group.pupil("ada")["link"].replace("/#", "/?tour=off#").replace("localhost", "127.0.0.1"))
+    open_page(other_page, page_of(group, "ada"))
     note = other_page.locator(".teacher-note")
     note.get_by_text("Look at the <b>board</b>").wait_for()
     assert not note.locator("a").is_visible()
@@ -60,13 +64,44 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     with page.expect_download() as download:
         page.click("[data-verb=collect]")
     download.value.save_as(tmp_path / "programs.zip")
-    assert zipfile.is_zipfile(tmp_path / "programs.zip")
+    with zipfile.ZipFile(tmp_path / "programs.zip") as archive:
+        assert archive.read("missing.txt").decode() == "Ada\nJürg\n"
+    page.locator(".class-missing", has_text="No program yet: Ada, Jürg.").wait_for()
 
     page.click("[data-verb=sheet]")
     page.locator(".class-link img").nth(1).wait_for()
     assert page.locator(".class-link img").count() == 2
     page.click("[data-verb=back]")
     ada.wait_for()
+
+
+def test_a_pupil_sees_whose_page_it_is_and_who_has_paused_it(group: RunningClass, page, tmp_path) -> None:
+    open_page(page, page_of(group, "jurg"))
+    page.locator("#pupil", has_text="Jürg").wait_for()
+    page.wait_for_function("() => document.title === 'Jürg – Thymio Sim'")
+    group.request("message", {"pupils": ["jurg"], "text": "Look up"})
+    group.request("pause", {"pupils": ["jurg"], "paused": True})
+    note = page.locator(".teacher-note", has_text="Your teacher has paused time.")
+    note.get_by_text("Look up").wait_for()
+    page.locator("#pause:disabled[title='Your teacher has paused time.']").wait_for()
+    page.locator("#view").press("Space")
+    assert page.locator("#pause").is_disabled()
+    (tmp_path / "song.mp3").write_bytes(b"")
+    page.set_input_files("#playground-file", str(tmp_path / "song.mp3"))
+    page.locator(".notice:visible", has_text="song.mp3").wait_for()
+    assert note.is_visible()
+    group.request("pause", {"pupils": ["jurg"], "paused": False})
+    note.get_by_text("Your teacher has paused time.").wait_for(state="hidden")
+    page.locator("#pause:enabled").wait_for()
+
+
+def test_what_a_pupil_has_written_is_collected_before_it_runs(group: RunningClass, page) -> None:
+    open_page(page, page_of(group, "jurg"))
+    page.click("#tab-program")
+    page.click("[data-new=empty]")
+    page.locator(".cm-content").fill("var written = 1")
+    zipped = group.folder / "pupils" / "jurg" / "draft.aesl"
+    group.until("jurg", lambda _one: zipped.exists() and "var written = 1" in zipped.read_text())
 
 
 @pytest.mark.slow

@@ -9,7 +9,9 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
+from tests.bridge.studio import set_and_answer
 from tests.web_ui.page_support import MARKS, open_page, wait_for_position, wait_for_program, wait_for_service
+from thymio_sim_ros.bridge.protocol import messages as ms
 
 pytestmark = MARKS
 
@@ -88,10 +90,15 @@ def test_a_fallen_robot_is_reported_and_put_back(world, page, tmp_path):
     program.write_text("onevent button.forward\nmotor.left.target = 300\nmotor.right.target = 300\n")
     open_page(page, world(playground, program))
     wait_for_program(page, "off.aesl")
+    with world.client() as client:
+        set_and_answer(client, ms.Parameter("/web_ui.notice", "Look at the board"))
+    note = page.locator(".teacher-note", has_text="Look at the board")
+    note.wait_for()
     back = page.get_by_role("button", name="Put me back")
     playwright.expect(back).to_have_count(0)
     page.click("[data-button=forward]")
     playwright.expect(page.locator(".fallen")).to_contain_text("I fell.")
+    playwright.expect(note).to_be_visible()
     page.click("button.stop")
     page.wait_for_function("() => Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
     back.click()

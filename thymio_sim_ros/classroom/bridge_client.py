@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from websockets.asyncio.client import ClientConnection, connect
@@ -20,13 +20,14 @@ from thymio_sim_ros.bridge.protocol.errors import FrameError
 from thymio_sim_ros.classroom.cdr import CdrError, read_diagnostic, read_string
 from thymio_sim_ros.classroom.suite_state import Overview, SuiteState, SuiteStateError, read_overview, read_state
 
-__all__ = ["PLAYGROUND", "SOURCE", "BridgeClient", "SuiteStatus"]
+__all__ = ["DRAFT", "PLAYGROUND", "PROGRAM_NAME", "SOURCE", "BridgeClient", "SuiteStatus"]
 
 _STATE, _OVERVIEW, _PROGRAM = "/simulator/_state", "/simulator/_overview", "/_aseba/status"
 _PAUSE = "/simulator/pause"
-SOURCE, PLAYGROUND = "/aseba_runtime.script.source", "/simulator.playground"
-_NOTICE, _NOTICE_LINK = "/web_ui.notice", "/web_ui.notice_link"
-_WATCHED = (SOURCE, PLAYGROUND)
+PROGRAM_NAME, SOURCE = "/aseba_runtime.script.name", "/aseba_runtime.script.source"
+PLAYGROUND, DRAFT = "/simulator.playground", "/web_ui.draft"
+_PAGE = "/web_ui."
+_WATCHED = (PROGRAM_NAME, SOURCE, PLAYGROUND, DRAFT)
 _PING_S, _PONG_S = 10.0, 30.0
 """Time between pings, and until a suite without an answer counts as broken; long, for a machine under load."""
 
@@ -45,7 +46,7 @@ class BridgeClient:
     """One connection; `run` serves it until it ends. Only for the thread of its event loop."""
 
     def __init__(self, url: str, token: str, on_parameter: Callable[[str, str], None]) -> None:
-        """`on_parameter` gets name and text of the watched parameters `SOURCE` and `PLAYGROUND`."""
+        """`on_parameter` gets name and text of the watched parameters, which are the constants of this module."""
         self._url, self._token, self._on_parameter = url, token, on_parameter
         self._connection: ClientConnection | None = None
         self._channels: dict[str, int] = {}
@@ -57,6 +58,8 @@ class BridgeClient:
         self.status = SuiteStatus()
         self.is_ready = asyncio.Event()
         """Set while the connection is open and the state of the world is known."""
+        self.has_changed = asyncio.Event()
+        """Set when the state of the world or the services have changed; the coroutine that waits for it clears it."""
 
     async def run(self) -> None:
         """Connect and receive. Raises OSError or WebSocketException (ConnectionClosed) when the connection ends."""
@@ -96,9 +99,9 @@ class BridgeClient:
         await self._send(ms.ServiceRequest(service, self._calls, JSON, json.dumps({"data": paused}).encode()))
         return True
 
-    async def set_notice(self, text: str, link: str) -> None:
-        """Show a notice on the page, empty for none."""
-        await self._send(ms.SetParameters((ms.Parameter(_NOTICE_LINK, link), ms.Parameter(_NOTICE, text))))
+    async def set_page(self, values: Mapping[str, str | bool]) -> None:
+        """Set parameters of the page's node."""
+        await self._send(ms.SetParameters(tuple(ms.Parameter(_PAGE + name, value) for name, value in values.items())))
 
     async def _send(self, *messages: ms.ClientMessage) -> None:
         if self._connection is not None:
@@ -125,6 +128,7 @@ class BridgeClient:
                     self.status.programs.pop(self._topics.pop(number, ""), None)
             case ms.AdvertiseServices(services=services):
                 self._services |= {one.name: one.id for one in services if one.name == _PAUSE}
+                self.has_changed.set()
             case ms.ParameterValues(parameters=parameters):
                 for parameter in parameters:
                     if isinstance(parameter.value, str) and parameter.name in _WATCHED:
@@ -150,6 +154,7 @@ class BridgeClient:
             if topic == _STATE:
                 self.status.state = read_state(read_string(payload))
                 self.is_ready.set()
+                self.has_changed.set()
             elif topic == _OVERVIEW:
                 self.status.overview = read_overview(read_string(payload))
             elif topic:

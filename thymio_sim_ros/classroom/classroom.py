@@ -16,12 +16,14 @@ from thymio_sim_ros.classroom.suite_process import SuiteOptions
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.loading import load_playground
 
-__all__ = ["MAX_MESSAGE", "WATCHED_S", "Classroom"]
+__all__ = ["MAX_MESSAGE", "MISSING", "WATCHED_S", "Classroom"]
 
 WATCHED_S = 5.0
 """The teacher's page counts as open for this time after its last request."""
 MAX_MESSAGE = 500
 """Characters of a message."""
+MISSING = "missing.txt"
+"""The names of pupils without a program, in the zip with the programs."""
 _PLANS = 64
 """Plans of playgrounds that are kept."""
 
@@ -88,13 +90,26 @@ class Classroom:
         await self._show_notices(self.seats)
 
     def programs(self) -> bytes:
-        """Return a zip with the last own program of each pupil who has one, named after the pupil."""
+        """Return a zip with a folder for each pupil: the program that ran last, a different text of the editor.
+
+        `missing.txt` has the names of those who have neither; without such pupils there is no such file.
+        """
         packed = io.BytesIO()
         with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
             for seat in self.seats.values():
-                if (text := self._folder.program(seat.place)) is not None:
-                    archive.writestr(f"{seat.place.id}/program.aesl", text)
+                work = self._folder.work(seat.place)
+                if work.program is not None:
+                    archive.writestr(f"{seat.place.id}/program.aesl", work.program)
+                if work.draft is not None and work.draft != work.program:
+                    archive.writestr(f"{seat.place.id}/draft.aesl", work.draft)
+            if missing := self.missing():
+                archive.writestr(MISSING, "\n".join([*missing, ""]))
         return packed.getvalue()
+
+    def missing(self) -> list[str]:
+        """Return the names of the pupils who have neither run a program nor written one."""
+        works = {seat.place.name: self._folder.work(seat.place) for seat in self.seats.values()}
+        return [name for name, work in works.items() if work.program is None and work.draft is None]
 
     async def _show_notices(self, ids: Iterable[str]) -> None:
         await asyncio.gather(*(self.seats[one].show(self._notice(one)) for one in ids))

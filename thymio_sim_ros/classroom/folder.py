@@ -1,12 +1,14 @@
-"""The folder of a class: tokens and places in `class.json`, programs in `pupils/<name>/program.aesl`.
+"""The folder of a class: tokens and places in `class.json`, and the work of each pupil in `pupils/<name>/`.
 
-Tokens are secrets: the folder can be read by its owner only.
+`program.aesl` is the last own program that was run, `draft.aesl` what the editor had last, `work.json` the rest. Tokens
+are secrets: the folder can be read by its owner only.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,9 +18,12 @@ from thymio_sim_ros.bridge.access import TOKEN, new_token
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.pupils import folder_name
 
-__all__ = ["ClassFolder", "Place"]
+__all__ = ["ClassFolder", "Place", "Work"]
 
 _FILE = "class.json"
+_PROGRAM, _DRAFT, _WORK, _PARAMETERS = "program.aesl", "draft.aesl", "work.json", "parameters.yaml"
+_REST = ("program_name", "playground", "class_playground")
+"""The fields of `Work` that are in `work.json`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +35,21 @@ class Place:
     number: int
     token: str = field(repr=False, default_factory=new_token)
     read_only_token: str = field(repr=False, default_factory=new_token)
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What a pupil has made: the suite starts with it."""
+
+    program: str | None = None
+    """The last own program that was run."""
+    program_name: str = ""
+    draft: str | None = None
+    """What the editor of the page had last."""
+    playground: str = ""
+    """As `load_playground` takes it."""
+    class_playground: str = ""
+    """The playground of the class at that time: in a lesson with another one, `playground` does not count."""
 
 
 class ClassFolder:
@@ -78,24 +98,39 @@ class ClassFolder:
         folder.mkdir(parents=True, exist_ok=True)
         return folder
 
-    def program(self, place: Place) -> str | None:
-        """Return the text of a pupil's last own program, None without one."""
-        try:
-            return self.program_file(place).read_text("utf-8")
-        except FileNotFoundError:
-            return None
+    def work(self, place: Place) -> Work:
+        """Return what a pupil has made. Raises OSError."""
+        rest: Any = None
+        with contextlib.suppress(ValueError, RecursionError):  # damaged: the programs are files of their own
+            rest = json.loads(_read(self.pupil(place) / _WORK) or "{}")
+        known = {name: text for name in _REST if isinstance(rest, dict) and isinstance(text := rest.get(name), str)}
+        return Work(_read(self.pupil(place) / _PROGRAM), draft=_read(self.pupil(place) / _DRAFT), **known)
 
-    def program_file(self, place: Place) -> Path:
-        """Return the path of a pupil's program, which may not exist."""
-        return self.pupil(place) / "program.aesl"
+    def keep(self, place: Place, work: Work) -> None:
+        """Write what a pupil has made; a crash in between leaves each file as it was or as it is. Raises OSError."""
+        rest = json.dumps({name: getattr(work, name) for name in _REST}, indent=2) + "\n"
+        for name, text in ((_PROGRAM, work.program), (_DRAFT, work.draft), (_WORK, rest)):
+            path = self.pupil(place) / name
+            if text is not None and text != _read(path):
+                _write(path, text)
 
-    def keep_program(self, place: Place, text: str) -> None:
-        """Write a pupil's program; a crash in between leaves the one before. Raises OSError."""
-        _write(self.program_file(place), text)
+    def write_parameters(self, place: Place, parameters: Mapping[str, Mapping[str, str]]) -> Path:
+        """Write a file of ROS parameters, by node and name, and return its path. Raises OSError."""
+        path = self.pupil(place) / _PARAMETERS
+        nodes = {node: {"ros__parameters": dict(values)} for node, values in parameters.items() if values}
+        _write(path, json.dumps(nodes, ensure_ascii=False))  # YAML has JSON's strings, but no pairs of surrogates
+        return path
 
     def _save(self) -> None:
         pupils = [asdict(place) for place in sorted(self._places.values(), key=lambda place: place.number)]
         _write(self._file, json.dumps({"teacher_token": self.teacher_token, "pupils": pupils}, indent=2) + "\n")
+
+
+def _read(path: Path) -> str | None:
+    try:
+        return path.read_bytes().decode("utf-8", "replace")
+    except FileNotFoundError:
+        return None
 
 
 def _write(path: Path, text: str) -> None:

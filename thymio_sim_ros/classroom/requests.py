@@ -4,6 +4,7 @@ GET  class/state            pupils with what their robots do, see `Seat.summary`
 GET  class/plans/<plan>     a playground seen from above, see `plan_of`
 GET  class/sheet            names with links and their QR codes
 GET  class/programs.zip     the programs of all pupils
+GET  class/missing          names of the pupils without one
 POST class/<action>         {"pupils": [ids] or null for all, …}; actions: see `_ACTIONS`
 """
 
@@ -68,6 +69,8 @@ async def _read(classroom: Classroom, name: str) -> Answer:
         return _json([_links(seat.place.name, seat.link()) for seat in classroom.seats.values()])
     if name == "programs.zip":
         return Answer(classroom.programs(), "application/zip", "programs.zip")
+    if name == "missing":
+        return _json(classroom.missing())
     if name.startswith("plans/") and (plan := await classroom.plan(name.removeprefix("plans/"))) is not None:
         return _json(plan)
     raise RefusalError(404, "there is no such document")

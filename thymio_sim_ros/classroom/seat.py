@@ -1,7 +1,8 @@
-"""A pupil's place: keeps the suite running, and the program.
+"""A pupil's place: keeps the suite running, and the work.
 
-A suite that ends, or that does not answer, is started again with its program. Each end within `STEADY_S` doubles the
-wait, so that a suite that cannot run takes little time from the others.
+A suite that ends, or that does not answer, is started again with its program and playground. Each end within `STEADY_S`
+doubles the wait, so that a suite that cannot run takes little time from the others. From the second one on, the
+playground is that of the class: it may be the reason.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import hashlib
 import logging
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from websockets.exceptions import WebSocketException
@@ -20,10 +21,17 @@ from websockets.exceptions import WebSocketException
 from thymio_sim_ros import resources
 from thymio_sim_ros.addresses import urls
 from thymio_sim_ros.bridge.access import is_loopback
-from thymio_sim_ros.classroom.bridge_client import PLAYGROUND, SOURCE, BridgeClient, SuiteStatus
-from thymio_sim_ros.classroom.folder import ClassFolder, Place
+from thymio_sim_ros.classroom.bridge_client import (
+    DRAFT,
+    PLAYGROUND,
+    PROGRAM_NAME,
+    SOURCE,
+    BridgeClient,
+    SuiteStatus,
+)
+from thymio_sim_ros.classroom.folder import ClassFolder, Place, Work
 from thymio_sim_ros.classroom.suite_process import SuiteOptions, SuiteProcess, command, environment
-from thymio_sim_ros.loading import is_playground_text
+from thymio_sim_ros.loading import NO_PROGRAM, is_playground_text
 
 __all__ = ["FIRST_WAIT_S", "MAX_WAIT_S", "START_S", "STEADY_S", "Notice", "Seat", "next_wait_s"]
 
@@ -70,7 +78,7 @@ class Seat:
         self._wants_overview = False
         self._notice = Notice()
         self._wants_pause = False
-        self._given_program = ""
+        self._work = Work()
         self._set_playground(options.playground)
         self.phase = "waiting"
         """waiting (for its turn to start), starting, running, or broken: waits before the next restart."""
@@ -104,7 +112,7 @@ class Seat:
                     async with self._starting:
                         began_s = clock_s()
                         self.phase = "starting"
-                        await self._start()
+                        await self._start(is_steady=wait_s <= FIRST_WAIT_S)
                         serving = asyncio.create_task(self._serve())
                         await self._until_ready(serving)
                     reason = await self._until_end(serving)
@@ -130,16 +138,16 @@ class Seat:
         self._asked.set()
 
     async def pause(self, *, paused: bool) -> None:
-        """Pause the world or let it run; a suite that is restarted keeps this."""
+        """Pause the world or let it run. A pause holds until this lets it run, also after a restart of the suite."""
         self._wants_pause = paused
+        await self._show_page()
         if self._client is not None:
             await self._attempt(self._client.pause(paused=paused))
 
     async def show(self, notice: Notice) -> None:
         """Show a notice on the page; a suite that is restarted shows it too."""
         self._notice = notice
-        if self._client is not None:
-            await self._attempt(self._client.set_notice(notice.text, notice.link))
+        await self._show_page()
 
     async def watch_overview(self, *, wanted: bool) -> None:
         """Receive poses, or no longer."""
@@ -147,13 +155,28 @@ class Seat:
         if self._client is not None:
             await self._attempt(self._client.watch_overview(wanted=wanted))
 
-    async def _start(self) -> None:
-        kept = self._folder.program(self.place)
-        program = self._options.program if kept is None else str(self._folder.program_file(self.place))
-        self._given_program = kept or ""
-        self._set_playground(self._options.playground)
+    async def _show_page(self) -> None:
+        if self._client is not None:
+            await self._attempt(self._client.set_page(self._page))
+
+    @property
+    def _page(self) -> Mapping[str, str | bool]:
+        """What the page shows of the class, as parameters of its node."""
+        return {
+            "pupil": self.place.name,
+            "paused_by_teacher": self._wants_pause,
+            "notice_link": self._notice.link,
+            "notice": self._notice.text,
+        }
+
+    async def _start(self, *, is_steady: bool) -> None:
+        work = self._work = self._folder.work(self.place)
+        is_of_class = work.class_playground != self._options.playground or not is_steady
+        self._set_playground(self._options.playground if is_of_class else work.playground)
+        program = self._options.program if work.program is None else NO_PROGRAM
+        parameters = self._folder.write_parameters(self.place, _parameters(work, is_of_class=is_of_class))
         self._process = await SuiteProcess.start(
-            command(self._options, self.place, program),
+            command(self._options, self.place, program, parameters),
             environment(self._options, self.place, os.environ),
             self._folder.pupil(self.place) / "suite.log",
         )
@@ -185,11 +208,13 @@ class Seat:
         await client.is_ready.wait()
         self.phase = "running"
         await client.watch_overview(wanted=self._wants_overview)
-        if self._notice != Notice():
-            await client.set_notice(self._notice.text, self._notice.link)
-        while self._wants_pause and not (client.status.state is not None and client.status.state.paused):
-            await client.pause(paused=True)
-            await asyncio.sleep(_CONNECT_S)
+        await client.set_page(self._page)
+        while True:  # a pupil can let time run by other ways than the page, which locks its button
+            client.has_changed.clear()
+            state = client.status.state
+            if self._wants_pause and state is not None and not state.paused:
+                await client.pause(paused=True)
+            await client.has_changed.wait()
 
     async def _until_ready(self, serving: asyncio.Task[None]) -> None:
         assert self._process is not None
@@ -223,15 +248,24 @@ class Seat:
             self._process = None
 
     def _on_parameter(self, name: str, value: str) -> None:
+        work = self._work
         # A path that a node of the pupil has set is not opened here.
         if name == PLAYGROUND and (is_playground_text(value) or value in resources.playgrounds()):
             self._set_playground(value)
-        if name == SOURCE and value and value != self._given_program:
-            self._given_program = value
-            try:
-                self._folder.keep_program(self.place, value)
-            except OSError as error:
-                _log.error("the program of %s is not kept: %s: %s", self.place.name, error.filename, error.strerror)
+            work = replace(work, playground=value, class_playground=self._options.playground)
+        elif name == DRAFT and value:
+            work = replace(work, draft=value)
+        elif name == PROGRAM_NAME and value:
+            work = replace(work, program_name=value)
+        elif name == SOURCE and value:
+            work = replace(work, program=value)
+        if work == self._work:
+            return
+        self._work = work
+        try:
+            self._folder.keep(self.place, work)
+        except OSError as error:
+            _log.error("the work of %s is not kept: %s: %s", self.place.name, error.filename, error.strerror)
 
     def _set_playground(self, value: str) -> None:
         self.playground = value
@@ -257,6 +291,7 @@ class Seat:
             "reason": self.reason,
             "restarts": self.restarts,
             "paused": state is not None and state.paused,
+            "held": self._wants_pause,
             "achieved": 0.0 if state is None else state.achieved,
             "fallen": [] if state is None else state.fallen,
             "programs": programs,
@@ -265,3 +300,9 @@ class Seat:
             "link": self.link(),
             "watch": self.link(read_only=True),
         }
+
+
+def _parameters(work: Work, *, is_of_class: bool) -> Mapping[str, Mapping[str, str]]:
+    """The parameters by which a suite starts with what a pupil has made, by node and name."""
+    program = {} if work.program is None else {"script.source": work.program, "script.name": work.program_name}
+    return {"aseba_runtime": program, "simulator": {} if is_of_class else {"playground": work.playground}}

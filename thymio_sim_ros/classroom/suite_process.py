@@ -49,8 +49,11 @@ class SuiteOptions:
         return self.first_domain + place.number
 
 
-def command(options: SuiteOptions, place: Place, program: str) -> list[str]:
-    """The command line of a pupil's suite: no servers for other programs, no tokens, which others could read."""
+def command(options: SuiteOptions, place: Place, program: str, parameters: Path) -> list[str]:
+    """The command line of a pupil's suite: no servers for other programs, no tokens, which others could read.
+
+    `parameters` is a file of ROS parameters with what the pupil has made.
+    """
     ports = ["--port", str(options.port(place)), "--foxglove-port", str(options.foxglove_port(place))]
     world = ["--playground", options.playground, "--program", program]
     return [
@@ -58,6 +61,7 @@ def command(options: SuiteOptions, place: Place, program: str) -> list[str]:
         *ports,
         *world,
         *("--ros-args", "-p", f"simulator:batch_ticks:={BATCH_TICKS}", "-p", f"simulator:clock_rate:={CLOCK_HZ}"),
+        *("--params-file", str(parameters.absolute())),
     ]
 
 

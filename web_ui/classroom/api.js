@@ -10,6 +10,7 @@
  * @property {string} reason      why it ended last
  * @property {number} restarts
  * @property {boolean} paused
+ * @property {boolean} held       whether the teacher has paused it, which holds
  * @property {number} achieved    real-time factor
  * @property {string[]} fallen
  * @property {PupilProgram[]} programs
@@ -47,6 +48,11 @@ export class ClassApi {
 
   async programs() {
     return (await this.#fetch("programs.zip")).blob();
+  }
+
+  /** Names of the pupils who have no program. @returns {Promise<string[]>} */
+  async missing() {
+    return (await this.#fetch("missing")).json();
   }
 
   /** @param {readonly string[] | null} pupils  null: all @param {boolean} paused */

@@ -22,7 +22,8 @@ function open(dialog) {
  * @param {{ title: string, text: string, t: Translate, send: (text: string) => void }} options
  */
 export function askMessage({ title, text, t, send }) {
-  const field = h("textarea", { class: "input", id: "message", rows: "3", maxlength: MAX_MESSAGE, "aria-describedby": "message-help" });
+  const described = { "aria-labelledby": "message-title", "aria-describedby": "message-help" };
+  const field = h("textarea", { class: "input", id: "message", rows: "3", maxlength: MAX_MESSAGE, ...described });
   field.value = text;
   const finish = (/** @type {string} */ sent) => {
     dialog.close();

@@ -81,8 +81,9 @@ class TeacherPage {
       this.#button("collect", "save", () => this.#collect()),
       this.#button("sheet", "list", () => this.#sheet()),
     );
-    byId("main").replaceChildren(trouble, bar, empty, list);
-    return { count, trouble, filters, empty, list };
+    const missing = h("p", { class: "note-box wait class-missing", role: "status", hidden: true });
+    byId("main").replaceChildren(trouble, bar, missing, empty, list);
+    return { count, trouble, filters, missing, empty, list };
   }
 
   /** @param {string} name @param {boolean} onlyHelp */
@@ -158,7 +159,12 @@ class TeacherPage {
   }
 
   async #collect() {
-    const url = URL.createObjectURL(await this.api.programs());
+    const { t } = this;
+    const [programs, names] = await Promise.all([this.api.programs(), this.api.missing()]);
+    const text = names.length === 0 ? t("collected") : t("collected.missing", { names: names.join(", ") });
+    this.parts.missing.hidden = false;
+    setText(this.parts.missing, text);
+    const url = URL.createObjectURL(programs);
     h("a", { href: url, download: "programs.zip" }).click();
     URL.revokeObjectURL(url);
   }

@@ -25,6 +25,7 @@ const LOOKS = {
   fell: ["stop", "warning"],
   idle: ["", null],
   paused: ["wait", "pause"],
+  held: ["wait", "pause"],
   waiting: ["", null],
   starting: ["wait", "reset"],
   broken: ["stop", "warning"],

@@ -26,7 +26,13 @@ export class EditorSession {
     this.isAllListed = false;
     /** @type {Map<string, any>} editor state of each text: cursor and undo history */ this.texts = new Map();
     /** @type {() => void} */ this.onText = () => {};
-    this.workspace = new Workspace({ fileStore: new FileStore(storage), now, changed: () => this.onText() });
+    /** @type {(text: string) => void} */ this.onWritten = () => {};
+    this.workspace = new Workspace({
+      fileStore: new FileStore(storage),
+      now,
+      changed: () => this.onText(),
+      written: (text) => this.onWritten(text),
+    });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));
     /** @type {import("../program_tab/toolbox_file.js").Toolbox} what a teacher's file hides */
     this.toolbox = readToolbox(storage.getItem(TOOLBOX_KEY) ?? "").toolbox ?? WHOLE;

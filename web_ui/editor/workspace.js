@@ -27,11 +27,13 @@ export class Workspace {
    * @param {import("./file_store.js").FileStore} options.fileStore
    * @param {() => number} options.now      milliseconds since 1970
    * @param {() => void} options.changed    called when another text must be shown
+   * @param {(text: string) => void} [options.written]   called when the user has written a text
    */
-  constructor({ fileStore, now, changed }) {
+  constructor({ fileStore, now, changed, written = () => {} }) {
     this.fileStore = fileStore;
     this.now = now;
     this.changed = changed;
+    this.written = written;
     this.tab = ALL;
     /** @type {Map<string, Document>} */ this.documents = new Map();
     /** @type {import("./aesl.js").Aesl | null} */ this.parsed = null;
@@ -226,6 +228,7 @@ export class Workspace {
     if (draft !== undefined && draft.text !== text) this.fileStore.addRecent({ ...draft, unsaved: true });
     this.drafts.delete(this.tab);
     this.fileStore.storeDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
+    if (isUnsaved(document)) this.written(text);
   }
 
   /**
@@ -241,5 +244,6 @@ export class Workspace {
     }
     this.documents.set(tab, document);
     if (tab === this.tab) this.changed();
+    if (isUnsaved(document)) this.written(document.text);
   }
 }

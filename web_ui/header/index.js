@@ -2,9 +2,10 @@
 
 import { connectionPanel } from "./connection.js";
 import { helpMenuPanel } from "./help_menu.js";
+import { pupilPanel } from "./pupil.js";
 import { robotChooserPanel } from "./robot_chooser.js";
 import { settingsPanel } from "./settings.js";
 import { stopPanel } from "./stop.js";
 
 /** @type {import("../shell/context.js").CreatePanel[]} */
-export const HEADER = [robotChooserPanel, connectionPanel, settingsPanel, helpMenuPanel, stopPanel];
+export const HEADER = [pupilPanel, robotChooserPanel, connectionPanel, settingsPanel, helpMenuPanel, stopPanel];

@@ -90,11 +90,14 @@ export const LANGUAGES = [
   },
 ];
 
+/** Time without a further change until a text that was written is sent to the class. */
+const DRAFT_MS = 1000;
 const TOPIC = /^\/(?:[^/]+\/)?_aseba\/(?:target|variables|events)$|^\/aseba_runtime\/_behaviours$/;
 
 export class ProgramHost {
   /** @type {typeof import("../program_tab/tab.js") | null} */ #module = null;
   /** The language whose view is wanted: loading it takes a while. */ #wanted = "";
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ #draftTimer = undefined;
   /** @type {{ name: string, text: string } | null} opened when the tab is shown */ #kept = null;
 
   /**
@@ -204,9 +207,18 @@ export class ProgramHost {
     const module = await this.#imported(() => import("../program_tab/tab.js"));
     if (module === null) return false;
     this.#module ??= module;
-    this.session ??= new module.EditorSession(localStore, Date.now);
+    if (this.session === null) {
+      this.session = new module.EditorSession(localStore, Date.now);
+      this.session.onWritten = (text) => this.#sendDraft(text);
+    }
     this.choice ??= new LanguageChoice({ workspace: this.session.workspace, languages: LANGUAGES });
     return true;
+  }
+
+  /** @param {string} text */
+  #sendDraft(text) {
+    clearTimeout(this.#draftTimer);
+    this.#draftTimer = setTimeout(() => void this.context?.actions.sendDraft(text), DRAFT_MS);
   }
 
   /**

@@ -1,6 +1,7 @@
 // User actions, as messages, service calls and parameters. No DOM and no 3D scene.
 
 import { startOf } from "../move/start.js";
+import { timeDisabledReason } from "../state/disabled_reason.js";
 import { FILE, targets } from "../state/index.js";
 import { PARAMETERS, robotTopic } from "../state/names.js";
 import { textOf } from "../browser/text_file.js";
@@ -140,9 +141,11 @@ export class Actions {
     return this.store.state.services.includes(own) ? own : `/aseba/${verb}`;
   }
 
-  /** @param {boolean} paused */
-  pause(paused) {
-    return this.call("/simulator/pause", { data: paused });
+  /** Pause time or let it run; a teacher's pause holds. @param {boolean} paused */
+  async pause(paused) {
+    const held = timeDisabledReason(this.store.state, this.t);
+    if (held !== "") return this.store.dispatch({ type: "notice", level: "info", text: held });
+    await this.call("/simulator/pause", { data: paused });
   }
 
   /** Run a number of ticks of 10 ms while the simulation is paused. @param {number} ticks */
@@ -209,6 +212,13 @@ export class Actions {
    */
   load(name, text) {
     return this.runtime.load(this.owner, name, text, this.#robots);
+  }
+
+  /** Send what a pupil has written to the class, which collects it (docs/classroom.md). @param {string} text */
+  async sendDraft(text) {
+    const { connection, parameters, readOnly } = this.store.state;
+    if (connection !== "connected" || readOnly || !parameters[PARAMETERS.pupil]) return;
+    await this.client.setParameters([{ name: PARAMETERS.draft, value: text }]);
   }
 
   /** Load a program file, and note in the state what became of it. @param {string} name @param {string} text */

@@ -8,7 +8,6 @@ export function fillTexts(element, { text, language, workspace }) {
   const t = text("stage");
   const pageText = text("page");
   document.documentElement.lang = language;
-  document.title = pageText("app.title");
   element("#title").textContent = pageText("app.title");
   element("#drop").textContent = pageText("app.drop");
   const skip = element("#skip");

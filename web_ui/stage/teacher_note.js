@@ -1,5 +1,7 @@
-// What the teacher of a class says to the reader of this page, or shows (docs/classroom.md): parameters of the page's node.
+// What the teacher of a class says to the reader of this page, or shows, and that time is paused by the teacher
+// (docs/classroom.md): parameters of the page's node.
 
+import { timeDisabledReason } from "../state/disabled_reason.js";
 import { PARAMETERS } from "../state/names.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
@@ -28,15 +30,17 @@ export function teacherNotePanel({ text, announce, scene }) {
     render({ parameters }) {
       const note = String(parameters[PARAMETERS.notice] ?? "");
       const address = String(parameters[PARAMETERS.noticeLink] ?? "");
-      key = `${note}\n${address}`;
-      if (note === "") hiddenNote = "";
-      element.hidden = note === "" || key === hiddenNote;
-      setText(words, note);
+      const paused = timeDisabledReason({ parameters }, pageText);
+      const said = [paused, note].filter((line) => line !== "").join("\n");
+      key = `${said}\n${address}`;
+      if (said === "") hiddenNote = "";
+      element.hidden = said === "" || key === hiddenNote;
+      setText(words, said);
       link.hidden = !/^https?:\/\//.test(address);
       if (!link.hidden) setAttribute(link, "href", address);
-      if (note !== announced) {
-        announced = note;
-        if (note !== "") announce(`${pageText("notice.teacher")}: ${note}`);
+      if (said !== announced) {
+        announced = said;
+        if (said !== "") announce(`${pageText("notice.teacher")}: ${said}`);
       }
     },
   };

@@ -1,7 +1,7 @@
 // Time control: pause, step with its length, reset, speed, and how fast time really runs. While time is paused the
 // stage has `data-paused`. A real robot has no time to control: the bar says so instead.
 
-import { disabledReason } from "../state/disabled_reason.js";
+import { disabledReason, timeDisabledReason } from "../state/disabled_reason.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
@@ -123,11 +123,16 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
     if (paused !== null) announce(t(now ? "time.isPaused" : "time.runs"));
     paused = now;
   };
-  /** How fast time really runs, or that it does not. @param {import("../state/index.js").Simulator | null} simulator */
-  const showAchieved = (simulator) => {
+  /**
+   * How fast time really runs, or that it does not.
+   *
+   * @param {import("../state/index.js").Simulator | null} simulator
+   * @param {string} held   why it does not, if a teacher has paused it
+   */
+  const showAchieved = (simulator, held) => {
     const factor = simulator?.achieved.toFixed(2) ?? "";
     const isSlow = simulator !== null && !simulator.paused && simulator.achieved < SLOW * simulator.factor;
-    const said = simulator?.paused ? t("time.isPaused") : t("time.real", { factor });
+    const said = simulator?.paused ? held || t("time.isPaused") : t("time.real", { factor });
     setText(achieved, simulator === null ? "" : said);
     setAttribute(achieved, "data-slow", String(isSlow));
     setAttribute(achieved, "title", isSlow ? t("time.slow", { factor }) : "");
@@ -135,8 +140,9 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
   return {
     slot: "time",
     element,
-    render({ connection, readOnly, simulator, timeNs, robots, programs, selected, services }) {
+    render({ connection, readOnly, simulator, timeNs, robots, programs, selected, services, parameters }) {
       const reason = disabledReason({ connection, readOnly }, pageText);
+      const held = timeDisabledReason({ parameters }, pageText);
       const isReal = robots[selected]?.isReal ?? false;
       if (isReal === real.hidden) for (const part of [...controls, real]) part.hidden = !part.hidden;
       const program = programs[selected];
@@ -145,9 +151,9 @@ export function timePanel({ text, actions, store, announce, frame, scene }) {
       setAttribute(real, "title", isLost ? (program.values.fault ?? "") : "");
       const now = simulator?.paused ?? false;
       showPaused(now);
-      showAchieved(simulator);
+      showAchieved(simulator, held);
       /** @param {string} verb */
-      const missing = (verb) => reason || (services.includes(`/simulator/${verb}`) ? "" : t("time.unavailable"));
+      const missing = (verb) => reason || held || (services.includes(`/simulator/${verb}`) ? "" : t("time.unavailable"));
       lock(step, missing("step") || (now ? "" : t("time.stepPaused")));
       lock(length, reason);
       lock(pause, missing("pause"));

@@ -143,6 +143,9 @@ export const PARAMETERS = /** @type {const} */ ({
   programName: "/aseba_runtime.script.name",
   notice: "/web_ui.notice",
   noticeLink: "/web_ui.notice_link",
+  pupil: "/web_ui.pupil",
+  pausedByTeacher: "/web_ui.paused_by_teacher",
+  draft: "/web_ui.draft",
 });
 
 /**

@@ -44,6 +44,9 @@ class WebParams:
     )
     notice: str = param("", "Text that the page shows to its readers until it is empty, as from a teacher")
     notice_link: str = param("", "Address that the page offers with the notice; only http and https")
+    pupil: str = param("", "Name of the pupil whose page this is, which the page shows")
+    paused_by_teacher: bool = param(False, "Whether a teacher has paused time: the page locks its time controls")
+    draft: str = param("", "Text that the page of a pupil has in its editor, as an .aesl file")
 
 
 class WebPage:
