@@ -27,6 +27,18 @@ test("a removed draft leaves nothing", () => {
   assert.equal(drafts.read("a"), null);
 });
 
+test("a draft that another tab has changed stays beside the own one", () => {
+  const storage = newStorage();
+  const [one, other] = [new Drafts(storage), new Drafts(storage)];
+  one.keep(DRAFT);
+  assert.equal(other.read("a"), DRAFT.text);
+  one.keep({ ...DRAFT, text: "of one" });
+  one.keep({ ...DRAFT, text: "of one, later" });
+  assert.equal(other.list().length, 1);
+  other.keep({ ...DRAFT, text: "of the other" });
+  assert.deepEqual(other.list().map(({ id }) => other.read(id)), ["of the other", "of one, later"]);
+});
+
 test("a full storage keeps no outdated draft, and the others", () => {
   const storage = newStorage();
   const drafts = new Drafts(storage);

@@ -1,6 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { meetOtherTabs } from "../../web_ui/browser/other_tabs.js";
+import { newAesl } from "../../web_ui/editor/aesl.js";
 import { firstFault, marks, notesOf, readVerdict } from "../../web_ui/editor/checking.js";
 import { EditorSession, eventKey } from "../../web_ui/editor/editor_session.js";
 import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
@@ -12,6 +14,7 @@ import { roundStep } from "../../web_ui/editor/plot.js";
 import { INITIAL, MAX_LOGGED_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
 import { FileStore, MAX_FILES } from "../../web_ui/editor/file_store.js";
 import { ALL, Workspace } from "../../web_ui/editor/workspace.js";
+import { firstLines } from "../../web_ui/program_tab/miniature.js";
 import { newStorage } from "./support.js";
 
 function workspace(storage = newStorage()) {
@@ -217,7 +220,7 @@ test("the running program is shown until the user has changed something", () => 
 test("a new program and an opened file stay when a robot reports its program", () => {
   const { session } = workspace();
   session.setRobotProgram(ALL, program("a = 1"));
-  session.newFile();
+  session.begin("Mine");
   session.setRobotProgram(ALL, program("a = 1"));
   assert.equal(session.code, "");
   session.open("mine.aesl", "b = 1");
@@ -274,8 +277,9 @@ test("unsaved text replaced by another file is added to the recent files", () =>
 test("unsaved texts of the same name are kept separately, and a saved one does not replace them", () => {
   const { session } = workspace();
   for (const code of ["a = 1", "a = 2"]) {
+    session.rename("program");
     session.edit(code);
-    session.newFile();
+    session.begin("Mine");
   }
   session.open("program.aesl", "a = 3");
   session.open("program.aesl", "a = 4");
@@ -303,7 +307,7 @@ test("a draft that is overwritten is added to the recent files", () => {
 test("an unsaved text restored from the recent files is unsaved again", () => {
   const { session } = workspace();
   session.edit("a = 1");
-  session.newFile();
+  session.begin("Mine");
   const [kept] = session.fileStore.recent();
   session.restore(kept);
   assert.equal(session.code, "a = 1");
@@ -318,6 +322,78 @@ test("a restored draft exists only once", () => {
   next.restoreDraft();
   next.edit("a = 2");
   assert.deepEqual(next.fileStore.recent(), []);
+});
+
+test("a program that begins has a title as its name, with a number where another one has it", () => {
+  const { session } = workspace();
+  const names = ["My program", "My program", "Avoid: things?"].map((title) => {
+    session.begin(title);
+    session.edit(`a = ${title.length}`);
+    return session.current.name;
+  });
+  assert.deepEqual(names, ["My program.aesl", "My program 2.aesl", "Avoid_ things_.aesl"]);
+  session.begin("my PROGRAM");
+  assert.equal(session.current.name, "my PROGRAM 3.aesl");
+  session.begin("my PROGRAM"); // the one before was left empty
+  assert.equal(session.current.name, "my PROGRAM 3.aesl");
+});
+
+test("a discarded draft can be brought back until something else is written", () => {
+  const { session, storage } = workspace();
+  session.edit("a = 1");
+  const next = workspace(storage).session;
+  assert.equal(next.code, "");
+  next.forgetDraft();
+  assert.equal(next.draft, null);
+  assert.equal(workspace(storage).session.draft, null);
+  next.undoForget();
+  next.restoreDraft();
+  assert.equal(next.code, "a = 1");
+  const last = workspace(storage).session;
+  assert.equal(last.code, "");
+  last.forgetDraft();
+  last.edit("b = 1");
+  last.undoForget();
+  assert.equal(last.code, "b = 1");
+  assert.deepEqual(last.fileStore.recent(), []);
+});
+
+test("two tabs of a browser lose nothing: what the other one wrote is among the last programs", () => {
+  const { session: one, storage } = workspace();
+  const { session: other } = workspace(storage);
+  const codesIn = (/** @type {Workspace} */ session) => session.fileStore.recent().map(({ text }) => /a = \d/.exec(text)?.[0]);
+  one.edit("a = 1");
+  other.edit("a = 2");
+  other.edit("a = 3");
+  assert.deepEqual(codesIn(other), ["a = 1"]);
+  one.edit("a = 4");
+  assert.deepEqual(codesIn(one), ["a = 3", "a = 1"]);
+  one.edit("a = 5");
+  other.saved();
+  assert.deepEqual(codesIn(other), ["a = 5", "a = 3", "a = 1"]);
+});
+
+test("two open editors of a browser know of each other", () => {
+  /** @type {any[]} */ const channels = [];
+  const open = () => {
+    const channel = {
+      /** @type {any} */ onmessage: null,
+      postMessage: (/** @type {any} */ data) => channels.forEach((one) => one !== channel && one.onmessage({ data })),
+    };
+    channels.push(channel);
+    return channel;
+  };
+  const met = [0, 0];
+  meetOtherTabs(() => met[0]++, open);
+  assert.deepEqual(met, [0, 0]);
+  meetOtherTabs(() => met[1]++, open);
+  assert.deepEqual(met, [1, 1]);
+});
+
+test("a miniature has the first lines that say something, of any file", () => {
+  assert.deepEqual(firstLines(newAesl("\n\tvar a\n\nonevent prox\n")), ["  var a", "onevent prox"]);
+  assert.equal(firstLines(newAesl("a = 1\n".repeat(50))).length, 12);
+  assert.deepEqual(firstLines("<network"), []);
 });
 
 test("an unsaved text is offered at the next visit, a saved one is not", () => {

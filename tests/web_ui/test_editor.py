@@ -94,7 +94,7 @@ def test_a_broken_program_is_marked_while_it_is_typed_and_one_that_avoids_runs(e
     expect(editor, ".verdict").to_contain_text("No mistakes")
     expect(editor, ".cm-lint-marker-error").to_have_count(0)
     editor.keyboard.press("F9")
-    editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
+    editor.wait_for_function("() => window.thymio.state().program?.name === 'My program.aesl'")
     editor.wait_for_function("() => Number(document.querySelector('[data-variable=count]')?.textContent) > 2")
 
     write(editor, AVOIDER)
@@ -106,7 +106,7 @@ def test_a_broken_program_is_marked_while_it_is_typed_and_one_that_avoids_runs(e
 def test_a_breakpoint_stops_the_program_and_it_is_stepped_by_lines(editor):
     write(editor, PROGRAM)
     editor.keyboard.press("Control+Enter")
-    editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
+    editor.wait_for_function("() => window.thymio.state().program?.name === 'My program.aesl'")
     expect(editor, "#program-state").to_have_text("running")  # as shown: from then on nothing moves the lines
     click_beside(editor, 4)
     expect(editor, "#program-state").to_have_text("halted in line 4")
@@ -155,7 +155,7 @@ def test_an_event_is_defined_sent_and_logged(editor):
     write(editor, "onevent ping\nemit pong event.args[0] + 1\n")
     expect(editor, ".verdict").to_contain_text("No mistakes")
     editor.keyboard.press("Control+Enter")
-    editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
+    editor.wait_for_function("() => window.thymio.state().program?.name === 'My program.aesl'")
     editor.get_by_label("Values of ping: 1").fill("41")
     editor.click("[data-send=ping]")
     expect(editor, ".log p").to_contain_text("pong 42")
@@ -243,6 +243,34 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path)
     expect(editor, RECENT).to_have_count(2)
     editor.locator(RECENT).nth(1).click()  # below the file
     expect(editor, ".cm-content").to_have_text("var mine = 1")
+
+
+@pytest.mark.slow
+def test_own_programs_come_first_a_draft_can_be_discarded_and_a_second_tab_warns(editor):
+    write(editor, "var first = 1")
+    editor.reload()
+    editor.wait_for_function("window.thymio && window.thymio.connected")
+    open_tab(editor, "program")
+    draft = editor.locator(".program-draft:not(#program-foreign)")
+    playwright.expect(draft).to_contain_text("My program.aesl")
+    draft.locator("[data-draft=discard]").click()
+    playwright.expect(draft).to_contain_text("My program.aesl is discarded.")
+    draft.locator("[data-draft=undo]").click()
+    draft.locator("[data-draft=restore]").click()
+    expect(editor, ".cm-content").to_have_text("var first = 1")
+    choose_in_file_menu(editor, "new")
+    editor.click("[data-new=empty]")
+    choose_in_file_menu(editor, "new")
+    card = editor.locator(RECENT)
+    playwright.expect(card).to_contain_text("My program")
+    playwright.expect(card.locator(".program-miniature")).to_have_text("var first = 1")
+    assert card.bounding_box()["y"] < editor.locator(".program-card").first.bounding_box()["y"]
+
+    second = editor.context.new_page()
+    open_page(second, editor.url)
+    open_tab(second, "program")
+    for one in (editor, second):
+        one.locator(".notice.warning", has_text="open in another tab of this browser").wait_for()
 
 
 @pytest.mark.slow

@@ -168,7 +168,7 @@ def test_letter_keys_work_with_caps_lock(at_rest, page):
     page.focus(".cm-content")
     with page.expect_download() as saved:
         page.keyboard.press("Control+S")
-    assert saved.value.suggested_filename == "program.aesl"
+    assert saved.value.suggested_filename == "My program.aesl"
     build_playground(page)
     page.focus("#view")
     for key, selected in (("N", "ground"), ("N", "thymio"), ("Shift+N", "ground")):

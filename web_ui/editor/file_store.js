@@ -1,4 +1,5 @@
-// Browser storage of the editor: recent files, and one draft per tab.
+// Browser storage of the editor: recent files, and one draft per tab of the editor. All tabs of a browser share it: a
+// draft that another one wrote, or an earlier visit, goes to the recent files before it is replaced.
 
 /**
  * @typedef {object} StoredFile
@@ -19,6 +20,7 @@ export class FileStore {
   /** @param {KeyValueStore} storage */
   constructor(storage) {
     this.storage = storage;
+    /** @type {Map<string, string>} */ this.ownDrafts = new Map(); // as they were written here, by tab
   }
 
   /** Recent files, newest first. @returns {StoredFile[]} */
@@ -43,8 +45,26 @@ export class FileStore {
 
   /** @param {string} tab @param {StoredFile | null} draft  null removes the draft */
   storeDraft(tab, draft) {
-    if (draft === null) this.storage.removeItem(DRAFT_KEY + tab);
-    else this.#write(DRAFT_KEY + tab, draft);
+    const key = DRAFT_KEY + tab;
+    if (this.storage.getItem(key) !== (this.ownDrafts.get(tab) ?? null)) {
+      const other = this.draft(tab);
+      if (other !== null && other.text !== draft?.text) this.addRecent({ ...other, unsaved: true });
+    }
+    if (draft === null) this.storage.removeItem(key);
+    else this.#write(key, draft);
+    this.#own(tab);
+  }
+
+  /** Continue with a draft, or discard it: it goes to no other place when it is replaced. @param {string} tab @param {StoredFile} draft */
+  adoptDraft(tab, draft) {
+    if (this.draft(tab)?.text === draft.text) this.#own(tab);
+  }
+
+  /** @param {string} tab */
+  #own(tab) {
+    const written = this.storage.getItem(DRAFT_KEY + tab);
+    if (written === null) this.ownDrafts.delete(tab);
+    else this.ownDrafts.set(tab, written);
   }
 
   /** @param {string} key @returns {any} */

@@ -38,6 +38,7 @@ export class Workspace {
     /** @type {Map<string, Document>} */ this.documents = new Map();
     /** @type {import("./aesl.js").Aesl | null} */ this.parsed = null;
     /** @type {Map<string, import("./file_store.js").StoredFile>} */ this.drafts = new Map();
+    /** @type {Map<string, import("./file_store.js").StoredFile>} */ this.discarded = new Map(); // drafts, by tab
     /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's program whatever they hold
   }
 
@@ -90,18 +91,27 @@ export class Workspace {
     this.changed();
   }
 
-  newFile() {
-    this.#replace(this.tab, { ...blank(), own: true });
+  /**
+   * Begin with a program of the page, which needs no place among the last programs. Its name is the title, with a number
+   * if another program has this name.
+   *
+   * @param {string} title
+   * @param {string} [text]  "" is an empty page
+   */
+  begin(title, text = "") {
+    const name = this.#freeName(title);
+    this.#replace(this.tab, text === "" ? { ...blank(name), own: true } : opened(name, text));
   }
 
-  /**
-   * Begin with a program of the page, which needs no place among the last programs.
-   *
-   * @param {string} name
-   * @param {string} text
-   */
-  begin(name, text) {
-    this.#replace(this.tab, opened(fileName(name), text));
+  /** @param {string} title */
+  #freeName(title) {
+    const kept = [...this.fileStore.recent(), ...this.drafts.values()];
+    const open = [...this.documents].filter(([tab, document]) => tab !== this.tab || isUnsaved(document));
+    const taken = new Set([...kept, ...open.map(([, document]) => document)].map(({ name }) => name.toLowerCase()));
+    const base = fileName(title).replace(/\.aesl$/i, "");
+    let name = `${base}.aesl`;
+    for (let number = 2; taken.has(name.toLowerCase()); number++) name = `${base} ${number}.aesl`;
+    return name;
   }
 
   /**
@@ -201,6 +211,7 @@ export class Workspace {
     const draft = this.drafts.get(this.tab);
     if (draft === undefined) return;
     this.drafts.delete(this.tab);
+    this.fileStore.adoptDraft(this.tab, draft);
     this.restore(draft);
   }
 
@@ -210,9 +221,28 @@ export class Workspace {
     this.#replace(this.tab, { ...opened(name, text), saved });
   }
 
+  /** Discard the draft; until something is written, it can be brought back. */
   forgetDraft() {
+    const draft = this.drafts.get(this.tab);
+    if (draft === undefined) return;
     this.drafts.delete(this.tab);
+    this.fileStore.adoptDraft(this.tab, draft);
     this.fileStore.storeDraft(this.tab, null);
+    this.discarded.set(this.tab, draft);
+  }
+
+  /** Bring a discarded draft back. */
+  undoForget() {
+    const draft = this.discarded.get(this.tab);
+    if (draft === undefined) return;
+    this.settleForget();
+    this.drafts.set(this.tab, draft);
+    this.fileStore.storeDraft(this.tab, draft);
+  }
+
+  /** No longer offer to bring it back. */
+  settleForget() {
+    this.discarded.delete(this.tab);
   }
 
   /** @returns {string} */
@@ -224,9 +254,8 @@ export class Workspace {
   #set(document) {
     this.documents.set(this.tab, document);
     const { name, text } = document;
-    const draft = this.drafts.get(this.tab);
-    if (draft !== undefined && draft.text !== text) this.fileStore.addRecent({ ...draft, unsaved: true });
     this.drafts.delete(this.tab);
+    this.settleForget();
     this.fileStore.storeDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
     if (isUnsaved(document)) this.written(text);
   }

@@ -9,6 +9,7 @@
 import { BLOCKS, looksLikeBlocks } from "../blockly/language.js";
 import { textOf } from "../browser/text_file.js";
 import { localStore } from "../browser/local_storage.js";
+import { meetOtherTabs } from "../browser/other_tabs.js";
 import { importerOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
 import { looksLikeToolbox } from "../program_tab/toolbox_file.js";
 import { CONNECTION } from "../state/index.js";
@@ -210,6 +211,10 @@ export class ProgramHost {
     if (this.session === null) {
       this.session = new module.EditorSession(localStore, Date.now);
       this.session.onWritten = (text) => this.#sendDraft(text);
+      meetOtherTabs(() => {
+        const { store, text } = /** @type {Context} */ (this.context);
+        store.dispatch({ type: "notice", level: "warning", text: text("program")("program.otherTab") });
+      });
     }
     this.choice ??= new LanguageChoice({ workspace: this.session.workspace, languages: LANGUAGES });
     return true;

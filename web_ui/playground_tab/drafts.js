@@ -16,6 +16,7 @@ export class Drafts {
   /** @param {KeyValueStore} storage */
   constructor(storage) {
     this.storage = storage;
+    /** @type {Map<string, string>} */ this.known = new Map(); // as they were read or kept here, by id
     /** Number of changes, so that a list knows when it is outdated. */
     this.version = 0;
     this.#adoptFormer();
@@ -43,12 +44,22 @@ export class Drafts {
 
   /** The text of a draft; null: there is none. @param {string} id */
   read(id) {
-    return this.storage.getItem(textKey(id));
+    const text = this.storage.getItem(textKey(id));
+    if (text !== null) this.known.set(id, text);
+    return text;
   }
 
-  /** Keep a draft. Throws when the storage is full; then it is gone: none is better than an outdated one. @param {Draft & { text: string }} draft */
+  /**
+   * Keep a draft; what another tab has made of it since stays as a draft of its own. Throws when the storage is full;
+   * then it is gone: none is better than an outdated one.
+   *
+   * @param {Draft & { text: string }} draft
+   */
   keep({ id, title, inFile, text }) {
     try {
+      const present = this.storage.getItem(textKey(id));
+      if (present !== null && present !== text && present !== this.known.get(id)) this.#split(id, present);
+      this.known.set(id, text);
       this.storage.setItem(textKey(id), text);
       this.#write([{ id, title: title.slice(0, LONGEST_TITLE), inFile }, ...this.#others(id)]);
     } catch (error) {
@@ -65,6 +76,15 @@ export class Drafts {
       this.storage.removeItem(INDEX_KEY); // works in a full storage too
       this.version += 1;
     } else this.#write(others);
+  }
+
+  /** @param {string} id @param {string} text  of another tab */
+  #split(id, text) {
+    const draft = this.list().find((one) => one.id === id);
+    if (draft === undefined) return;
+    const other = this.newId();
+    this.storage.setItem(textKey(other), text);
+    this.#write([{ ...draft, id: other }, ...this.list()]);
   }
 
   /** @param {string} id */

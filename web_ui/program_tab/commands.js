@@ -17,6 +17,21 @@ const LARGEST_IMPORT = 20_000_000;
 /** @typedef {import("../hosts/program_host.js").LanguageModule} LanguageModule */
 /** @typedef {import("../input/runtime_client.js").Verb} Verb */
 
+/** Samples without anything in them, by their names. */
+const EMPTY = ["empty", "scratch_start"];
+
+/**
+ * What a program is called that begins with a sample.
+ *
+ * @param {import("../hosts/program_host.js").Language} language
+ * @param {string} name  of the sample
+ * @param {import("../i18n/index.js").Translate} t
+ */
+function titleOfSample({ samples, more = [] }, name, t) {
+  const { key } = [...samples, ...more].find((sample) => sample.name === name) ?? { key: "own" };
+  return EMPTY.includes(name) ? t("new.own") : t(`new.${key}`).split(":")[0].trim();
+}
+
 export class ProgramCommands {
   /**
    * @param {object} options
@@ -75,8 +90,7 @@ export class ProgramCommands {
     if (module === null) return;
     const text = module.sampleText(name, this.t);
     this.choice.forget();
-    if (text === "") this.workspace.newFile();
-    else this.workspace.begin(`${name}.aesl`, text);
+    this.workspace.begin(titleOfSample(language, name, this.t), text);
     this.back();
   }
 

@@ -1,10 +1,11 @@
-// How to begin a program: one of the samples of a language, an example, or one of the last programs.
+// How to begin a program: one of the last programs, a sample of a language, or an example.
 
 import { exampleList, languageOf } from "../examples/index.js";
 import { fileButton, h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { acceptedFiles } from "./file_menu.js";
-import { TEXT } from "./language_choice.js";
+import { languageOf as languageOfFile, TEXT } from "./language_choice.js";
+import { miniature } from "./miniature.js";
 
 /** @typedef {import("../editor/file_store.js").StoredFile} StoredFile */
 /** @typedef {import("../hosts/program_host.js").Language} Language */
@@ -14,10 +15,11 @@ import { TEXT } from "./language_choice.js";
  * @param {import("../i18n/index.js").Translate} options.t
  * @param {import("../i18n/index.js").Translate} options.exampleText
  * @param {(kept: StoredFile) => string} options.draftLabel
+ * @param {(time: number) => string} options.timeLabel
  * @param {import("./commands.js").ProgramCommands} options.commands
  * @param {readonly Language[]} options.languages
  */
-export function startPage({ t, exampleText, draftLabel, commands, languages }) {
+export function startPage({ t, exampleText, draftLabel, timeLabel, commands, languages }) {
   /** @param {Language} language @param {import("../hosts/program_host.js").Sample} sample */
   const card = (language, { name, key, icon: sign }) =>
     h(
@@ -68,10 +70,10 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
     return h("span", { class: "program-sign-of" }, icon(language.icon, { small: true }), t(`language.${language.id}`));
   };
   const examples = exampleList({ t: exampleText, choose: (name) => void commands.openExample(name), signOf });
-  const files = h("ul", { class: "program-files" });
+  const files = h("ul", { class: "program-own" });
   const recentPart = h(
     "section",
-    { "aria-labelledby": "start-recent" },
+    { "aria-labelledby": "start-recent", hidden: true },
     h("h3", { id: "start-recent" }, t("file.recent")),
     files,
   );
@@ -98,11 +100,34 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
     "div",
     { class: "program-start", hidden: true },
     h("div", { class: "program-start-head" }, h("h2", {}, t("new.title")), h("div", { class: "row" }, back, open)),
+    recentPart,
     samples,
     examplePart,
-    recentPart,
   );
   element.addEventListener("keydown", ({ key }) => key === "Escape" && !back.hidden && commands.back());
+  /** @param {StoredFile} kept */
+  const ownCard = (kept) => {
+    const language = languages.find(({ id }) => id === languageOfFile(kept.text, languages));
+    const sign = language === undefined ? [] : [icon(language.icon, { small: true })];
+    const title = kept.name.replace(/\.aesl$/i, "");
+    return h(
+      "li",
+      {},
+      h(
+        "button",
+        {
+          type: "button",
+          class: "program-own-card",
+          "data-recent": kept.name,
+          title: kept.unsaved ? draftLabel(kept) : kept.name,
+          onclick: () => commands.openRecent(kept),
+        },
+        h("span", { class: "program-picture" }, miniature(kept.text), ...sign),
+        h("b", {}, title),
+        h("small", {}, timeLabel(kept.time), h("i", { class: "program-unsaved", "aria-hidden": "true", hidden: !kept.unsaved })),
+      ),
+    );
+  };
   let listed = "";
   return {
     element,
@@ -113,7 +138,7 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
       element.scrollTop = 0;
     },
     focus() {
-      /** @type {HTMLElement | null} */ (element.querySelector(".program-card"))?.focus();
+      /** @type {HTMLElement | null} */ (element.querySelector(".program-own-card, .program-card"))?.focus();
     },
     /**
      * @param {object} facts
@@ -130,20 +155,7 @@ export function startPage({ t, exampleText, draftLabel, commands, languages }) {
       const now = JSON.stringify(recent.map(({ name, time, unsaved }) => [name, time, unsaved]));
       if (now === listed) return;
       listed = now;
-      files.replaceChildren(
-        ...recent.map((kept) =>
-          h(
-            "li",
-            {},
-            h(
-              "button",
-              { type: "button", class: "btn", "data-recent": kept.name, onclick: () => commands.openRecent(kept) },
-              icon("file", { small: true }),
-              h("span", {}, kept.unsaved ? draftLabel(kept) : kept.name),
-            ),
-          ),
-        ),
-      );
+      files.replaceChildren(...recent.map(ownCard));
     },
   };
 }

@@ -105,7 +105,9 @@ export class ProgramTab {
       detach: () => void commands.detach(),
       changed: () => this.#follow(),
     });
-    this.start = startPage({ t, exampleText: this.exampleText, draftLabel, commands, languages });
+    const timeLabel = (/** @type {number} */ time) =>
+      new Date(time).toLocaleString(language, { dateStyle: "short", timeStyle: "short" });
+    this.start = startPage({ t, exampleText: this.exampleText, draftLabel, timeLabel, commands, languages });
     this.bar = h("div", { class: "program-row" }, h("span", { class: "grow" }), this.badge.element);
     this.place = h("div", { class: "program-view" }, this.languageBar.element, this.bar);
     this.element = h(
