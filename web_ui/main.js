@@ -77,6 +77,25 @@ function readToken() {
   return resolveToken(tabStore, location.href, (shown) => history.replaceState(null, "", shown));
 }
 
+/**
+ * What covers the scene at its upper and lower edge. The wall of the 3D view leaves room for the buttons, the 2D view
+ * has none.
+ *
+ * @param {HTMLElement} views
+ * @param {HTMLElement} trouble
+ */
+function coveredEdges(views, trouble) {
+  const scene = /** @type {HTMLElement} */ (trouble.parentElement).getBoundingClientRect();
+  const edges = { top: 0, bottom: 0 };
+  for (const covering of [views, trouble]) {
+    const { top, bottom, height } = covering.getBoundingClientRect();
+    if (height === 0) continue;
+    if (top - scene.top < scene.bottom - bottom) edges.top = Math.max(edges.top, bottom - scene.top);
+    else edges.bottom = Math.max(edges.bottom, scene.bottom - top);
+  }
+  return edges;
+}
+
 /** Update the subscriptions when the state wants other topics. @param {Store} store @param {Client} client */
 function watchSubscriptions(store, client) {
   let subscribed = "";
@@ -166,6 +185,7 @@ async function main() {
     robotTitle: (name) => robotNames.title(name) || text("page")("app.robot"),
     select: (robot) => store.dispatch({ type: "select", robot }),
     contextLost: (trouble) => graphics.set(trouble),
+    flatInsets: () => coveredEdges(element(".views"), element("#trouble")),
   });
   const followTheme = () => scene.setTheme(theme.isDark ? "dark" : "light");
   const followMotion = () => scene.setCalm(motion.isCalm);

@@ -216,3 +216,19 @@ def test_all_tools_are_reached_by_touch(at_rest, touch_page, size):
     with page.expect_file_chooser():
         page.locator("[data-tool=picture]").tap()
     page.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
+
+
+HINT_IS_BELOW = """() => {
+    const buttons = [...document.querySelectorAll(".views .float .btn")].map((one) => one.getBoundingClientRect());
+    const {top, height} = document.querySelector(".placing-hint").getBoundingClientRect();
+    return height > 0 && buttons.every((one) => one.height === 0 || one.bottom <= top);
+}"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(1024, 768), (640, 400), (390, 844)])
+def test_the_hint_is_below_all_buttons_over_the_view(at_rest, page, size):
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    open_creator(page, at_rest)
+    page.locator(".palette button").first.click()
+    page.wait_for_function(HINT_IS_BELOW)

@@ -8,10 +8,12 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
+from tests.bridge.studio import set_and_answer
 from tests.processes import wait_for_port
 from tests.web_ui.page_support import MARKS, choose_language, open_menu, open_tab, wait_for_frame, wait_for_none
 from tests.web_ui.test_page_access import AXE, FINDINGS, OVERLAPPING
 from tests.web_ui.test_page_recovery import NO_STORAGE
+from thymio_sim_ros.bridge.protocol import messages as ms
 
 pytestmark = MARKS
 
@@ -24,6 +26,17 @@ IN_SIGHT = """() => [...document.querySelectorAll(".welcome-start, .welcome-watc
     const {left, top, right, bottom} = element.getBoundingClientRect();
     return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
 })"""
+
+OFFER_IS_FREE = """() => {
+    const box = (element) => element.getBoundingClientRect();
+    const offer = document.querySelector(".welcome-tour");
+    if (offer === null) return false;
+    const {left, top, right, bottom} = box(offer);
+    const others = [...document.querySelectorAll(".welcome-start, .welcome-watch, #messages > *, #trouble")].map(box);
+    return offer.checkVisibility({visibilityProperty: true}) && !others.some((other) => other.width > 0
+        && other.left < right && other.right > left && other.top < bottom && other.bottom > top);
+}"""
+"""The offer of the tour covers neither a start nor a message."""
 
 
 def wait_for_program(page, name):
@@ -167,6 +180,7 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(world, page, size
         choose_language(page, language)
         page.locator(STARTS).wait_for()
         page.wait_for_function(IN_SIGHT)
+        page.wait_for_function(OFFER_IS_FREE)
     if AXE.exists():
         page.add_script_tag(path=str(AXE))
         assert page.evaluate(FINDINGS) == []
@@ -174,6 +188,21 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(world, page, size
     page.locator(".view-row").wait_for()
     wait_for_none(page, OVERLAPPING)
     assert page.locator(".welcome-tour").count() == 1
+
+
+@pytest.mark.slow
+def test_the_offer_of_the_tour_waits_while_the_teacher_says_something_on_a_phone(world, page):
+    page.set_viewport_size({"width": 390, "height": 844})
+    address = world("line", "welcome")
+    with world.client() as client:
+        set_and_answer(client, ms.Parameter("/web_ui.notice", "Look at the board. " * 9))
+    visit(page, address, "welcome=on")
+    page.locator(STARTS).wait_for()
+    note = page.locator(".teacher-note")
+    note.wait_for()
+    page.wait_for_function("() => document.querySelector('.welcome-tour')?.style.visibility === 'hidden'")
+    note.get_by_role("button", name="Hide").click()
+    page.wait_for_function(OFFER_IS_FREE)
 
 
 @pytest.mark.slow

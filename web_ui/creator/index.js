@@ -69,7 +69,8 @@ export class Creator {
     const summary = h("summary", {}, icon("keys", { small: true }), h("span", { class: "grow" }, t("keys.title")), caret);
     this.elements = {
       views: views.element,
-      stage: h("div", { class: "creator-stage" }, hints.element, over.element),
+      hints: hints.element,
+      stage: h("div", { class: "creator-stage" }, over.element),
       side: h(
         "div",
         { class: "creator", role: "region", "aria-label": t("creator") },

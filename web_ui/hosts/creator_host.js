@@ -222,9 +222,10 @@ export class CreatorHost {
       tryIt: () => void this.#tryIt(),
       close: () => this.close(),
     });
-    const { stage, side, footer, views } = this.creator.elements;
+    const { stage, side, footer, views, hints } = this.creator.elements;
     this.element("#scene").append(stage);
     this.element('[data-slot="views"]').prepend(views);
+    this.element('[data-slot="views"]').append(hints); // below all buttons, however many rows they take
     this.element("#panel-playground").append(side);
     this.element("#creator-bar").append(footer);
     this.#showBar(true);

@@ -18,6 +18,8 @@ import { drawSketch } from "./sketch.js";
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
 const MARGIN = 1.06;
+/** The world gets this part of the picture at least. */
+const LEAST_PART = 0.2;
 const ZOOM_STEP = 1.15;
 const FOLLOW_M = 0.9; // height of the visible area while following a robot
 const ABOVE_M = 5;
@@ -39,20 +41,29 @@ export class FlatView {
   }
 
   /**
-   * Show the whole world, or the area around a robot.
+   * Show the whole world, or the area around a robot, in what is not covered.
    *
    * @param {THREE.Vector3[]} corners
    * @param {{ x: number, y: number } | null} followed
+   * @param {import("./camera.js").Insets} [covered]   CSS pixels at the edges
    */
-  aim(corners, followed) {
+  aim(corners, followed, { top = 0, right = 0, bottom = 0, left = 0 } = {}) {
     const { width, height: high } = this.#size;
     const aspect = width / Math.max(1, high);
+    const part = {
+      width: Math.max(LEAST_PART, 1 - ((left + right) * this.pixelRatio) / Math.max(1, width)),
+      height: Math.max(LEAST_PART, 1 - ((top + bottom) * this.pixelRatio) / Math.max(1, high)),
+    };
     const box = new THREE.Box3().setFromPoints(corners.length > 0 ? corners : [new THREE.Vector3()]);
     const size = box.getSize(new THREE.Vector3());
     const middle = box.getCenter(new THREE.Vector3());
-    const height = followed !== null ? FOLLOW_M : MARGIN * Math.max(size.y, size.x / aspect, 0.2);
-    const { x, y } = followed ?? middle;
+    const whole = MARGIN * Math.max(size.y / part.height, size.x / aspect / part.width, 0.2);
+    const height = followed !== null ? FOLLOW_M : whole;
     const half = height / 2 / this.zoom;
+    const pixel = ((2 * half) / Math.max(1, high)) * this.pixelRatio;
+    const middleOf = followed ?? middle;
+    const x = middleOf.x + ((right - left) / 2) * pixel;
+    const y = middleOf.y + ((top - bottom) / 2) * pixel;
     Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
     this.camera.position.set(x, y, ABOVE_M);
     this.camera.updateProjectionMatrix();

@@ -40,8 +40,9 @@ export class SceneView {
    * @param {(robot: string) => void} [options.select]   a robot's dot has been clicked
    * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   overlay of the creator; null while it is closed
    * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: permanently, drawn in 2D
+   * @param {() => import("./camera.js").Insets} [options.flatInsets]   what covers the 2D view besides, at its edges
    */
-  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, select = () => {}, sketch, contextLost }) {
+  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, select = () => {}, sketch, contextLost, flatInsets = () => ({}) }) {
     this.canvas = canvas;
     this.state = state;
     this.beforeDraw = beforeDraw;
@@ -52,6 +53,7 @@ export class SceneView {
     this.showSensors = true;
     this.showNumbers = false;
     this.isCalm = false;
+    this.flatInsets = flatInsets;
     this.painter = new Painter({ canvas, flatCanvas, changed: () => this.invalidate(), contextLost });
     this.quality = new Quality({ isSoftware: this.painter.isSoftware });
     this.loop = new FrameLoop({ quality: this.quality, draw: (nowMs) => this.#frame(nowMs) });
@@ -247,7 +249,11 @@ export class SceneView {
     const { flat } = this.painter;
     const state = this.state();
     const names = Object.keys(state.robots);
-    flat.aim(this.camera.corners, this.camera.goesAlong ? this.#selectedPose() : null);
+    const { insets, corners, goesAlong } = this.camera;
+    const covered = this.flatInsets();
+    const { top = 0, bottom = 0 } = covered;
+    const all = { ...insets, top: Math.max(insets.top ?? 0, top), bottom: Math.max(insets.bottom ?? 0, bottom) };
+    flat.aim(corners, goesAlong ? this.#selectedPose() : null, all);
     flat.draw(state, {
       nowMs,
       senses: (name) => this.#isSensing(name),

@@ -1,9 +1,12 @@
-// The card that offers the tour: below "?", and never over a control.
+// The card that offers the tour: below "?", and never over a control or a message. Where there is little room it is one
+// row; where there is none, it waits.
 
 import { h } from "../ui/dom.js";
 import { keepFocus } from "../ui/focus.js";
 
 const MARGIN_PX = 8;
+/** What it must not cover. */
+const CONTROLS = "#messages > *, #trouble, .welcome-start, .welcome-watch, .views .btn, #tray .btn, #tray .hand";
 /** From the tip of the card to its right edge, where there is room. */
 const TIP_PX = 60;
 const BELOW_PX = 18;
@@ -43,23 +46,34 @@ export function tourOffer({ tour, scene }, t) {
     const views = document.querySelector(".view-row")?.getBoundingClientRect();
     const isBelowViews = views !== undefined && views.height > 0;
     const middle = (button.left + button.right) / 2;
-    const most = innerWidth - element.offsetWidth - MARGIN_PX;
-    const wanted = isBelowViews ? innerWidth - views.right : innerWidth - middle - TIP_PX;
-    const right = Math.max(MARGIN_PX, Math.min(wanted, most));
-    const top = isBelowViews ? views.bottom + MARGIN_PX : button.bottom + BELOW_PX;
-    element.toggleAttribute("data-below-views", isBelowViews);
-    element.style.right = `${Math.round(right)}px`;
-    element.style.top = `${Math.round(top)}px`;
-    element.style.setProperty("--tip", `${Math.round(innerWidth - right - middle)}px`);
-    element.style.visibility = isBelowViews && top + element.offsetHeight > stage.bottom ? "hidden" : "";
+    /** @param {boolean} isCompact */
+    const put = (isCompact) => {
+      element.toggleAttribute("data-compact", isCompact);
+      const most = innerWidth - element.offsetWidth - MARGIN_PX;
+      const wanted = isBelowViews ? innerWidth - views.right : innerWidth - middle - TIP_PX;
+      const right = Math.max(MARGIN_PX, Math.min(wanted, most));
+      const top = isBelowViews ? views.bottom + MARGIN_PX : button.bottom + BELOW_PX;
+      element.toggleAttribute("data-below-views", isBelowViews);
+      element.style.right = `${Math.round(right)}px`;
+      element.style.top = `${Math.round(top)}px`;
+      element.style.setProperty("--tip", `${Math.round(innerWidth - right - middle)}px`);
+      const box = { left: innerWidth - right - element.offsetWidth, right: innerWidth - right, top, bottom: top + element.offsetHeight };
+      return box.bottom <= stage.bottom && !coversControl(box);
+    };
+    const hasRoom = put(false) || put(true);
+    element.style.visibility = hasRoom ? "" : "hidden";
   };
   document.body.append(element);
   place();
   const room = new ResizeObserver(place);
-  for (const part of document.querySelectorAll("#scene, .view-row")) room.observe(part);
+  for (const part of document.querySelectorAll("#scene, .view-row, #messages, .welcome-starts")) room.observe(part);
+  const messages = new MutationObserver(place);
+  const messagesPlace = document.querySelector("#messages");
+  if (messagesPlace !== null) messages.observe(messagesPlace, { subtree: true, childList: true, attributeFilter: ["hidden"] });
   return {
     destroy() {
       room.disconnect();
+      messages.disconnect();
       keepFocus(
         element,
         () => element.remove(),
@@ -67,4 +81,12 @@ export function tourOffer({ tour, scene }, t) {
       );
     },
   };
+}
+
+/** @param {{ left: number, right: number, top: number, bottom: number }} box */
+function coversControl(box) {
+  return [...document.querySelectorAll(CONTROLS)].some((control) => {
+    const { left, right, top, bottom, width } = control.getBoundingClientRect();
+    return width > 0 && left < box.right && right > box.left && top < box.bottom && bottom > box.top;
+  });
 }
