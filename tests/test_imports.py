@@ -87,9 +87,11 @@ RULES = {
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.tf": Rule(
-        _names("tf", "ros.compat.tf2_messages", "ros.rclpy_ext.throttled_log"),
+        _names("course_packages", "tf", "ros.compat.tf2_messages", "ros.rclpy_ext.throttled_log"),
         ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},
     ),
+    # the packages of other names, which only programs of students import
+    f"{OURS}.course_packages": Rule(_names("course_packages", "ros.compat.tf2_messages", "tf"), ROS),
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
     # students copy them: rclpy, messages, and tf2 for those who have the wheels only
@@ -107,7 +109,7 @@ RULES = {
         _names("device", "loading", "resources", "runlog.run_log", "runner", "sim", "testing"), frozenset({"pytest"})
     ),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
-    f"{OURS}.lockstep": Rule(_names("errors", "lockstep", "type_names"), ROS),
+    f"{OURS}.lockstep": Rule(_names("course_packages", "errors", "lockstep", "type_names"), ROS),
     f"{OURS}.grading": Rule(_names("aseba_vm", "grading", "runlog.test_files", "batch_runs"), frozenset({"pytest"})),
     f"{OURS}.grading.gradescope": Rule(frozenset(), frozenset({"yaml"})),
     f"{OURS}.grading.test_process": Rule(
@@ -119,7 +121,14 @@ RULES = {
     # resources, loading, addresses, suite_config: helpers of the commands, without ROS
     OURS: Rule(ALL_OF_OURS),
 }
-STARTERS = {f"{OURS}.cli", f"{OURS}.testing.ros", f"{OURS}.pytest_plugin", f"{OURS}.ros", f"{OURS}.tf"}
+STARTERS = {
+    f"{OURS}.cli",
+    f"{OURS}.course_packages",
+    f"{OURS}.testing.ros",
+    f"{OURS}.pytest_plugin",
+    f"{OURS}.ros",
+    f"{OURS}.tf",
+}
 
 
 def _sources() -> dict[str, Path]:
@@ -191,6 +200,7 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 @pytest.mark.process
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
     with_ros = (
+        f"{OURS}.course_packages.packages",
         f"{OURS}.ros",
         f"{OURS}.testing.ros",
         f"{OURS}.lockstep",

@@ -7,11 +7,13 @@ import sys
 
 import pytest
 
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.cli import main
 
 dds_profile = pytest.importorskip("thymio_sim_ros.ros.compat.dds_profile")
 
 PREFIXES = "AMENT_PREFIX_PATH"
+PATH = "PYTHONPATH"
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 
 
@@ -20,7 +22,7 @@ def _unset(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     others = ("FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML")
-    for name in (PREFIXES, RANGE, dds_profile.VARIABLE, *others):
+    for name in (PATH, PREFIXES, RANGE, dds_profile.VARIABLE, *others):
         monkeypatch.delenv(name, raising=False)
 
 
@@ -33,7 +35,9 @@ def printed(capsys):
 
 
 def test_it_prints_discovery_range_and_profile(capsys):
-    assert printed(capsys) == {RANGE: "LOCALHOST", dds_profile.VARIABLE: str(dds_profile.ANNOUNCING)}
+    found = printed(capsys)
+    assert (found[RANGE], found[dds_profile.VARIABLE]) == ("LOCALHOST", str(dds_profile.ANNOUNCING))
+    assert found.keys() == {RANGE, dds_profile.VARIABLE, PATH}
 
 
 def test_the_packages_of_the_wheels_are_found(capsys, tmp_path):
@@ -50,4 +54,12 @@ def test_a_variable_that_is_set_is_left_alone(capsys, monkeypatch, tmp_path, nam
 
 def test_no_profile_is_set_beside_another_one(capsys, monkeypatch):
     monkeypatch.setenv("FASTDDS_DEFAULT_PROFILES_FILE", "theirs")
-    assert printed(capsys) == {RANGE: "LOCALHOST"}
+    assert dds_profile.VARIABLE not in printed(capsys)
+
+
+def test_the_path_of_imports_gets_one_folder_once(capsys, monkeypatch):
+    monkeypatch.setenv(PATH, "theirs:here")
+    path = printed(capsys)[PATH]
+    assert path == f"{course_packages.STARTUP}:theirs:here"
+    monkeypatch.setenv(PATH, path)
+    assert PATH not in printed(capsys)

@@ -10,9 +10,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from aseba_vm.cli.output import standard_output
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.cli.options import check_ros
 
 __all__ = ["run"]
+
+PATH = "PYTHONPATH"
 
 EXAMPLE = """\
 In each terminal, before `ros2` or a node of your own is started:
@@ -20,7 +23,8 @@ In each terminal, before `ros2` or a node of your own is started:
 
 Discovery is limited to this computer, as that of `thymio-sim`, and every process announces itself to new ones four
 times a second, so that they find it at once. Where ROS comes from Python wheels, `ros2 run` and `ros2 interface` find
-its packages. Variables that are set already are not printed.
+its packages. `tf2_ros`, `tf2_msgs`, `tf2_geometry_msgs` and `tf_transformations` can be imported, also where they are
+not installed. Variables that are set already are not printed; PYTHONPATH keeps its folders and gets one more.
 """
 
 
@@ -48,4 +52,7 @@ def _variables() -> Mapping[str, str]:
         values[dds_profile.VARIABLE] = str(dds_profile.ANNOUNCING)
     if Path(sys.prefix, "share", "ament_index").is_dir():  # the wheels leave this variable unset
         values["AMENT_PREFIX_PATH"] = sys.prefix
-    return {name: value for name, value in values.items() if name not in os.environ}
+    new = {name: value for name, value in values.items() if name not in os.environ}
+    places = list(filter(None, os.environ.get(PATH, "").split(os.pathsep)))
+    first = str(course_packages.STARTUP)
+    return new if first in places else {**new, PATH: os.pathsep.join([first, *places])}

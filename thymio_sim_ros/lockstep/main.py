@@ -19,6 +19,7 @@ from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.lockstep import clocks, keyboard, real_time, threads
 from thymio_sim_ros.lockstep.channel import Channel, ClosedError
 from thymio_sim_ros.lockstep.turns import Turns
@@ -166,6 +167,7 @@ def main() -> None:
 def _run(options: Options) -> int | str | None:
     """Run the program; return what `sys.exit` takes."""
     sys.path[0] = options.folder
+    course_packages.add_to_path()
     sys.argv = [options.file or options.module or options.function, *options.arguments]
     try:
         if options.file:

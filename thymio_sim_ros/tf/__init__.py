@@ -4,13 +4,15 @@
 
 If `tf2_ros`, `tf2_geometry_msgs` or `tf_transformations` is installed, as on a complete ROS installation, the names
 refer to the package. Otherwise, as with the ROS wheels, they refer to this project's implementation with the same
-arguments and exceptions. Programs need no change.
+arguments and exceptions. Programs need no change; those that import the packages themselves get the same
+(`course_packages`).
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.tf import geometry
 
 if TYPE_CHECKING:
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
         do_transform_vector3,
     )
 else:
-    try:
+    if course_packages.is_installed("tf2_ros"):
         from tf2_ros import (
             Buffer,
             ConnectivityException,
@@ -46,7 +48,7 @@ else:
             TransformRegistration,
             TypeException,
         )
-    except ImportError:
+    else:
         from thymio_sim_ros.tf.buffer import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformListener
         from thymio_sim_ros.tf.errors import (
             ConnectivityException,
@@ -59,14 +61,14 @@ else:
         )
 
         TransformRegistration = None
-    try:
+    if course_packages.is_installed("tf2_geometry_msgs"):
         from tf2_geometry_msgs import (
             do_transform_point,
             do_transform_pose,
             do_transform_pose_stamped,
             do_transform_vector3,
         )
-    except ImportError:
+    else:
         from thymio_sim_ros.tf.geometry import (
             do_transform_point,
             do_transform_pose,
@@ -107,9 +109,9 @@ if TYPE_CHECKING:
 else:
     from thymio_sim_ros.tf import transformations as _ours
 
-    try:
+    if course_packages.is_installed("tf_transformations"):
         import tf_transformations as _theirs
-    except ImportError:
+    else:
         _theirs = _ours
     for _name in _ours.__all__:
         globals()[_name] = getattr(_theirs, _name)

@@ -21,7 +21,7 @@ from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.tf.buffer_core import CACHE_NS, BufferCore, RigidTransform, StampedTransform
 from thymio_sim_ros.tf.errors import TransformException, TypeException
-from thymio_sim_ros.tf.geometry import TRANSFORMERS, transform_of
+from thymio_sim_ros.tf.geometry import TRANSFORMERS
 
 __all__ = ["Buffer", "StaticTransformBroadcaster", "TransformBroadcaster", "TransformListener"]
 
@@ -139,6 +139,14 @@ class Buffer:
             return_debug_tuple,
         )
 
+    def lookup_transform_core(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> TransformStamped:
+        """Return the pose of `source_frame` in `target_frame`; the same as `lookup_transform`, as tf2_py has it."""
+        return self.lookup_transform(target_frame, source_frame, time)
+
+    def can_transform_core(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> tuple[bool, str]:
+        """Whether a transform is known, and the reason if not, as tf2_py has it."""
+        return self._wait_and_reason(lambda: self._core.lookup(target_frame, source_frame, _ns(time)), NOW)
+
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> Future:
         """Return a future whose result is True as soon as the transform is known."""
         return self._future(lambda: self._core.lookup(target_frame, source_frame, _ns(time)))
@@ -220,13 +228,17 @@ class Buffer:
     def _wait_and_check(
         self, lookup: Callable[[], StampedTransform], timeout: Duration, with_reason: bool
     ) -> bool | tuple[bool, str]:
+        found = self._wait_and_reason(lookup, timeout)
+        return found if with_reason else found[0]
+
+    def _wait_and_reason(self, lookup: Callable[[], StampedTransform], timeout: Duration) -> tuple[bool, str]:
         with self._changed:
             self._wait(lookup, timeout)
             try:
                 lookup()
             except TransformException as error:
-                return (False, str(error)) if with_reason else False
-        return (True, "") if with_reason else True
+                return False, str(error)
+        return True, ""
 
     def _wait(self, lookup: Callable[[], StampedTransform], timeout: Duration) -> None:
         """Wait until the transform is known or the time-out has elapsed; the lock is released meanwhile."""
@@ -370,25 +382,22 @@ def _several(transform: TransformStamped | Iterable[TransformStamped]) -> list[T
 
 def _encoded(transforms: Iterable[TransformStamped]) -> bytes:
     placed = map(_placed, transforms)
-    return tf2_messages.encode([
+    return tf2_messages.encode(
         tf2_messages.Transform(one.stamp_ns, one.frame, one.child, one.motion.translation, one.motion.rotation)
         for one in placed
-    ])  # fmt: skip
+    )
 
 
 def _placed(transform: TransformStamped) -> StampedTransform:
-    stamp_ns = _ns(transform.header.stamp)
-    return StampedTransform(stamp_ns, transform.header.frame_id, transform.child_frame_id, transform_of(transform))
+    one = tf2_messages.from_message(transform)
+    return StampedTransform(one.stamp_ns, one.frame, one.child, RigidTransform(one.translation, one.rotation))
 
 
 def _message(placed: StampedTransform) -> TransformStamped:
-    message = TransformStamped(child_frame_id=placed.child)
-    message.header.frame_id = placed.frame
-    message.header.stamp = Time(nanoseconds=placed.stamp_ns).to_msg()
-    translation, rotation = message.transform.translation, message.transform.rotation
-    translation.x, translation.y, translation.z = placed.motion.translation
-    rotation.x, rotation.y, rotation.z, rotation.w = placed.motion.rotation
-    return message
+    motion = placed.motion
+    return tf2_messages.to_message(
+        tf2_messages.Transform(placed.stamp_ns, placed.frame, placed.child, motion.translation, motion.rotation)
+    )
 
 
 def _ns(time: Time | TimeMessage) -> int:

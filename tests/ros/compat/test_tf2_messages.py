@@ -105,9 +105,33 @@ def test_the_type_is_available_here() -> None:
     assert tf2_messages.available()
 
 
-def test_the_replacement_has_no_instances() -> None:
-    with pytest.raises(TypeError, match="encode"):
-        tf2_messages._SerializedTFMessage()
+@pytest.mark.skipif(TFMessage is not tf2_messages._TFMessage, reason="tf2_msgs is installed")
+def test_messages_are_objects_too(caplog: pytest.LogCaptureFixture) -> None:
+    """Course files publish and receive TFMessage; it was a name without instances."""
+    sent = TFMessage(transforms=[tf2_messages.to_message(BASE), tf2_messages.to_message(BASE)])
+    data = serialize_message(sent)
+    assert decode(data) == (BASE, BASE)
+    assert deserialize_message(data, TFMessage) == sent
+    with pytest.raises(RuntimeError, match="failed to deserialize"):
+        deserialize_message(data[:50], TFMessage)
+    with pytest.raises(TypeError, match="transforms: found int, expected"):
+        sent.transforms = [1]
+    sent.transforms.append(None)
+    with pytest.raises(RuntimeError):
+        serialize_message(sent)
+    assert "a message cannot be sent: AttributeError" in caplog.text
+
+
+def test_message_objects_arrive() -> None:
+    received: list[object] = []
+    sent = TFMessage(transforms=[tf2_messages.to_message(BASE)])
+    with _peers("sender", "receiver") as (sender, receiver):
+        publisher = sender.node.create_publisher(TFMessage, "/tf", 10)
+        receiver.node.create_subscription(TFMessage, "/tf", received.append, 10)
+        _until(lambda: publisher.get_subscription_count() == 1, sender, receiver)
+        publisher.publish(sent)
+        _until(lambda: bool(received), sender, receiver)
+    assert received == [sent]
 
 
 def test_another_middleware_is_rejected_by_name() -> None:

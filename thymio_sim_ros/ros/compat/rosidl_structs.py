@@ -13,6 +13,11 @@ __all__ = [
     "KNOWN",
     "NESTED_UNBOUNDED_SEQUENCE",
     "Callbacks",
+    "ConvertFromPython",
+    "ConvertToPython",
+    "Create",
+    "Deserialize",
+    "Destroy",
     "Dispatch",
     "Field",
     "FieldType",
@@ -21,6 +26,8 @@ __all__ = [
     "Member",
     "Members",
     "Sequence",
+    "Serialize",
+    "SerializedSize",
     "String",
     "TypeDescription",
     "TypeHash",
@@ -125,6 +132,15 @@ class Members(ctypes.Structure):
         ("fini_function", ctypes.c_void_p),
     )
 
+
+Serialize = ctypes.CFUNCTYPE(ctypes.c_bool, ctypes.c_void_p, ctypes.c_void_p)  # message, Cdr
+Deserialize = ctypes.CFUNCTYPE(ctypes.c_bool, ctypes.c_void_p, ctypes.c_void_p)  # Cdr, message
+SerializedSize = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_void_p)
+# What rclpy finds in a message class (rosidl_generator_py); they are called with the lock of the interpreter.
+Create = ctypes.PYFUNCTYPE(ctypes.c_void_p)
+ConvertFromPython = ctypes.PYFUNCTYPE(ctypes.c_bool, ctypes.py_object, ctypes.c_void_p)
+ConvertToPython = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p)
+Destroy = ctypes.PYFUNCTYPE(None, ctypes.c_void_p)
 
 Dispatch = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)
 Getter = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p)

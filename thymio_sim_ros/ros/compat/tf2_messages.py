@@ -1,7 +1,8 @@
 """Transforms as serialized tf2_msgs/msg/TFMessage, also if tf2_msgs is not installed (the ROS wheels lack it).
 
-`TFMessage` is the class for `create_publisher` and, with `raw=True`, for `create_subscription`: that of tf2_msgs if it
-is installed, otherwise a replacement of the same name and hash, built by `typesupport`. Messages are bytes of `encode`.
+`TFMessage` is the class for `create_publisher` and `create_subscription`: that of tf2_msgs if it is installed,
+otherwise a replacement of the same name and hash, built by `typesupport`. This package publishes bytes of `encode` and
+subscribes with `raw=True`, because message objects cost more.
 If neither works, `available()` is False and logs the reason once; /tf is then left out.
 """
 
@@ -10,9 +11,13 @@ from __future__ import annotations
 import functools
 import logging
 import struct
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from geometry_msgs.msg import TransformStamped
+from rosidl_parser.definition import NamespacedType, UnboundedSequence
+
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import typesupport
 
@@ -25,6 +30,8 @@ __all__ = [
     "available",
     "decode",
     "encode",
+    "from_message",
+    "to_message",
 ]
 
 _DESCRIPTION = typesupport.SequenceType(
@@ -57,40 +64,97 @@ class TransformDataError(ThymioSimError, ValueError):
 
 
 class _Metaclass(type):
-    """The attributes that rclpy expects of a message class: type support, loaded on first use, and four conversions.
-
-    rclpy only checks that the conversions are not None; it would call them for messages that are not serialized.
-    """
+    """The attributes that rclpy expects of a message class: type support and four conversions, built on first use."""
 
     _TYPE_SUPPORT: Any = None
-    _CREATE_ROS_MESSAGE = _CONVERT_FROM_PY = _CONVERT_TO_PY = _DESTROY_ROS_MESSAGE = "serialized messages only"
+    _CREATE_ROS_MESSAGE: Any = None
+    _CONVERT_FROM_PY: Any = None
+    _CONVERT_TO_PY: Any = None
+    _DESTROY_ROS_MESSAGE: Any = None
 
     @classmethod
     def __import_type_support__(cls) -> None:
         """Build the type support. Raises TypeSupportError if the installed ROS is not supported."""
-        from geometry_msgs.msg import TransformStamped
         from rclpy.type_support import check_for_type_support
         from rclpy.utilities import get_rmw_implementation_identifier
 
         typesupport.check_layouts(get_rmw_implementation_identifier())
         check_for_type_support(TransformStamped)
-        cls._TYPE_SUPPORT = typesupport.build(_DESCRIPTION, TransformStamped)
+        codec = typesupport.Codec(
+            lambda message: encode(map(from_message, message.transforms)),
+            lambda data: _TFMessage(transforms=list(map(to_message, decode(data)))),
+        )
+        support = typesupport.build(_DESCRIPTION, TransformStamped, codec)
+        cls._CREATE_ROS_MESSAGE, cls._CONVERT_FROM_PY, cls._CONVERT_TO_PY, cls._DESTROY_ROS_MESSAGE = (
+            typesupport.conversions(codec)
+        )
+        cls._TYPE_SUPPORT = support
 
 
-class _SerializedTFMessage(metaclass=_Metaclass):
-    """Replaces tf2_msgs.msg.TFMessage in raw publishers and subscriptions; has no instances."""
+class _TFMessage(metaclass=_Metaclass):
+    """Replaces tf2_msgs.msg.TFMessage."""
 
-    def __new__(cls) -> NoReturn:
-        raise TypeError("publish encode(transforms) instead: tf2_msgs is not installed")
+    __slots__ = ("_transforms",)
+    SLOT_TYPES = (UnboundedSequence(NamespacedType(["geometry_msgs", "msg"], "TransformStamped")),)
+
+    def __init__(self, *, transforms: Iterable[TransformStamped] = ()) -> None:
+        self.transforms = transforms
+
+    @property
+    def transforms(self) -> list[TransformStamped]:
+        """The transforms."""
+        return self._transforms
+
+    @transforms.setter
+    def transforms(self, value: Iterable[TransformStamped]) -> None:
+        found = list(value)
+        for one in found:
+            if not isinstance(one, TransformStamped):
+                raise TypeError(f"transforms: found {type(one).__name__}, expected geometry_msgs.msg.TransformStamped")
+        self._transforms = value if isinstance(value, list) else found
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Names and types of the fields, as all message classes have it."""
+        return {"transforms": "sequence<geometry_msgs/TransformStamped>"}
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _TFMessage) and self.transforms == other.transforms
+
+    __hash__ = None  # type: ignore[assignment]  # as all messages, which can be changed
+
+    def __repr__(self) -> str:
+        return f"tf2_msgs.msg.TFMessage(transforms={self.transforms!r})"
+
+
+_TFMessage.__name__ = _TFMessage.__qualname__ = "TFMessage"
+_TFMessage.__module__ = "tf2_msgs.msg._tf_message"  # the name of the type in tools of ROS is made of these
 
 
 if TYPE_CHECKING:
     TFMessage: Any
+elif course_packages.is_installed("tf2_msgs"):
+    from tf2_msgs.msg import TFMessage
 else:
-    try:
-        from tf2_msgs.msg import TFMessage
-    except ImportError:
-        TFMessage = _SerializedTFMessage
+    TFMessage = _TFMessage
+
+
+def from_message(message: TransformStamped) -> Transform:
+    """The values of a message."""
+    stamp, t, q = message.header.stamp, message.transform.translation, message.transform.rotation
+    stamp_ns = stamp.sec * _SECOND_NS + stamp.nanosec
+    return Transform(stamp_ns, message.header.frame_id, message.child_frame_id, (t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
+
+
+def to_message(transform: Transform) -> TransformStamped:
+    """A message of these values."""
+    message = TransformStamped(child_frame_id=transform.child)
+    message.header.frame_id = transform.frame
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(transform.stamp_ns, _SECOND_NS)
+    translation, rotation = message.transform.translation, message.transform.rotation
+    translation.x, translation.y, translation.z = transform.translation
+    rotation.x, rotation.y, rotation.z, rotation.w = transform.rotation
+    return message
 
 
 @functools.cache
@@ -106,18 +170,19 @@ def available() -> bool:
     return True
 
 
-def encode(transforms: Sequence[Transform]) -> bytes:
+def encode(transforms: Iterable[Transform]) -> bytes:
     """Serialize a TFMessage as little-endian CDR. Stamps must be in 0…2³¹ s.
 
     Layout: 4 bytes of encapsulation, the number of transforms as uint32, then the transforms. CDR aligns each item to
     its size, counted from the end of the encapsulation, therefore the layout of a transform depends on its offset.
     """
-    parts = [_HEADER.pack(_LITTLE_ENDIAN_CDR, len(transforms))]
+    parts = [b""]
     offset = 4
     for stamp_ns, frame, child, translation, rotation in transforms:
         layout, *named = _named(offset % 8, frame, child)
         parts.append(layout.pack(*divmod(stamp_ns, _SECOND_NS), *named, *translation, *rotation))
         offset += layout.size
+    parts[0] = _HEADER.pack(_LITTLE_ENDIAN_CDR, len(parts) - 1)
     return b"".join(parts)
 
 

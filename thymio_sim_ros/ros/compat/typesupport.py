@@ -3,8 +3,13 @@
 rmw_fastrtps needs four things of a type: Fast DDS callbacks (for serialized messages it only uses the name in them), an
 introspection table, from which it creates the DDS type object, the type hash, and the description of the type with its
 sources. For a message whose only field is an unbounded sequence of an installed type, all four follow from that type.
-ctypes structures can therefore replace the generated library (docs/spec/ros-packaging.md section 1.3). Such a type only
-supports serialized messages: `publisher.publish(bytes)` and subscriptions with `raw=True`.
+ctypes structures can therefore replace the generated library (docs/spec/ros-packaging.md section 1.3).
+
+Without a codec such a type only supports serialized messages: `publisher.publish(bytes)` and subscriptions with
+`raw=True`. With a codec it also supports message objects. The C message that rclpy passes to the middleware is then
+one reference to a Python object: the bytes that the codec made of a message that is published, or the message that it
+made of received bytes. The Fast DDS callbacks copy these bytes to and from the buffer of Fast CDR by three of its
+functions that raise no C++ exceptions, since an exception could not pass through Python.
 
 The middleware does not report when it stops using a structure; therefore everything that is built here is kept until
 the process ends. The alternative, compiling tf2_msgs on the user's computer, would take a minute and one ABI for each
@@ -14,18 +19,32 @@ Python version.
 from __future__ import annotations
 
 import ctypes
+import logging
 import os
+import struct
 import sys
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import rosidl_structs
 
-__all__ = ["SequenceType", "TypeSupportError", "build", "check_layouts", "release_of", "type_hash_of"]
+__all__ = [
+    "Codec",
+    "Conversions",
+    "SequenceType",
+    "TypeSupportError",
+    "build",
+    "check_layouts",
+    "conversions",
+    "release_of",
+    "type_hash_of",
+]
+
+_LOG = logging.getLogger(__name__)
 
 _C = b"rosidl_typesupport_c"
 _FASTRTPS = b"rosidl_typesupport_fastrtps_c"
@@ -33,6 +52,18 @@ _INTROSPECTION = b"rosidl_typesupport_introspection_c"
 _HASH_PREFIX = "RIHS01_"
 
 _KNOWN_RMW = "rmw_fastrtps_cpp"
+
+_FAST_CDR = "libfastcdr.so.2"
+_FAST_CDR_FUNCTIONS = {
+    "buffer": ("_ZN8eprosima7fastcdr3Cdr18get_buffer_pointerEv", ctypes.c_void_p, []),
+    "position": ("_ZN8eprosima7fastcdr3Cdr20get_current_positionEv", ctypes.c_void_p, []),
+    "jump": ("_ZN8eprosima7fastcdr3Cdr4jumpEm", ctypes.c_bool, [ctypes.c_size_t]),
+}
+_ENCAPSULATION = 4
+"""Bytes before the content of a serialized message."""
+
+_LARGEST_STEP = 30
+"""Binary logarithm of the longest step with which the end of a buffer is searched."""
 
 
 class TypeSupportError(ThymioSimError, RuntimeError):
@@ -61,6 +92,26 @@ class SequenceType:
         return f"{package}/{element}[] {self.field}\n"
 
 
+@dataclass(frozen=True, slots=True)
+class Codec:
+    """Conversion of messages to serialized messages (CDR with its encapsulation) and back.
+
+    `decode` raises ValueError for bytes that are not such a message.
+    """
+
+    encode: Callable[[Any], bytes]
+    decode: Callable[[bytes], Any]
+
+
+class Conversions(NamedTuple):
+    """The four functions of a message class that rclpy calls for message objects, as capsules."""
+
+    create: Any
+    convert_from_py: Any
+    convert_to_py: Any
+    destroy: Any
+
+
 # Own prototypes: `ctypes.pythonapi` is shared with other modules, so its argtypes must not be changed.
 _capsule_new = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p)(
     ("PyCapsule_New", ctypes.pythonapi)
@@ -70,6 +121,9 @@ _capsule_pointer = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object, ctypes.c
     ("PyCapsule_GetPointer", ctypes.pythonapi)
 )
 _keep_for_ever = ctypes.PYFUNCTYPE(None, ctypes.py_object)(("Py_IncRef", ctypes.pythonapi))
+
+
+_release = ctypes.PYFUNCTYPE(None, ctypes.py_object)(("Py_DecRef", ctypes.pythonapi))
 
 
 def release_of(package: str) -> tuple[int, int] | None:
@@ -101,10 +155,11 @@ def type_hash_of(message_type: type) -> str:
     return f"RIHS{found.version:02d}_{bytes(found.value).hex()}"
 
 
-def build(message: SequenceType, element_type: type) -> Any:
+def build(message: SequenceType, element_type: type, codec: Codec | None = None) -> Any:
     """Return a capsule with the type support of `message`; `element_type` is the compiled class of its elements.
 
-    `check_layouts` must have been called. Raises TypeSupportError if the type support of the element lacks a part.
+    `check_layouts` must have been called. Message objects need a `codec` and `conversions`. Raises TypeSupportError if
+    the type support of the element or Fast CDR lacks a part.
 
     The result has the structure of generated code: a top handle whose `dispatch` function returns the handle of the
     requested implementation (Fast DDS or introspection) by its identifier.
@@ -112,7 +167,7 @@ def build(message: SequenceType, element_type: type) -> Any:
     element = _support_of(element_type)
     keep: list[Any] = []
     handles = {
-        _FASTRTPS: _handle(_FASTRTPS, _callbacks(message, element), keep),
+        _FASTRTPS: _handle(_FASTRTPS, _callbacks(message, element, codec, keep), keep),
         _INTROSPECTION: _handle(_INTROSPECTION, _members(message, element, keep), keep),
     }
     addresses = {identifier: ctypes.addressof(handle) for identifier, handle in handles.items()}
@@ -156,7 +211,9 @@ def _getter(part: ctypes.Structure, keep: list[Any]) -> Any:
     return function
 
 
-def _callbacks(message: SequenceType, element: rosidl_structs.TypeSupport) -> rosidl_structs.Callbacks:
+def _callbacks(
+    message: SequenceType, element: rosidl_structs.TypeSupport, codec: Codec | None, keep: list[Any]
+) -> rosidl_structs.Callbacks:
     """A copy of the element's callbacks under the name of the message; both types are unbounded in size."""
     data = _part(element, _FASTRTPS).data
     callbacks = rosidl_structs.Callbacks.from_buffer_copy(
@@ -164,7 +221,104 @@ def _callbacks(message: SequenceType, element: rosidl_structs.TypeSupport) -> ro
     )
     callbacks.message_namespace = f"{message.package}::msg".encode()
     callbacks.message_name = message.name.encode()
+    if codec is not None:
+        serialize, deserialize, size = _serializers(codec)
+        callbacks.cdr_serialize, callbacks.cdr_deserialize, callbacks.get_serialized_size = (
+            ctypes.cast(function, ctypes.c_void_p) for function in (serialize, deserialize, size)
+        )
+        keep += [serialize, deserialize, size]
     return callbacks
+
+
+def _serializers(codec: Codec) -> tuple[Any, Any, Any]:
+    """The Fast DDS callbacks for C messages that refer to a Python object."""
+    fast_cdr = _fast_cdr()
+
+    def serialize(message: int, cdr: int) -> bool:
+        content = _held(message)[_ENCAPSULATION:]
+        begin = fast_cdr["position"](cdr)
+        if not content or not fast_cdr["jump"](cdr, len(content)):
+            return False
+        ctypes.memmove(begin, content, len(content))
+        return True
+
+    def deserialize(cdr: int, message: int) -> bool:
+        begin = fast_cdr["buffer"](cdr)
+        for step in range(_LARGEST_STEP, -1, -1):  # the size of the buffer has no function of its own
+            fast_cdr["jump"](cdr, 1 << step)
+        try:
+            received = codec.decode(ctypes.string_at(begin, fast_cdr["position"](cdr) - begin))
+        except ValueError:
+            return False  # the middleware reports that the message cannot be taken
+        _hold(message, received)
+        return True
+
+    return (
+        rosidl_structs.Serialize(serialize),
+        rosidl_structs.Deserialize(deserialize),
+        rosidl_structs.SerializedSize(lambda message: len(_held(message)[_ENCAPSULATION:])),
+    )
+
+
+def _fast_cdr() -> dict[str, Any]:
+    try:
+        library = ctypes.CDLL(_FAST_CDR)
+        functions = {}
+        for name, (symbol, result, arguments) in _FAST_CDR_FUNCTIONS.items():
+            functions[name] = library[symbol]
+            functions[name].restype, functions[name].argtypes = result, [ctypes.c_void_p, *arguments]
+    except (OSError, AttributeError) as error:
+        raise TypeSupportError(f"{_FAST_CDR}: {error}") from error
+    return functions
+
+
+def conversions(codec: Codec) -> Conversions:
+    """The functions with which rclpy converts message objects of a type that was built with this codec."""
+    library = ctypes.CDLL(None)
+    allocate, free = library.calloc, library.free
+    allocate.restype, allocate.argtypes = ctypes.c_void_p, [ctypes.c_size_t, ctypes.c_size_t]
+    free.restype, free.argtypes = None, [ctypes.c_void_p]
+
+    def convert_from_py(message: Any, place: int) -> bool:
+        try:
+            data = codec.encode(message)
+        except (AttributeError, TypeError, ValueError, struct.error) as error:  # it cannot pass through C
+            _LOG.error("a message cannot be sent: %s: %s: found %r", type(error).__name__, error, message)
+            data = b""
+        _hold(place, data)
+        return bool(data)
+
+    def destroy(place: int) -> None:
+        _hold(place, None)
+        free(place)
+
+    functions = (
+        rosidl_structs.Create(lambda: allocate(1, ctypes.sizeof(rosidl_structs.Sequence))),
+        rosidl_structs.ConvertFromPython(convert_from_py),
+        rosidl_structs.ConvertToPython(_held),
+        rosidl_structs.Destroy(destroy),
+    )
+    _keep_for_ever(functions)
+    return Conversions(
+        *(_capsule_new(ctypes.cast(function, ctypes.c_void_p).value, None, None) for function in functions)
+    )
+
+
+def _hold(place: int, value: Any) -> None:
+    """Make the C message at `place` refer to a Python object, None: to nothing; its former object is released."""
+    reference = ctypes.c_void_p.from_address(place)
+    former = None if not reference.value else ctypes.cast(reference.value, ctypes.py_object).value
+    if value is None:
+        reference.value = None
+    else:
+        _keep_for_ever(value)
+        reference.value = id(value)
+    if former is not None:
+        _release(former)
+
+
+def _held(place: int) -> Any:
+    return ctypes.cast(ctypes.c_void_p.from_address(place), ctypes.py_object).value
 
 
 def _members(message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]) -> rosidl_structs.Members:

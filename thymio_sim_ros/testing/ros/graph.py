@@ -19,6 +19,7 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, try_shutdown
 
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
@@ -97,6 +98,7 @@ class Ros:
         if self.context.ok():
             self.context = Context()
         log_directory.ensure()
+        course_packages.add_to_path()
         rclpy.init(args=[], context=self.context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
         # The events executor writes crash reports to the file behind stderr, which `--capture=sys` does not provide.
         with contextlib.redirect_stderr(sys.__stderr__):

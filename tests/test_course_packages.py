@@ -1,0 +1,123 @@
+"""Packages that course files import, where no wheels of them exist: in every way in which a node of a student runs."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros import course_packages
+
+pytest.importorskip("rclpy")
+
+NODE = """\
+import rclpy
+import tf2_geometry_msgs
+from geometry_msgs.msg import PointStamped, TransformStamped
+from rclpy.node import Node
+from rclpy.time import Time
+from std_msgs.msg import Float64
+from tf2_msgs.msg import TFMessage
+from tf2_py import BufferCore, LookupException
+from tf2_ros import TransformException
+from tf2_ros.buffer import Buffer
+from tf2_ros.static_transform_broadcaster import StaticTransformBroadcaster
+from tf2_ros.transform_broadcaster import TransformBroadcaster
+from tf2_ros.transform_listener import TransformListener
+from tf_transformations import euler_from_quaternion, quaternion_from_euler
+
+
+class Seeker(Node):
+    def __init__(self):
+        super().__init__("seeker")
+        assert issubclass(LookupException, TransformException)
+        self.buffer = Buffer()
+        self.listener = TransformListener(self.buffer, self)
+        self.out = self.create_publisher(Float64, "turned", 10)
+        self.moved = 0
+        self.create_subscription(TFMessage, "/tf", self.count, 10)
+        self.create_timer(0.1, self.look)
+
+    def count(self, message):
+        self.moved += sum(one.child_frame_id == "base_link" for one in message.transforms)
+
+    def look(self):
+        try:
+            q = self.buffer.lookup_transform("map", "base_link", Time()).transform.rotation
+        except TransformException:
+            return
+        if self.moved:
+            self.out.publish(Float64(data=euler_from_quaternion([q.x, q.y, q.z, q.w])[2] + 10.0))
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Seeker())
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("way", ["start", "run"])
+def test_a_node_imports_them_in_a_test(ros, simulation, tmp_path, way):
+    from std_msgs.msg import Float64
+
+    sim = simulation()
+    path = tmp_path / "seeker.py"
+    path.write_text(NODE)
+    getattr(ros, way)(path)
+    turned = ros.collect(Float64, "turned")
+    sim.until(lambda: turned.latest.data == pytest.approx(10.0), 5.0)
+
+
+def _prints(folder: Path, statement: str, *places: Path) -> str:
+    """What a program prints that is in a folder, in a terminal that `thymio-sim env` has prepared."""
+    program = folder / "program.py"
+    program.write_text(statement)
+    path = os.pathsep.join(map(str, [course_packages.STARTUP, *places]))
+    environment = {**os.environ, "PYTHONPATH": path}
+    done = subprocess.run([sys.executable, program], env=environment, capture_output=True, text=True, cwd="/")
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+@pytest.mark.process
+def test_a_prepared_terminal_has_them(tmp_path):
+    assert _prints(tmp_path, NODE.partition("class")[0] + "print(TFMessage.__module__)") == "tf2_msgs.msg._tf_message"
+
+
+@pytest.mark.process
+def test_installed_packages_and_files_beside_the_node_have_priority(tmp_path):
+    real, beside = tmp_path / "lib" / "site-packages", tmp_path / "beside"
+    for place, answer in ((real, "real"), (beside, "own")):
+        place.mkdir(parents=True)
+        (place / "tf_transformations.py").write_text(f"answer = {answer!r}\n")
+    statement = "import tf_transformations\nprint(tf_transformations.answer)\n"
+    assert _prints(tmp_path, statement, real) == "real"
+    assert _prints(beside, statement, real) == "own"
+
+
+@pytest.mark.process
+def test_a_file_of_the_same_name_beside_the_node_is_not_imported_by_this_package(tmp_path):
+    """It is half loaded when it imports from this package itself, and need not have all names."""
+    for name in ("tf_transformations", "tf2_ros", "tf2_geometry_msgs", "tf2_msgs"):
+        (tmp_path / f"{name}.py").write_text("from thymio_sim_ros.tf import Buffer, euler_from_quaternion\n")
+    statement = (
+        "import tf_transformations\nimport thymio_sim_ros.tf as tf\nprint(tf.quaternion_from_euler.__module__)\n"
+    )
+    assert _prints(tmp_path, statement) == "thymio_sim_ros.tf.transformations"
+
+
+@pytest.mark.process
+def test_the_startup_module_that_it_hides_runs_too(tmp_path):
+    (tmp_path / "sitecustomize.py").write_text("import sys\nsys.answer = 42\n")
+    path = os.pathsep.join(map(str, [course_packages.STARTUP, tmp_path]))
+    command = [sys.executable, "-c", "import sys, tf2_py; print(sys.answer)"]
+    environment = {**os.environ, "PYTHONPATH": path}
+    assert subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout == "42\n"

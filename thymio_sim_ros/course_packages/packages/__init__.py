@@ -1,0 +1,1 @@
+"""Packages with the names and the content of others; see `course_packages`."""

@@ -1,0 +1,1 @@
+"""Replaces the package `tf2_msgs` where it is not installed."""

@@ -1,0 +1,7 @@
+"""The broadcaster of `tf2_ros`."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.tf.buffer import TransformBroadcaster
+
+__all__ = ["TransformBroadcaster"]

@@ -1,0 +1,7 @@
+"""The listener of `tf2_ros`."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.tf.buffer import TransformListener
+
+__all__ = ["TransformListener"]
