@@ -154,13 +154,13 @@ FOUND = {
         ("var a[2]\nwhile a[1] do a[1]-- end", "var a[2]\nwhile a[1] != 0 do a[1]-- end"),
     ],
     "hint-spelling": [
-        ("motor.lefft.target = 3", "motor.left.target = 3"),
+        ("motor.left.traget = 3", "motor.left.target = 3"),
         ("var truth\ntruth = tru", "var truth\ntruth = truth"),
         ("onevent butonn.left", "onevent button.left"),
         ("onevent timer", "onevent timer0"),
         ("call leds.tpo(1, 2, 3)", "call leds.top(1, 2, 3)"),
         ("sub turn\nonevent tap\ncallsub tunr", "sub turn\nonevent tap\ncallsub turn"),
-        ("const MAX = 1\nvar i\nfor i in 0:MAXX do end", "const MAX = 1\nvar i\nfor i in 0:MAX do end"),
+        ("const ABC = 1\nvar i\nfor i in 0:ABD do end", "const ABC = 1\nvar i\nfor i in 0:ABC do end"),
         ("timer[0] = 3", "timer.period[0] = 3"),
     ],
     "hint-longer-names": [
