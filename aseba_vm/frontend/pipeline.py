@@ -110,7 +110,7 @@ def compile_stages(
         other = _attempt(text, target, events, constants)
         return other if isinstance(other, Attempt) else None
 
-    result.error.hint = find_hint(source, target, [name for name, _ in events], result, again)
+    result.error.hint = find_hint(source, target, result, again)
     raise result.error
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -65,8 +65,6 @@ class ErrorContext:
         offset: index of its first character in ``source``.
         error: the error.
         natives: native functions of the target by name.
-        variables: sizes of the variables of the target and of the program by name; 1 for a size that is no number.
-        events: names of the events of the target and of the network.
     """
 
     source: str
@@ -75,8 +73,6 @@ class ErrorContext:
     offset: int
     error: CompileError
     natives: Mapping[str, NativeFunction]
-    variables: Mapping[str, int]
-    events: Collection[str]
 
     def kind(self, distance: int = 0) -> str:
         """Return the kind of a token near the error; empty before the first and after the last."""
@@ -137,13 +133,10 @@ class ErrorContext:
         return None
 
 
-def locate_error(
-    source: str, target: TargetDescription, events: Collection[str], attempt: Attempt
-) -> ErrorContext | None:
+def locate_error(source: str, target: TargetDescription, attempt: Attempt) -> ErrorContext | None:
     """Return the context of the error of an attempt, None if the position of the error is not that of a token.
 
-    ``events`` are the names of those of the network. Raises no error: a text whose beginning cannot be tokenized has no
-    context.
+    Raises no error: a text whose beginning cannot be tokenized has no context.
     """
     error, offset = attempt.error, attempt.offset
     is_token = attempt.stage == TOKENS
@@ -161,22 +154,8 @@ def locate_error(
         at = next(iter(ends or found), None)
     if at is None:
         return None
-    start = offset if is_token else words[at].start
     natives = {native.name: native for native in target.natives}
-    variables = {variable.name: variable.size for variable in target.variables} | _declared(tokens)
-    names = {*events, *(event.name for event in target.local_events)}
-    return ErrorContext(source, words, at, start, error, natives, variables, names)
-
-
-def _declared(tokens: Sequence[Token]) -> dict[str, int]:
-    """Return the sizes of the variables that the program declares, 1 for a size that is no number."""
-    sizes = {}
-    for index, (keyword, name) in enumerate(pairwise(tokens)):
-        if keyword.kind == "var" and name.kind == "identifier":
-            behind = tokens[index + 2 : index + 5]
-            is_number = [token.kind for token in behind] == ["[", "integer", "]"]
-            sizes[name.text] = max(behind[1].value, 1) if is_number else 1
-    return sizes
+    return ErrorContext(source, words, at, offset if is_token else words[at].start, error, natives)
 
 
 def _word(source: str, token: Token) -> Word:

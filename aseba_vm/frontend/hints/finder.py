@@ -7,24 +7,22 @@ get further.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from aseba_vm.errors import Edit, Hint
-from aseba_vm.frontend.hints import arrays, blocks, calls, characters, comments, declarations, names, operators, words
+from aseba_vm.frontend.hints import blocks, calls, characters, comments, declarations, operators, words
 from aseba_vm.frontend.hints.context import LATER_PASSES, Attempt, ErrorContext, locate_error
 from aseba_vm.target import TargetDescription
 
 Recognizer = Callable[[ErrorContext], Hint | None]
 
-_SIMILAR: Sequence[Recognizer] = (names.longer_names, names.spelling)
-_UNKNOWN_VARIABLE: Sequence[Recognizer] = (
+_UNKNOWN_NAME: Sequence[Recognizer] = (
     words.keyword_spelling,
     words.truth_value,
     calls.native_as_statement,
     calls.subroutine_as_statement,
     calls.native_in_expression,
-    *_SIMILAR,
 )
 _RECOGNIZERS: Mapping[str, Sequence[Recognizer]] = {
     "illegal-character": (
@@ -37,18 +35,12 @@ _RECOGNIZERS: Mapping[str, Sequence[Recognizer]] = {
     "lone-exclamation": (comments.foreign_comment, operators.negation),
     "bad-number": (comments.foreign_comment, characters.decimals),
     "bad-number-base": (comments.foreign_comment, characters.decimals),
-    "unknown-variable": _UNKNOWN_VARIABLE,
-    "unknown-function": (calls.call_of_subroutine, *_SIMILAR),
-    "unknown-subroutine": (calls.callsub_of_native, *_SIMILAR),
-    "unknown-event": _SIMILAR,
-    "unknown-constant": (names.variable_as_limit, names.spelling),
-    "not-constant": (names.variable_as_constant,),
-    "slice-end-not-constant": (names.variable_as_constant,),
-    "size-mismatch": (arrays.array_as_operand,),
-    "vector-condition-if": (arrays.array_as_condition,),
-    "vector-condition-while": (arrays.array_as_condition,),
-    "argument-size": (arrays.array_as_argument,),
-    "argument-size-template": (arrays.array_as_argument,),
+    "unknown-variable": _UNKNOWN_NAME,
+    "unknown-variable-hint": _UNKNOWN_NAME,
+    "unknown-function": (calls.call_of_subroutine,),
+    "unknown-function-hint": (calls.call_of_subroutine,),
+    "unknown-subroutine": (calls.callsub_of_native,),
+    "unknown-subroutine-hint": (calls.callsub_of_native,),
     "misplaced-var": (declarations.late_declaration,),
     "expected-assignment": (operators.comparison_as_statement, calls.native_with_variable),
     "expected-one-of": (operators.doubled_operator, comments.comment_as_statement),
@@ -66,10 +58,9 @@ _RECOGNIZERS: Mapping[str, Sequence[Recognizer]] = {
         blocks.else_if,
         blocks.missing_end,
         blocks.extra_end,
-        names.variable_as_constant,
     ),
 }
-"""Recognizers by kind of error, without the ending of one with a suggestion. The order matters: the first hint wins."""
+"""Recognizers by kind of error. The order matters: the first hint wins."""
 
 _STAND_ALONE = frozenset(
     (
@@ -87,23 +78,18 @@ _STAND_ALONE = frozenset(
 
 
 def find_hint(
-    source: str,
-    target: TargetDescription,
-    events: Collection[str],
-    attempt: Attempt,
-    compile_again: Callable[[str], Attempt | None],
+    source: str, target: TargetDescription, attempt: Attempt, compile_again: Callable[[str], Attempt | None]
 ) -> Hint | None:
     """Return the hint for a rejected text, None if there is none.
 
     Args:
         source: text of the program.
         target: target of the program.
-        events: names of the events of the network.
         attempt: how far the compiler got.
         compile_again: compiles another text to try an edit; None means success.
     """
-    recognizers = _RECOGNIZERS.get(attempt.error.kind.removesuffix("-hint"), ())
-    context = locate_error(source, target, events, attempt) if recognizers and attempt.error.pos is not None else None
+    recognizers = _RECOGNIZERS.get(attempt.error.kind, ())
+    context = locate_error(source, target, attempt) if recognizers and attempt.error.pos is not None else None
     if context is None:
         return None
     for recognize in recognizers:
