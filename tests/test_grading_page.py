@@ -51,7 +51,7 @@ def slow_if_long(name: str) -> object:
 def test_the_page_has_its_examples() -> None:
     assert {"follower.aesl", "avoider.py", "caller.aesl", "comer.aesl", WORKFLOW} <= FILES.keys()
     assert FAILING.keys() == {"test_button.py", "test_misspelt.py"}
-    assert {"test_avoider.py", "test_misspelt.py", "test_two_nodes.py"} == NEED_ROS
+    assert {"test_avoider.py", "test_misspelt.py", "test_patrol.py", "test_two_nodes.py"} == NEED_ROS
     assert PAGE.count("```") == 2 * (len(FILES) + len(FAILING))
 
 
