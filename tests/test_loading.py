@@ -49,6 +49,38 @@ def test_an_upload_is_named_by_its_file(text: str) -> None:
     assert (name, loaded.name, len(loaded.robots)) == ("my maze.json", "my maze", 1)
 
 
+def several(folder: Path) -> Path:
+    """An archive of two playgrounds."""
+    path = folder / "maps.zip"
+    with zipfile.ZipFile(path, "w") as packed:
+        packed.writestr("maps/a.playground", ASEBA)
+        packed.writestr("maps/b.json", OURS)
+    return path
+
+
+def test_one_of_several_playgrounds_in_an_archive_is_named_behind_its_path(tmp_path: Path) -> None:
+    path = several(tmp_path)
+    for part, title in (("a", "a"), ("maps/a.playground", "a"), ("b.json", "Ours")):
+        name, loaded = load_playground(f"{path}#{part}")
+        assert (name, loaded.title) == (Path(part).stem, title)
+    with pytest.raises(PlaygroundError, match=r'2 playgrounds in the archive \("maps/a.playground", "maps/b.json"\)'):
+        load_playground(str(path))
+
+
+def test_a_file_may_have_a_number_sign_in_its_name(tmp_path: Path) -> None:
+    path = tmp_path / "maze #2.json"
+    path.write_text(OURS)
+    assert load_playground(str(path))[0] == "maze #2"
+    with pytest.raises(ResourceError):
+        load_playground(str(tmp_path / "missing.zip#a"))
+
+
+def test_one_of_several_playgrounds_in_an_upload_is_a_part_of_it(tmp_path: Path) -> None:
+    content = base64.b64encode(several(tmp_path).read_bytes()).decode()
+    name, loaded = load_playground(f"data:application/octet-stream;name=maps.zip;part=maps%2Fb.json;base64,{content}")
+    assert (name, loaded.title) == ("maps.zip#maps/b.json", "Ours")
+
+
 def test_errors_of_an_upload_name_its_file() -> None:
     with pytest.raises(PlaygroundError, match=r"^my maze\.json: format: found"):
         load_playground(upload("{}"))

@@ -25,7 +25,11 @@ from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 NO_PROGRAM = "none"
 """Name of the empty program."""
 
-_UPLOAD = re.compile(r"data:[^;,]*(?:;name=(?P<name>[^;,]*))?;base64,(?P<content>.*)", re.DOTALL)
+_UPLOAD = re.compile(
+    r"data:[^;,]*(?:;name=(?P<name>[^;,]*))?(?:;part=(?P<part>[^;,]*))?;base64,(?P<content>.*)", re.DOTALL
+)
+_PART = "#"
+"""Before the name of one of several playgrounds in an archive."""
 _UNNAMED = "uploaded playground"
 _PLAYGROUNDS = 'JSON with "format": 1, XML with <aseba-playground>, or a zip that holds one'
 _PROGRAMS = (".aesl", ".aseba", ".txt")
@@ -41,22 +45,38 @@ def is_playground_text(value: str) -> bool:
 def load_playground(value: str) -> tuple[str, Playground]:
     """Load a playground from a shipped name, a path, the text itself, or a file as data:;name=my.json;base64,...
 
+    The name of one of several playgrounds in an archive is behind its path, as in `maps.zip#a.playground`, or in a
+    file as data:;name=maps.zip;part=a.playground;base64,...
+
     Returns its name and the playground. Files and texts may have any known format (sim/playground/format_detection.py).
     Raises PlaygroundError for invalid content, ResourceError for a missing file, OSError for one that cannot be read.
     """
     upload = _UPLOAD.fullmatch(value)
     if upload is not None:
-        return _load_upload(urllib.parse.unquote(upload["name"] or _UNNAMED), upload["content"])
+        name, part = (urllib.parse.unquote(upload[each] or "") for each in ("name", "part"))
+        return _load_upload(name or _UNNAMED, part, upload["content"])
     if is_playground_text(value):
         loaded = playgrounds.loads(value, _UNNAMED)
         return loaded.title, loaded
-    path = resources.find_playground(value)
+    path, part = _archive_and_part(value)
     try:
-        return path.stem, playgrounds.load(path)
+        loaded = playgrounds.load(path, part)
+        return loaded.name, loaded
     except PlaygroundError:
         if _may_be_quoted(path):
             raise
         raise PlaygroundError(str(path), "", "a file that is not a playground", _PLAYGROUNDS) from None
+
+
+def _archive_and_part(value: str) -> tuple[Path, str]:
+    """Return the file of a playground and, behind `#`, the name of one of several in it. Raises ResourceError."""
+    file, mark, part = value.partition(_PART)
+    try:
+        return resources.find_playground(value), ""
+    except resources.ResourceError:
+        if not mark:
+            raise
+    return resources.find_playground(file), part
 
 
 def _may_be_quoted(path: Path) -> bool:
@@ -68,13 +88,13 @@ def _may_be_quoted(path: Path) -> bool:
         return True  # the error has no content
 
 
-def _load_upload(name: str, content: str) -> tuple[str, Playground]:
+def _load_upload(name: str, part: str, content: str) -> tuple[str, Playground]:
     try:
         data = base64.b64decode(content, validate=True)
     except (binascii.Error, ValueError) as error:
         raise PlaygroundError(name, "", "characters that are not base64", "the file in base64") from error
-    loaded = playgrounds.loads(data, name)
-    return name, loaded
+    loaded = playgrounds.loads(data, name, part)
+    return f"{name}{_PART}{part}" if part else name, loaded
 
 
 def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:

@@ -8,7 +8,7 @@ import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
 import { BUILT_IN } from "../../web_ui/playground/declarations.js";
 import { parse } from "../../web_ui/playground/document.js";
 import { Fault } from "../../web_ui/playground/rules.js";
-import { isForeign, reasonOfFault, reasonOfMessage, refusalOf, sentenceOf } from "../../web_ui/playground_tab/reasons.js";
+import { isForeign, partsOf, reasonOfFault, reasonOfMessage, refusalOf, sentenceOf } from "../../web_ui/playground_tab/reasons.js";
 import { locate } from "../../web_ui/state/index.js";
 
 /** @type {{ name: string, playground: any, key: string | null, word: string | null }[]} */
@@ -48,6 +48,8 @@ const ANSWERS = {
   "shapes: found 1001 items, expected at most 1000": "There are too many: at most 1000 are possible.",
   "shapes[0]: found a single place, expected a valid track": "Thing 1: It needs two different points.",
   "shapes[0]: found something else, expected a valid thing": "Thing 1: There is a mistake in it.",
+  'found 2 playgrounds in the archive ("a.json", "b.json"), expected the name of one, as FILE#a.json':
+    "It holds several playgrounds. Open it again and choose one.",
   "The simulator is gone": "There is a mistake in it.",
 };
 
@@ -140,4 +142,13 @@ test("an empty file, a damaged one and one of another program are distinguished"
   const cut = locate("line 1, column 22: found the end of the text, expected JSON (Unterminated string)");
   assert.equal(reasonOfMessage(cut, '{"format": 1, "title": "Cut o').phrase.word, "fault.broken");
   assert.equal(reasonOfMessage(cut, "").phrase.word, "fault.empty");
+});
+
+test("the playgrounds of an archive with several can be chosen", () => {
+  const found = 'found 2 playgrounds in the archive ("maps/a, b.playground", "Zoë \\"2\\".json")';
+  const expected = "expected the name of one, as FILE#maps/a, b.playground";
+  const names = ["maps/a, b.playground", 'Zoë "2".json'];
+  assert.deepEqual(partsOf(`four.zip: ${found}, ${expected}`), names);
+  assert.deepEqual(partsOf(`${found}, none of them 'c', ${expected}`), names);
+  for (const other of [...FOREIGN, "The simulator is gone"]) assert.deepEqual(partsOf(other), []);
 });

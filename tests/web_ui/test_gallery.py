@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import zipfile
 
 import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.patience import PATIENCE_MS
+from tests.sim.builders import FLOOR
 from tests.web_ui.page_support import (
     MARKS,
     build_playground,
@@ -103,6 +105,21 @@ def test_own_playgrounds_are_listed_put_on_the_desk_continued_removed_and_brough
     playwright.expect(cards).to_have_text(["First"])
     go_on_building(page, "First")
     page.wait_for_function("window.thymio.built().playground.title === 'First'")
+
+
+def test_one_of_several_playgrounds_in_an_archive_is_chosen_from_a_list(at_rest, page, tmp_path):
+    archive = tmp_path / "maps.zip"
+    with zipfile.ZipFile(archive, "w") as packed:
+        for title in ("Maze", "Meadow"):
+            packed.writestr(f"maps/{title}.json", json.dumps({"format": 1, "title": title, "shapes": [FLOOR]}))
+    open_gallery(page, at_rest)
+    page.set_input_files("#playground-file", str(archive))
+    fault = page.locator(".current > .fault")
+    playwright.expect(fault.locator(".headline")).to_have_text("maps.zip holds 2 playgrounds. Choose one.")
+    playwright.expect(fault.locator(".parts button")).to_have_text(["maps/Maze.json", "maps/Meadow.json"])
+    fault.get_by_role("button", name="maps/Meadow.json").click()
+    page.wait_for_function("window.thymio.state().simulator.title === 'Meadow'")
+    playwright.expect(fault).to_be_hidden()
 
 
 @pytest.mark.slow

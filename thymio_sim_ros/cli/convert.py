@@ -21,7 +21,8 @@ INCOMPLETE = 1
 
 EXAMPLE = """\
 reads: Aseba .playground files (XML, or a zip with world.xml and its pictures), the JSON of the Thymio web simulation,
-and the JSON of this project. Images become part of the result. What cannot be converted is reported on stderr.
+and the JSON of this project. FILE#NAME is one of several playgrounds in a zip. Images become part of the result. What
+cannot be converted is reported on stderr.
 
 exit code: 0 converted; 1 something cannot be converted (with --strict only, nothing is written); 2 rejected input
 

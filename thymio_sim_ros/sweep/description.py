@@ -73,9 +73,13 @@ class Description:
         return sweep
 
     def _beside(self, name: str) -> str:
-        """Return the path of a file of this name in the folder, or the name, which may be a shipped one."""
+        """Return the path of a file of this name in the folder, or the name, which may be a shipped one.
+
+        A name may end in that of one of several playgrounds in an archive: `maps.zip#a.playground`.
+        """
         path = self.folder / resources.expanded(name)
-        return str(path) if path.is_file() else name
+        archive = self.folder / resources.expanded(name.partition("#")[0])
+        return str(path) if path.is_file() or archive.is_file() else name
 
 
 def read_description(path: Path) -> Description:

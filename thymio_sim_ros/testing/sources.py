@@ -15,8 +15,11 @@ __all__ = ["beside", "is_name", "playground_of", "playground_source", "program_o
 def beside(value: str | Path, folder: Path | None) -> str:
     """The path of a file that lies in the folder, else the value as it is: a name, a text, a path."""
     text = str(value)
-    if folder is not None and os.path.isfile(folder / text):  # unlike a Path's, it takes texts that are no paths
-        return str(folder / text)
+    if folder is not None:
+        # with the name of one of several playgrounds, too; unlike a Path's, isfile takes texts that are no paths
+        names = (text, text.partition("#")[0])
+        if any(name and os.path.isfile(folder / name) for name in names):
+            return str(folder / text)
     return text
 
 

@@ -229,13 +229,18 @@ export class Actions {
     this.store.dispatch({ type: "uploaded", what: "program", message: ok ? null : message, fault });
   }
 
-  /** @param {string} name @param {Uint8Array} [content]  content of a file; without it, `name` is a shipped playground */
-  async loadPlayground(name, content) {
+  /**
+   * @param {string} name
+   * @param {Uint8Array} [content]  content of a file; without it, `name` is a shipped playground
+   * @param {string} [part]   name of one of several playgrounds in an archive
+   */
+  async loadPlayground(name, content, part = "") {
     this.store.dispatch({ type: "upload", what: "playground", name, text: "" });
+    const chosen = part === "" ? "" : `;part=${encodeURIComponent(part)}`;
     const value =
       content === undefined
         ? name
-        : `data:application/octet-stream;name=${encodeURIComponent(name)};base64,${base64(content)}`;
+        : `data:application/octet-stream;name=${encodeURIComponent(name)}${chosen};base64,${base64(content)}`;
     const isPresent = this.store.state.parameters[PARAMETERS.playground] === value;
     const answer = await this.client.setParameters([{ name: PARAMETERS.playground, value }]);
     if (answer.ok && isPresent) await this.reset();

@@ -42,6 +42,7 @@ const EXPECTED = /** @type {[RegExp, (match: RegExpExecArray, found: string) => 
   [/\b(?:image|images|PNG|SVG|svg|base64|viewBox|pixels?)\b/, () => ({ word: "fault.image" })],
   [/^(?:a simpler playground|fewer|shorter)/, () => ({ word: "fault.tooMuch" })],
   [/^(?:a list|an object)/, () => ({ word: "fault.list" })],
+  [/^the name of one, as /, () => ({ word: "fault.several" })],
   [/^a valid track$/, (_match, found) => trackPhrase(found)],
 ]);
 
@@ -54,6 +55,12 @@ const EXPECTED = /** @type {[RegExp, (match: RegExpExecArray, found: string) => 
 export function refusalOf(text) {
   const match = /^(?:([\s\S]*?): )?found ([\s\S]*?), expected ([\s\S]*)$/.exec(text);
   return match === null ? null : { place: match[1] ?? "", found: match[2], expected: match[3] };
+}
+
+/** The playgrounds of an archive with several, of which one is to be chosen; none for another rejection. @param {string} text */
+export function partsOf(text) {
+  const found = /found \d+ playgrounds in the archive \((.*)\)(?:, none of them .*)?, expected the name of one/s.exec(text);
+  return found === null ? [] : /** @type {string[]} */ (JSON.parse(`[${found[1]}]`));
 }
 
 /**

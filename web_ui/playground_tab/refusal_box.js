@@ -4,6 +4,7 @@
 import { uploadCause } from "../state/index.js";
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
+import { partsOf } from "./reasons.js";
 
 /** @typedef {import("./reasons.js").Reason} Reason */
 
@@ -27,13 +28,15 @@ export class RefusalBox {
   /** Why a file was rejected by the simulator. @param {import("../state/index.js").Upload} upload */
   async showUpload({ name, fault }) {
     const { text, opened, messageAt, announce, creator, workspace, store } = this.context;
-    const place = opened.of(name)?.place ?? null;
+    const { file = null, place = null } = opened.of(name) ?? {};
     const count = ++this.count;
     const content = await opened.textOf(name);
+    const parts = file === null || fault === null ? [] : partsOf(fault.text);
     const headline = text("playground")("refused", { name });
-    const { children, words } = await this.#view(headline, (module) =>
-      fault === null ? null : module.reasonOfMessage(fault, content),
-    );
+    const { children, words } =
+      file !== null && parts.length > 0
+        ? this.#choice(file, parts)
+        : await this.#view(headline, (module) => (fault === null ? null : module.reasonOfMessage(fault, content)));
     if (count !== this.count) return;
     opened.forget();
     if (place !== null) return messageAt.show(place, children, text("page")("notice.dismiss"));
@@ -55,6 +58,19 @@ export class RefusalBox {
     const count = ++this.count;
     const { children } = await this.#view(headline, (module) => module.reasonOfFault(fault, content));
     if (count === this.count) this.#show(children);
+  }
+
+  /** The playgrounds of an archive, each as a button. @param {File} file @param {readonly string[]} parts */
+  #choice(file, parts) {
+    const { text, actions } = this.context;
+    const words = text("playground")("parts", { name: file.name, count: parts.length });
+    /** @param {string} part */
+    const choose = async (part) =>
+      actions.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()), part);
+    const buttons = parts.map((part) =>
+      h("li", {}, h("button", { type: "button", class: "btn line", "data-part": part, onclick: () => void choose(part) }, part)),
+    );
+    return { children: [h("p", { class: "headline" }, words), h("ul", { class: "parts" }, ...buttons)], words };
   }
 
   /** @param {readonly Node[]} children */

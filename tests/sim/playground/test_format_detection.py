@@ -121,11 +121,58 @@ def test_a_byte_order_mark_does_no_harm() -> None:
     [
         {"readme.txt": "nothing"},
         {"a.json": OURS, "b.json": OURS},
+        {"a.json": "[]", "b.json": "{}"},
         {},
     ],
 )
 def test_an_archive_without_one_playground_is_refused(files: dict[str, str]) -> None:
     assert refused(archive(**files) if files else b"PK\x03\x04").path == "mine.zip"
+
+
+SEVERAL = {
+    "maps/a.playground": ASEBA_ZOE,
+    "maps/b.playground": ASEBA_ZOE.replace("Zoë", "Bo"),
+    "maps/more/b.json": json.dumps({"format": 1, "title": "B", "shapes": [FLOOR], "robots": [ROBOT]}),
+    "package.json": '{"name": "maps"}',
+}
+
+
+def test_an_archive_of_several_playgrounds_names_them() -> None:
+    data = archive(**SEVERAL)
+    error = refused(data)
+    assert error.found == '3 playgrounds in the archive ("maps/a.playground", "maps/b.playground", "maps/more/b.json")'
+    assert error.expected == "the name of one, as FILE#maps/a.playground"
+    assert format_detection.is_recognized(data)
+
+
+@pytest.mark.parametrize(
+    ("part", "robot"), [("maps/b.playground", "bo"), ("a.playground", "zoe"), ("a", "zoe"), ("b.json", ROBOT["name"])]
+)
+def test_one_of_several_playgrounds_is_chosen_by_its_name(part: str, robot: str) -> None:
+    loaded = reader.loads(archive(**SEVERAL), "maps.zip", part)
+    assert [start.name for start in loaded.robots] == [robot]
+    assert loaded.name == Path(part).stem
+
+
+@pytest.mark.parametrize("part", ["b", "c", "package.json", "maps"])
+def test_a_name_that_none_or_two_have_is_refused(part: str) -> None:
+    with pytest.raises(PlaygroundError, match=f"none of them '{part}'"):
+        reader.loads(archive(**SEVERAL), "maps.zip", part)
+
+
+def test_a_chosen_playground_has_the_images_beside_it() -> None:
+    files = {f"{home}/world.xml": WORLD for home in ("north", "south")} | {"south/ground.png": PICTURE}
+    assert len(reader.loads(archive(**files), "maps.zip", "south/world.xml").paints) == 1
+
+
+def test_a_file_of_another_kind_beside_a_playground_is_no_choice() -> None:
+    files = {"a.playground": ASEBA_ZOE, "package.json": "{}", "pom.xml": "<project/>"}
+    assert [robot.name for robot in reader.loads(archive(**files), "mine.zip").robots] == ["zoe"]
+
+
+def test_a_part_of_what_is_no_archive_is_refused() -> None:
+    with pytest.raises(PlaygroundError, match="'#a' behind the name of a file that is no archive"):
+        reader.loads(ASEBA_ZOE, "mine.playground", "a")
 
 
 @pytest.mark.parametrize("name", ["../secret.png", "/etc/secret.png", "..\\secret.png", "folder/../ground.png"])

@@ -7,21 +7,20 @@ from html.entities import html5
 
 __all__ = ["without_html_entities"]
 
-_OWN = frozenset((b"lt", b"gt", b"amp", b"quot", b"apos"))
+_OWN = frozenset(("lt", "gt", "amp", "quot", "apos"))
 """Names that XML itself knows."""
-_REFERENCE = re.compile(rb"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|&([A-Za-z][A-Za-z0-9]{1,31});", re.DOTALL)
+_REFERENCE = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|&([A-Za-z][A-Za-z0-9]{1,31});", re.DOTALL)
 
 
-def without_html_entities(data: bytes) -> bytes:
+def without_html_entities(text: str) -> str:
     """Return XML with each named character of HTML by its number; comments and CDATA stay as they are.
 
-    Nothing is declared and nothing expanded more than once, so the text grows by a small factor at most. The encoding
-    is UTF-8.
+    Nothing is declared and nothing expanded more than once, so the text grows by a small factor at most.
     """
-    return _REFERENCE.sub(_numbered, data)
+    return _REFERENCE.sub(_numbered, text)
 
 
-def _numbered(match: re.Match[bytes]) -> bytes:
+def _numbered(match: re.Match[str]) -> str:
     name = match[1]
-    characters = None if name is None or name in _OWN else html5.get(f"{name.decode('ascii')};")
-    return match[0] if characters is None else b"".join(b"&#%d;" % ord(character) for character in characters)
+    characters = None if name is None or name in _OWN else html5.get(f"{name};")
+    return match[0] if characters is None else "".join(f"&#{ord(character)};" for character in characters)

@@ -64,6 +64,8 @@ _MARKS = re.compile(
 """Distinguishes a playground from any other JSON or XML."""
 _HALVES = re.compile(r"[\ud800-\udfff]")
 """Surrogates: JSON escapes may contain them, UTF-8 may not, and keys are quoted in errors and notes."""
+_HEAD = 100_000
+"""Number of bytes of a file in an archive that are searched for marks."""
 _SHOWN = 12
 """Number of characters that an error quotes."""
 _IN_FOLDER = "a file in the playground's folder"
@@ -88,16 +90,22 @@ class Source:
     sets_free: bool = False
 
 
-def read_source(data: bytes, name: str, beside: Beside) -> Source:
+def read_source(data: bytes, name: str, beside: Beside, part: str = "") -> Source:
     """Return the playground in the bytes of a file; `name` is its title if it has none.
 
-    Raises FieldError if it is too large, damaged, or in none of the formats.
+    `part` names a playground of an archive with several, whose name is the title then.
+
+    Raises FieldError if it is too large, damaged, in none of the formats, or an archive with several playgrounds of
+    which `part` names none.
     """
     name = " ".join(name.encode("utf-8", "replace").decode("utf-8").split()) or "Playground"
     if len(data) > MAX_BYTES:
         raise FieldError("", f"more than {MAX_BYTES} bytes", "a smaller file")
     if data.startswith(_ZIP):
-        data, beside = _unzip(data)
+        data, beside = _unzip(data, part)
+        name = PurePosixPath(part).stem or name
+    elif part:
+        raise FieldError("", f"'#{part}' behind the name of a file that is no archive", "the file alone")
     data = _without_mark(data)
     if data.lstrip().startswith(b"<"):
         return _read_xml(data, name, beside)
@@ -116,7 +124,8 @@ def is_recognized(data: bytes) -> bool:
     """Return whether a rejected file looks like a playground, so that an error may quote from it. Never raises."""
     if data.startswith(_ZIP):
         try:
-            data, _ = _unzip(data)
+            archive, names = _opened(data)
+            return any(_has_marks(archive, name) for name in names)
         except FieldError:
             return False
     return _MARKS.search(_without_mark(data)) is not None
@@ -167,7 +176,7 @@ def _without_mark(data: bytes) -> bytes:
 def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
     try:
         text, refused = xml_tree.text_of(data)
-        root = xml_tree.parse(without_html_entities(text.encode("utf-8")).decode("utf-8"))
+        root = xml_tree.parse(without_html_entities(text))
     except XmlError as error:
         raise FieldError(f"line {error.line}", error.found, error.expected) from error
     converted = aseba.convert(root, name)
@@ -175,8 +184,8 @@ def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
     return Source(converted.data(), beside, (*guessed, *converted.notes), converted.places, sets_free=True)
 
 
-def _unzip(data: bytes) -> tuple[bytes, Beside]:
-    """Return the playground's file in an archive, and a function that reads the files beside it."""
+def _opened(data: bytes) -> tuple[zipfile.ZipFile, list[str]]:
+    """Return an archive and the names of its files that may be playgrounds."""
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
     except _CANNOT_UNPACK as error:
@@ -184,12 +193,39 @@ def _unzip(data: bytes) -> tuple[bytes, Beside]:
     names = [entry.filename for entry in archive.infolist() if entry.filename and not entry.is_dir()]
     if len(names) > MAX_ARCHIVE_FILES:
         raise FieldError("", f"{len(names)} files in the archive", f"at most {MAX_ARCHIVE_FILES}")
-    fitting = [name for name in names if name.lower().endswith(_PLAYGROUND_ENDINGS) and "__MACOSX" not in name]
-    chosen = [name for name in fitting if PurePosixPath(name).name == "world.xml"] or fitting
-    if len(chosen) != 1:
-        found = ", ".join(chosen[:5]) or "no playground"
-        raise FieldError("", f"{found} in the archive", "one world.xml with its images")
-    (inner,) = chosen
+    return archive, [name for name in names if name.lower().endswith(_PLAYGROUND_ENDINGS) and "__MACOSX" not in name]
+
+
+def _has_marks(archive: zipfile.ZipFile, name: str) -> bool:
+    """Whether the beginning of a file in an archive looks like a playground."""
+    return _MARKS.search(_without_mark(_extract(archive, name, _HEAD))) is not None
+
+
+def _chosen(archive: zipfile.ZipFile, names: list[str], part: str) -> str:
+    """Return the playground of an archive that `part` names, by its path, its name, or its name without ending."""
+    playgrounds = [name for name in names if PurePosixPath(name).name == "world.xml"] or names
+    if part or len(playgrounds) > 1:
+        playgrounds = [name for name in names if _has_marks(archive, name)] or names
+    paths = {name: PurePosixPath(name) for name in playgrounds}
+    for called in (str, lambda path: path.name, lambda path: path.stem):
+        named = [name for name, path in paths.items() if called(path) == part]
+        if len(named) == 1:
+            return named[0]
+    if len(playgrounds) == 1 and not part:
+        return playgrounds[0]
+    if not playgrounds:
+        raise FieldError("", "no playground in the archive", "one world.xml with its images")
+    quoted = ", ".join(json.dumps(name, ensure_ascii=False) for name in playgrounds)
+    wanted = f", none of them {describe(part)}" if part else ""
+    found = f"{len(playgrounds)} playgrounds in the archive ({quoted}){wanted}"
+    raise FieldError("", found, f"the name of one, as FILE#{playgrounds[0]}")
+
+
+def _unzip(data: bytes, part: str) -> tuple[bytes, Beside]:
+    """Return the file of a playground in an archive, and a function that reads the files beside it."""
+    archive, playgrounds = _opened(data)
+    names = {entry.filename for entry in archive.infolist()}
+    inner = _chosen(archive, playgrounds, part)
     home = PurePosixPath(inner).parent
 
     def read_entry(name: str) -> bytes:

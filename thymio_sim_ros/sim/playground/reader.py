@@ -72,10 +72,13 @@ class _Titles:
     description: Text = ""
 
 
-def load(path: str | Path) -> Playground:
-    """Read a playground file; it is named after the file. Raises PlaygroundError, also if it cannot be read."""
+def load(path: str | Path, part: str = "") -> Playground:
+    """Read a playground file; it is named after the file. Raises PlaygroundError, also if it cannot be read.
+
+    `part` names a playground of an archive with several; it is named after that one.
+    """
     path = Path(path)
-    return _read(_content(path), path.stem, str(path), format_detection.folder(path.parent))
+    return _read(_content(path), path.stem, str(path), format_detection.folder(path.parent), part)
 
 
 def headline(path: Path) -> Headline:
@@ -90,8 +93,8 @@ def headline(path: Path) -> Headline:
         raise PlaygroundError(str(path), error.key, error.found, error.expected) from error
 
 
-def loads(text: str | bytes, name: str) -> Playground:
-    """Read a playground from a text or the bytes of a file; there are no files beside it.
+def loads(text: str | bytes, name: str, part: str = "") -> Playground:
+    """Read a playground from a text or the bytes of a file; there are no files beside it. `part` is that of `load`.
 
     Raises PlaygroundError with `name` as its path.
     """
@@ -99,7 +102,7 @@ def loads(text: str | bytes, name: str) -> Playground:
         data = text if isinstance(text, bytes) else text.encode("utf-8")
     except UnicodeEncodeError as error:
         raise PlaygroundError(name, "", f"an unpaired surrogate at {error.start}", "UTF-8 text") from error
-    return _read(data, Path(name).stem, name, format_detection.nothing_beside)
+    return _read(data, Path(name).stem, name, format_detection.nothing_beside, part)
 
 
 def schema() -> dict[str, Any]:
@@ -148,12 +151,12 @@ def _members(data: object) -> dict[str, object]:
     return members
 
 
-def _read(data: bytes, name: str, path: str, beside: Beside) -> Playground:
+def _read(data: bytes, name: str, path: str, beside: Beside, part: str) -> Playground:
     places: Mapping[str, str] = {}
     try:
-        found = format_detection.read_source(data, name, beside)
+        found = format_detection.read_source(data, name, beside, part)
         places = found.places
-        return _build(found, name)
+        return _build(found, Path(part).stem or name)
     except FieldError as error:
         raise PlaygroundError(path, _original(error.key, places), error.found, error.expected) from error
 
