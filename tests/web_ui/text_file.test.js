@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { decoded } from "../../web_ui/browser/text_file.js";
+import { decoded, decodedOrMarked } from "../../web_ui/browser/text_file.js";
 
 /** @param {string} encoding */
 const file = (encoding) => `<?xml version="1.0" encoding="${encoding}"?>\n<network># größer</network>`;
@@ -42,4 +42,10 @@ test("UTF-16 is detected by the first tag, and a wrong declaration of it means U
   const low = Uint8Array.from([...text].flatMap((letter) => [letter.charCodeAt(0), 0]));
   const high = Uint8Array.from([...text].flatMap((letter) => [0, letter.charCodeAt(0)]));
   for (const bytes of [low, high, new TextEncoder().encode(text)]) assert.equal(decoded(bytes), right);
+});
+
+test("a command reads a file in its declared encoding, and marks what it cannot decode", () => {
+  const bytes = (/** @type {string} */ text) => Uint8Array.from(text, (character) => character.charCodeAt(0));
+  assert.equal(decodedOrMarked(bytes('<?xml version="1.0" encoding="iso-8859-1"?><a>é</a>')).slice(-6), ">é</a>");
+  assert.equal(decodedOrMarked(bytes("<a>é</a>")), "<a>\uFFFD</a>");
 });

@@ -2,6 +2,7 @@
 
 import { readFileSync } from "node:fs";
 
+import { decodedOrMarked } from "../browser/text_file.js";
 import { LANGUAGES, translator } from "../i18n/index.js";
 import texts from "../i18n/blockly.texts.js";
 import { parseArguments, runAsCommand } from "../program_tab/command_line.js";
@@ -43,7 +44,7 @@ export async function run(command, read = (path) => readFileSync(path === "-" ? 
   try {
     const bytes = read(path);
     const isArchive = new TextDecoder("latin1").decode(bytes.subarray(0, 2)) === ZIP;
-    return isArchive ? await project(path, bytes, t) : program(path, new TextDecoder().decode(bytes), compare, t);
+    return isArchive ? await project(path, bytes, t) : program(path, decodedOrMarked(bytes), compare, t);
   } catch (error) {
     if (error instanceof Error && "code" in error)
       return { output: "", errors: `${path}: ${error.message}\n`, exit: 2 };

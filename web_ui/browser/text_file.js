@@ -32,3 +32,13 @@ export function decoded(bytes) {
   const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);
   return /^utf-?8$/i.test(marked ?? declared) ? text : text.replace(DECLARED, "$1UTF-8");
 }
+
+/** The text of a file; characters that cannot be decoded become U+FFFD. @param {Uint8Array} bytes */
+export function decodedOrMarked(bytes) {
+  try {
+    return decoded(bytes);
+  } catch (error) {
+    if (!(error instanceof TypeError || error instanceof RangeError)) throw error;
+    return new TextDecoder().decode(bytes);
+  }
+}

@@ -2,6 +2,7 @@
 
 import { readFileSync } from "node:fs";
 
+import { decodedOrMarked } from "../browser/text_file.js";
 import { LANGUAGES, translator } from "../i18n/index.js";
 import texts from "../i18n/vpl.texts.js";
 import { parseArguments, runAsCommand } from "../program_tab/command_line.js";
@@ -58,7 +59,7 @@ export function run(command, read = readText) {
 
 /** @param {string} path */
 function readText(path) {
-  return readFileSync(path === "-" ? 0 : path, "utf8");
+  return decodedOrMarked(readFileSync(path === "-" ? 0 : path));
 }
 
 await runAsCommand(import.meta.url, run);
