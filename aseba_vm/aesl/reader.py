@@ -259,10 +259,8 @@ class _Reader:
         return attributes[name]
 
     def number(self, attributes: Mapping[str, str], name: str) -> int:
-        """Return the value of an attribute; a missing one is 0 unless reading is strict."""
-        if name not in attributes and not self.is_strict:
-            return 0
-        text = self.attribute(attributes, name)
+        """Return the value of an attribute; a missing one is 0, as in the reference."""
+        text = attributes.get(name, "0")
         if not _NUMBER.fullmatch(text):
             raise self.attribute_error("aesl-number", name, (name, text))
         return int(text)

@@ -118,6 +118,14 @@ test("a file without a node gets one, however its root is written", () => {
   }
 });
 
+test("a missing size or value is 0, and can be set", () => {
+  const text = '<network><event name="a"/><constant name="N"/><node/></network>';
+  const { events, constants } = readAesl(text);
+  assert.deepEqual([events[0].value, constants[0].value], [0, 0]);
+  const changed = withEntry(withEntry(text, "event", "a", 2), "constant", "N", -3);
+  assert.equal(changed, '<network><event size="2" name="a"/><constant value="-3" name="N"/><node/></network>');
+});
+
 test("a program of the largest size can be read", () => {
   assert.equal(codeOf(opened("big.aseba", `# ${"x".repeat(900_000)}`)).length, 900_002);
 });
@@ -146,7 +154,7 @@ for (const [what, text, line, column, message] of /** @type {[string, string, nu
   ["an entity without character", "<network><node>&#0;</node></network>", 1, 16, "found &#0;, expected the code of a character, from 1 to 10FFFF hexadecimal"],
   ["no number", '<network>\n<constant name="a" value="x"/></network>', 2, 27, "<constant> value: found 'x', expected a whole number from -32768 to 32767"],
   ["too large a constant", '<network><constant name="a" value="40000"/></network>', 1, 36, "<constant> value: found '40000', expected a whole number from -32768 to 32767"],
-  ["an event without size", '<network><event name="a"/></network>', 1, 10, "<event>: found no attribute size, expected one"],
+  ["an event without name", '<network><event size="1"/></network>', 1, 10, "<event>: found no attribute name, expected one"],
   ["no content", "", 1, 1, "found the end of the file, expected <network>"],
 ])) {
   test(`a file with ${what} is rejected with its position`, () => {

@@ -94,14 +94,14 @@ test("what cannot be read is reported with its place", () => {
         '<block type="action" name="fly"/><block type="action" name="move"/></set>',
         '<other/><set><block type="event" name="prox" value0="7"/>',
         '<block type="action" name="move" value0="123"/></set>',
-        '<set><block type="event" name="clap"/><block type="action" name="timer" value0="5"/></set>',
+        '<set><block type="event" name="clap"/><block type="action" name="setstate" value0="1"/></set>',
       ].join("\n"),
     ),
   );
   assert.deepEqual(short(program), [
     ["clap", "statefilter 0 0 0 0"],
     ["prox 0 0 0 0 0 0 0 1000 2000", "statefilter 0 0 0 0", "move 100 0"],
-    ["clap", "statefilter 0 0 0 0", "timer 5"],
+    ["clap", "statefilter 0 0 0 0", "setstate 1 0 0 0"],
     ["statefilter 0 0 0 0"],
   ]);
   assert.deepEqual(
@@ -113,6 +113,17 @@ test("what cannot be read is reported with its place", () => {
       ["load.value", 5, { column: 1, name: "move", found: "123", used: 100 }],
     ],
   );
+});
+
+test("a basic program with timers stays basic, and the file as it is", () => {
+  const text = sets(
+    '<set><block type="event" name="clap"/><block type="action" name="timer" value0="1500"/></set>' +
+      '<set><block type="event" name="timeout"/><block type="action" name="move" value0="0" value1="0"/></set>',
+  );
+  const file = readVpl(text);
+  assert.deepEqual([file.program.mode, file.warnings], ["basic", []]);
+  assert.deepEqual(short(file.program), [["clap", "timer 1500"], ["timeout", "move 0 0"], []]);
+  assert.equal(writeVpl(file, file.program, file.code), text);
 });
 
 test("another format is read with a warning", () => {

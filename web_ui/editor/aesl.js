@@ -7,7 +7,7 @@ export { AeslError } from "./xml.js";
 
 /** @typedef {import("./xml.js").Unit} Unit */
 /** @typedef {{ from: number, to: number }} Span */
-/** @typedef {Span & { name: string, value: number, valueFrom: number, valueTo: number }} Entry */
+/** @typedef {Span & { name: string, value: number, written: Span | null }} Entry   written: the number; null: missing, so 0 */
 /**
  * @typedef {object} Node
  * @property {string} name
@@ -217,14 +217,18 @@ export function withEntry(text, kind, name, value) {
   const aesl = readAesl(text);
   if (aesl.root.empty && value !== null) return withEntry(withLast(text, ""), kind, name, value);
   const entries = kind === "event" ? aesl.events : aesl.constants;
+  const attribute = kind === "event" ? "size" : "value";
   const old = entries.find((each) => each.name === name);
   if (old !== undefined) {
-    if (value !== null) return text.slice(0, old.valueFrom) + String(value) + text.slice(old.valueTo);
+    if (value !== null && old.written !== null) return text.slice(0, old.written.from) + String(value) + text.slice(old.written.to);
+    if (value !== null) {
+      const at = old.from + `<${kind}`.length;
+      return `${text.slice(0, at)} ${attribute}="${value}"${text.slice(at)}`;
+    }
     const line = /\r?\n[ \t]*$/.exec(text.slice(0, old.from));
     return text.slice(0, old.from - (line?.[0].length ?? 0)) + text.slice(old.to);
   }
   if (value === null) return text;
-  const attribute = kind === "event" ? "size" : "value";
   const element = `<${kind} ${attribute}="${value}" name="${encoded(name, false).replaceAll('"', "&quot;")}"/>`;
   const comment = `<!--list of ${kind === "event" ? "global events" : "constants"}-->`;
   const listed = text.indexOf(comment);
@@ -244,13 +248,12 @@ export function withEntry(text, kind, name, value) {
 function entry(text, part, attribute, least, greatest) {
   const attributes = attributesOf(text, part);
   const { name, [attribute]: number } = attributes;
-  for (const [wanted, found] of Object.entries({ name, [attribute]: number })) {
-    if (found === undefined) throw new AeslError(text, part.from, `<${part.name}>: found no attribute ${wanted}, expected one`);
-  }
+  if (name === undefined) throw new AeslError(text, part.from, `<${part.name}>: found no attribute name, expected one`);
+  if (number === undefined) return { from: part.from, to: part.to, name: name.value, value: 0, written: null };
   const value = Number(number.value);
   if (!/^[+-]?\d+$/.test(number.value.trim()) || value < least || value > greatest) {
     const expected = `expected a whole number from ${least} to ${greatest}`;
     throw new AeslError(text, number.from, `<${part.name}> ${attribute}: found '${number.value}', ${expected}`);
   }
-  return { from: part.from, to: part.to, name: name.value, value, valueFrom: number.from, valueTo: number.to };
+  return { from: part.from, to: part.to, name: name.value, value, written: { from: number.from, to: number.to } };
 }

@@ -44,7 +44,7 @@ export function readSets(root, text, isExtended = false) {
 }
 
 /**
- * The stored mode, or advanced mode if blocks need it.
+ * The stored mode, or advanced mode if states need it. Timers work in basic mode, too: only its palettes lack them.
  *
  * @param {Element} program
  * @param {Element[]} sets
@@ -59,10 +59,13 @@ function modeOfFile(program, sets, warn) {
   return "advanced";
 }
 
+/** Blocks that a program of basic mode may have. */
+const TIMERS = ["timer", "timeout"];
+
 /** Whether a block does something only in advanced mode. @param {Element} element */
 function isOfAdvancedMode({ name, attributes }) {
   const kind = BLOCKS.get(attributes.name);
-  if (name !== "block" || kind?.mode !== "advanced") return false;
+  if (name !== "block" || kind?.mode !== "advanced" || TIMERS.includes(kind.name)) return false;
   return kind.type !== "state" || kind.parameters.some((_each, index) => Number(attributes[`value${index}`] ?? 0) > 0);
 }
 
@@ -88,7 +91,7 @@ function readSet(set, mode, warn) {
     }
     if (slot === "state" && mode === "basic") continue; // without effect, else the mode would be advanced
     const block = readBlock(element, name, mode, warn);
-    const problem = whyNot({ mode, rows: [row] }, 0, block, slot);
+    const problem = whyNot({ mode: TIMERS.includes(name) ? "advanced" : mode, rows: [row] }, 0, block, slot);
     if (problem?.key === "edit.twice") warn("load.twice", element, { found: name });
     else if (problem !== null) {
       warn("load.unknown", element, { found: `${type} ${name}` });
