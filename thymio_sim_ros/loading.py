@@ -122,8 +122,27 @@ def assignments_of(
 
     `constants` replace those of the text. Raises ProgramError for an error in the text.
     """
+    return assigned_to(text, name, robot_ids(robots), layout, constants=constants)
+
+
+def robot_ids(robots: Sequence[str]) -> dict[str, RobotId]:
+    """The robots of a playground by name, as they are known to a file; one that is alone has no name there."""
     is_alone = len(robots) == 1
-    members = {robot: RobotId("" if is_alone else robot, number) for number, robot in enumerate(robots, start=1)}
+    return {robot: RobotId("" if is_alone else robot, number) for number, robot in enumerate(robots, start=1)}
+
+
+def assigned_to(
+    text: str,
+    name: str,
+    members: Mapping[str, RobotId],
+    layout: str = THYMIO,
+    *,
+    constants: Mapping[str, int] = NO_CONSTANTS,
+) -> dict[str, Assignment]:
+    """Assign the programs of a text to these robots, which may be some of those of a playground.
+
+    Raises ProgramError for an error in the text.
+    """
     names = [member.name for member in members.values() if member.name]
     file = load_file(text, name, layout, constants=constants, robots=names)
     shares = assign_programs(file, list(members.values()))

@@ -27,6 +27,28 @@ end
 """
 
 
+TWO = """<network>
+<event name="tick" size="1"/>
+<node nodeId="1" name="red">var sent = 1</node>
+<node nodeId="2" name="blue">var got = 2</node>
+<node nodeId="3" name="green">var lost = 3</node>
+</network>"""
+
+
+def test_each_robot_runs_the_node_with_its_name(caplog):
+    room = Classroom("two_robots", TWO)
+    assert room["red"].variables["sent"] == 1
+    assert room["blue"].variables["got"] == 2
+    assert caplog.messages == ["program: red, blue: no robot is left for node 'green' 3"]
+
+
+def test_a_program_that_is_loaded_later_is_that_of_the_robot(tmp_path):
+    (tmp_path / "two.aesl").write_text(TWO)
+    room = Classroom("two_robots", {"blue": "two.aesl"}, folder=tmp_path)
+    room["red"].load("two.aesl")
+    assert (room["red"].variables["sent"], room["blue"].variables["got"]) == (1, 2)
+
+
 def test_a_program_drives_the_robot() -> None:
     room = Classroom(programs=DRIVE)
     (thymio,) = room

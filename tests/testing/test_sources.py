@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.device.programs.program_assignment import RobotId
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.resources import ResourceError
-from thymio_sim_ros.testing.sources import beside, is_name, playground_of, playground_source, program_of, program_source
+from thymio_sim_ros.testing.sources import beside, is_name, playground_of, playground_source, program_source, programs_of
+
+
+def _program_of(value: Any, folder: Path | None = None) -> ThymioProgram:
+    return programs_of(value, {"thymio": RobotId("", 1)}, folder)["thymio"]
 
 
 def test_a_file_in_the_folder_is_found_and_anything_else_stays(tmp_path: Path) -> None:
@@ -29,7 +36,7 @@ def test_no_file_beside_the_test_replaces_what_is_shipped(tmp_path: Path) -> Non
     assert program_source("none", tmp_path) == "none"
     assert playground_source(Path("line"), tmp_path) == str(tmp_path / "line")
     assert playground_of("line", tmp_path) == playground_of("line")
-    assert program_of("explorer", tmp_path).name == "explorer.aesl"
+    assert _program_of("explorer", tmp_path).name == "explorer.aesl"
 
 
 def test_a_program_is_a_name_a_path_or_a_text(tmp_path: Path) -> None:
@@ -39,18 +46,18 @@ def test_a_program_is_a_name_a_path_or_a_text(tmp_path: Path) -> None:
     assert is_name(str(path))
     assert not is_name("var a")
     assert not is_name("")
-    assert program_of("explorer").name == "explorer.aesl"
-    assert program_of("my robot.aesl", tmp_path).name == "my robot.aesl"
-    assert program_of("var a = 1").source == "var a = 1"
-    loaded = program_of("var a")
-    assert program_of(loaded) is loaded
+    assert _program_of("explorer").name == "explorer.aesl"
+    assert _program_of("my robot.aesl", tmp_path).name == "my robot.aesl"
+    assert _program_of("var a = 1").source == "var a = 1"
+    loaded = _program_of("var a")
+    assert _program_of(loaded) is loaded
 
 
 def test_a_path_that_is_no_file_is_no_text() -> None:
     with pytest.raises(ResourceError, match="no program 'var a'"):
-        program_of(Path("var a"))
+        _program_of(Path("var a"))
     with pytest.raises(ResourceError, match=r"no program 'students/Anna Smith/follower\.aesl': neither a file nor"):
-        program_of("students/Anna Smith/follower.aesl")
+        _program_of("students/Anna Smith/follower.aesl")
 
 
 def test_a_playground_may_be_loaded_already() -> None:

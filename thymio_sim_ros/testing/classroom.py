@@ -12,6 +12,7 @@ import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
+from thymio_sim_ros.loading import robot_ids
 from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.clock import TICK_NS
@@ -21,7 +22,7 @@ from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
-from thymio_sim_ros.testing.sources import playground_of, program_of
+from thymio_sim_ros.testing.sources import playground_of, programs_of
 from thymio_sim_ros.testing.thymio import RobotMachine, Thymio
 
 __all__ = ["Classroom"]
@@ -46,7 +47,7 @@ class Classroom:
         folder: Path | None = None,
         run_log: Path | None = None,
     ) -> None:
-        """A playground by name, path or text; one program for all robots, or one by robot's name.
+        """A playground by name, path or text; one file of programs for all robots, or one by robot's name.
 
         Relative paths start in `folder`. `run_log` is a file for the run log, which `close` completes. Raises
         PlaygroundError or ProgramError for invalid content, ResourceError for a missing file, KeyError for an unknown
@@ -55,13 +56,14 @@ class Classroom:
         self._folder = folder
         loaded = playground_of(playground, folder)
         names = [robot.name for robot in loaded.robots]
+        self._ids = robot_ids(names)
         own = dict.fromkeys(names, load_program("", "none"))
         if isinstance(programs, Mapping):
             for name, program in programs.items():
                 _check_robot(name, names)
-                own[name] = program_of(program, folder)
+                own |= programs_of(program, {name: self._ids[name]}, folder)
         else:
-            own = dict.fromkeys(names, program_of(programs, folder))
+            own = programs_of(programs, self._ids, folder)
         self._log = None if run_log is None else RunLog(run_log.open("w", encoding="utf-8", newline="\n"))
         self.runner = Runner(loaded, own, seed=seed, noise=noise, log=self._log)
         self.robots: Mapping[str, Thymio] = {name: Thymio(name, self) for name in names}
@@ -137,7 +139,7 @@ class Classroom:
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Load a program, which starts at once."""
-        self.runner.load(robot, program_of(program, self._folder))
+        self.runner.load(robot, programs_of(program, {robot: self._ids[robot]}, self._folder)[robot])
         self._record_events()
 
     def emit(self, event: str, args: Sequence[int]) -> None:

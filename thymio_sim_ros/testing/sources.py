@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import logging
 import os
+from collections.abc import Mapping
 from pathlib import Path
 
 from thymio_sim_ros import loading, resources
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
+from thymio_sim_ros.device.programs.program_assignment import RobotId
 from thymio_sim_ros.sim.playground.reader import Playground
 
-__all__ = ["beside", "is_name", "playground_of", "playground_source", "program_of", "program_source"]
+__all__ = ["beside", "is_name", "playground_of", "playground_source", "program_source", "programs_of"]
 
 
 def beside(value: str | Path, folder: Path | None) -> str:
@@ -47,18 +50,24 @@ def playground_of(value: str | Path | Playground, folder: Path | None = None) ->
     return loading.load_playground(playground_source(value, folder))[1]
 
 
-def program_of(value: str | Path | ThymioProgram, folder: Path | None = None) -> ThymioProgram:
-    """A built-in behaviour's name, a path (relative ones begin in the folder) or a text as a program.
+def programs_of(
+    value: str | Path | ThymioProgram, robots: Mapping[str, RobotId], folder: Path | None = None
+) -> dict[str, ThymioProgram]:
+    """The program of each robot: a built-in behaviour's name, a path (relative ones begin in the folder) or a text.
 
     A single word is a name or a path, and so is a line that ends in .aesl; anything else that is no file is a text.
-    Raises ProgramError for what the text says, ResourceError for a file that is not there, OSError.
+    The nodes of a file go to robots as everywhere else; notes about them are logged. A robot without a node runs the
+    empty program. Raises ProgramError for what the text says, ResourceError for a file that is not there, OSError.
     """
     if isinstance(value, ThymioProgram):
-        return value
+        return dict.fromkeys(robots, value)
     found = program_source(value, folder)
-    if isinstance(value, Path) or is_name(found):
-        return loading.read_program(found)
-    return load_program(found, "program")
+    text, name = loading.read_text(found) if isinstance(value, Path) or is_name(found) else (found, "program")
+    assigned = loading.assigned_to(text, name, robots)
+    for note in dict.fromkeys(note for assignment in assigned.values() for note in assignment.notes):
+        named = ", ".join(robot for robot, assignment in assigned.items() if note in assignment.notes)
+        logging.getLogger(__name__).warning("%s: %s: %s", name, named, note)
+    return {robot: assignment.program or load_program("", "none") for robot, assignment in assigned.items()}
 
 
 def is_name(text: str) -> bool:

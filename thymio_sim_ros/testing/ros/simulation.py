@@ -10,6 +10,8 @@ from typing import Any
 from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.device.programs.program_assignment import RobotId
+from thymio_sim_ros.loading import robot_ids
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.interface import qos
@@ -22,7 +24,7 @@ from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
 from thymio_sim_ros.testing.ros.graph import Ros
-from thymio_sim_ros.testing.sources import program_of
+from thymio_sim_ros.testing.sources import programs_of
 from thymio_sim_ros.testing.thymio import Thymio
 
 __all__ = ["Simulation"]
@@ -167,7 +169,11 @@ class Simulation:
         ports = self.machine(robot)
         if ports is None:
             raise LookupError(_NO_MACHINE.format(robot))
-        ports.load(program_of(program, self._folder))
+        ports.load(programs_of(program, {robot: self._id_of(robot)}, self._folder)[robot])
+
+    def _id_of(self, robot: str) -> RobotId:
+        names = list(self.simulator.endpoints.robots.names)
+        return robot_ids(names).get(robot, RobotId("", 1))
 
     def emit(self, event: str, args: Sequence[int]) -> None:
         """Send an event to all robots that know it, by `_aseba/emit` of the first machine.
