@@ -40,19 +40,13 @@ from aseba_vm.frontend.syntax_tree import (
 from aseba_vm.frontend.token_stream import TokenStream
 from aseba_vm.frontend.trampoline import Task, run
 from aseba_vm.frontend.vectors import check_address, size_of
-from aseba_vm.target import TargetDescription
 
 COMPOUND = frozenset(("+=", "-=", "*=", "/=", "%=", "|=", "^=", "&=", "<<=", ">>="))
 
 
-def parse(
-    tokens: Sequence[Token],
-    target: TargetDescription,
-    events: Sequence[tuple[str, int]] = (),
-    constants: Sequence[tuple[str, int]] = (),
-) -> Tree:
-    """Return the tree of a program. Raises CompileError."""
-    return run(_Parser(tokens, SymbolTable(target, events, constants)).program())
+def parse(tokens: Sequence[Token], symbols: SymbolTable) -> Tree:
+    """Return the tree of a program, and add its names to the table. Raises CompileError."""
+    return run(_Parser(tokens, symbols).program())
 
 
 class _Parser:

@@ -16,6 +16,7 @@ from aseba_vm.frontend.lexer import Token, tokenize
 from aseba_vm.frontend.lint import CompileWarning, find_warnings
 from aseba_vm.frontend.lowering import lower
 from aseba_vm.frontend.parser import parse
+from aseba_vm.frontend.symbols import SymbolTable
 from aseba_vm.frontend.syntax_tree import Memory, Tree
 from aseba_vm.frontend.type_check import check_sizes, check_types
 from aseba_vm.target import TargetDescription
@@ -110,7 +111,7 @@ def compile_stages(
         other = _attempt(text, target, events, constants)
         return other if isinstance(other, Attempt) else None
 
-    result.error.hint = find_hint(source, target, result, again)
+    result.error.hint = find_hint(source, result, again)
     raise result.error
 
 
@@ -120,14 +121,16 @@ def _attempt(
     events: Sequence[tuple[str, int]],
     constants: Sequence[tuple[str, int]],
 ) -> Attempt | Stages:
-    """Run all passes; return their results, or the error and the pass that found it."""
+    """Run all passes; return their results, or the error and the pass that found it.
+
+    Raises CompileError if the variables of the target do not fit into its memory.
+    """
     stage = TOKENS
+    symbols = SymbolTable(target, events, constants)
     try:
-        if target.variables_end > target.variables_size:
-            raise CompileError("target-too-small")
         tokens = tokenize(source)
         stage = GRAMMAR
-        tree = parse(tokens, target, events, constants)
+        tree = parse(tokens, symbols)
         stage = LATER_PASSES
         check_sizes(tree)
         expanded = lower(tree, target.variables_size)
@@ -136,7 +139,7 @@ def _attempt(
         segments = generate(optimized)
         check_stack(segments, target.stack_size)
     except CompileError as error:
-        return Attempt(stage, error)
+        return Attempt(stage, error, symbols)
     return Stages(tokens, tree, expanded, optimized, segments)
 
 

@@ -15,10 +15,10 @@ def unknown_name_error(kind: str, name: str, known: Iterable[str], pos: SourcePo
     return CompileError(kind, (name,), pos) if hint is None else CompileError(f"{kind}-hint", (name, hint), pos)
 
 
-def suggestion(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name at the smallest distance of 1 or 2; of several, the first in code point order."""
+def suggestion(name: str, known: Iterable[str], most: int = _MAX_DISTANCE) -> str | None:
+    """Return the known name at the smallest distance from 1 to ``most``, at most 2; the first in code point order."""
     best = None
-    best_distance = _MAX_DISTANCE + 1
+    best_distance = min(most, _MAX_DISTANCE) + 1
     for candidate in sorted(known):
         if abs(len(candidate) - len(name)) < best_distance:
             distance = _distance(name, candidate)

@@ -9,8 +9,9 @@ from itertools import pairwise
 from aseba_vm.errors import CompileError, Edit, Hint
 from aseba_vm.frontend.lexer import Token, tokenize
 from aseba_vm.frontend.parser import COMPOUND
+from aseba_vm.frontend.symbols import SymbolTable
 from aseba_vm.frontend.token_spacing import token_begin, token_end
-from aseba_vm.target import NativeFunction, TargetDescription
+from aseba_vm.target import NativeFunction
 
 TOKENS, GRAMMAR, LATER_PASSES = 0, 1, 2
 """Stages of an attempt."""
@@ -30,10 +31,11 @@ _AFTER_STATEMENT = frozenset(("then", "do", "else", "end", "return", "integer", 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A rejected text: the pass that found the error (TOKENS, GRAMMAR or LATER_PASSES), and the error."""
+    """A rejected text: the pass that found the error (TOKENS, GRAMMAR or LATER_PASSES), the error, the known names."""
 
     stage: int
     error: CompileError
+    symbols: SymbolTable
 
     @property
     def offset(self) -> int:
@@ -64,6 +66,7 @@ class ErrorContext:
         at: index of the rejected token in ``words``.
         offset: index of its first character in ``source``.
         error: the error.
+        symbols: the names of the target, and those of the program before the error.
         natives: native functions of the target by name.
     """
 
@@ -72,6 +75,7 @@ class ErrorContext:
     at: int
     offset: int
     error: CompileError
+    symbols: SymbolTable
     natives: Mapping[str, NativeFunction]
 
     def kind(self, distance: int = 0) -> str:
@@ -96,6 +100,11 @@ class ErrorContext:
     def subs(self) -> set[str]:
         """Return the names of the subroutines of the program."""
         return {name.text for keyword, name in pairwise(self.words) if keyword.kind == "sub"}
+
+    @property
+    def declared(self) -> set[str]:
+        """Return the names of all variables of the program, also of those below the error."""
+        return {name.text for keyword, name in pairwise(self.words) if keyword.kind == "var"}
 
     @property
     def is_statement_expected(self) -> bool:
@@ -125,15 +134,22 @@ class ErrorContext:
 
     def closing(self, distance: int) -> int | None:
         """Return the distance of the parenthesis that closes the one at a distance, None if there is none."""
+        return self._closing(distance, {"(": 1, ")": -1})
+
+    def bracket(self, distance: int) -> int | None:
+        """Return the distance of the bracket that closes the one at a distance, None if there is none."""
+        return self._closing(distance, {"[": 1, "]": -1})
+
+    def _closing(self, distance: int, steps: Mapping[str, int]) -> int | None:
         depth = 0
         for index in range(self.at + distance, len(self.words)):
-            depth += {"(": 1, ")": -1}.get(self.words[index].kind, 0)
+            depth += steps.get(self.words[index].kind, 0)
             if depth == 0:
                 return index - self.at
         return None
 
 
-def locate_error(source: str, target: TargetDescription, attempt: Attempt) -> ErrorContext | None:
+def locate_error(source: str, attempt: Attempt) -> ErrorContext | None:
     """Return the context of the error of an attempt, None if the position of the error is not that of a token.
 
     Raises no error: a text whose beginning cannot be tokenized has no context.
@@ -154,8 +170,9 @@ def locate_error(source: str, target: TargetDescription, attempt: Attempt) -> Er
         at = next(iter(ends or found), None)
     if at is None:
         return None
-    natives = {native.name: native for native in target.natives}
-    return ErrorContext(source, words, at, offset if is_token else words[at].start, error, natives)
+    natives = {native.name: native for native in attempt.symbols.native_functions}
+    start = offset if is_token else words[at].start
+    return ErrorContext(source, words, at, start, error, attempt.symbols, natives)
 
 
 def _word(source: str, token: Token) -> Word:

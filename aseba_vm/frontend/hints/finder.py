@@ -11,9 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from aseba_vm.errors import Edit, Hint
-from aseba_vm.frontend.hints import blocks, calls, characters, comments, declarations, operators, words
+from aseba_vm.frontend.hints import blocks, calls, characters, comments, declarations, names, operators, values, words
 from aseba_vm.frontend.hints.context import LATER_PASSES, Attempt, ErrorContext, locate_error
-from aseba_vm.target import TargetDescription
 
 Recognizer = Callable[[ErrorContext], Hint | None]
 
@@ -23,7 +22,16 @@ _UNKNOWN_NAME: Sequence[Recognizer] = (
     calls.native_as_statement,
     calls.subroutine_as_statement,
     calls.native_in_expression,
+    values.later_variable_as_size,
+    names.misspelled_keyword,
+    names.spelling,
+    names.part_of_name,
 )
+_UNKNOWN_CONSTANT: Sequence[Recognizer] = (values.variable_as_bound, names.spelling, names.part_of_name)
+_UNKNOWN_FUNCTION: Sequence[Recognizer] = (calls.call_of_subroutine, names.spelling, names.part_of_name)
+_UNKNOWN_SUBROUTINE: Sequence[Recognizer] = (calls.callsub_of_native, names.spelling, names.part_of_name)
+_UNKNOWN_EVENT: Sequence[Recognizer] = (names.spelling, names.part_of_name)
+_WHOLE_ARRAY: Sequence[Recognizer] = (values.whole_array,)
 _RECOGNIZERS: Mapping[str, Sequence[Recognizer]] = {
     "illegal-character": (
         comments.foreign_comment,
@@ -37,16 +45,32 @@ _RECOGNIZERS: Mapping[str, Sequence[Recognizer]] = {
     "bad-number-base": (comments.foreign_comment, characters.decimals),
     "unknown-variable": _UNKNOWN_NAME,
     "unknown-variable-hint": _UNKNOWN_NAME,
-    "unknown-function": (calls.call_of_subroutine,),
-    "unknown-function-hint": (calls.call_of_subroutine,),
-    "unknown-subroutine": (calls.callsub_of_native,),
-    "unknown-subroutine-hint": (calls.callsub_of_native,),
+    "unknown-constant": _UNKNOWN_CONSTANT,
+    "unknown-constant-hint": _UNKNOWN_CONSTANT,
+    "unknown-function": _UNKNOWN_FUNCTION,
+    "unknown-function-hint": _UNKNOWN_FUNCTION,
+    "unknown-subroutine": _UNKNOWN_SUBROUTINE,
+    "unknown-subroutine-hint": _UNKNOWN_SUBROUTINE,
+    "unknown-event": _UNKNOWN_EVENT,
+    "unknown-event-hint": _UNKNOWN_EVENT,
+    "not-constant": (values.variable_as_size,),
+    "slice-end-not-constant": (values.variable_in_slice,),
+    "size-mismatch": _WHOLE_ARRAY,
+    "vector-condition-if": _WHOLE_ARRAY,
+    "vector-condition-while": _WHOLE_ARRAY,
+    "event-argument-size": _WHOLE_ARRAY,
+    "event-argument-too-large": _WHOLE_ARRAY,
+    "argument-size": _WHOLE_ARRAY,
+    "argument-size-template": _WHOLE_ARRAY,
     "misplaced-var": (declarations.late_declaration,),
     "expected-assignment": (operators.comparison_as_statement, calls.native_with_variable),
     "expected-one-of": (operators.doubled_operator, comments.comment_as_statement),
     "type-mismatch": (operators.number_as_condition,),
     "expected-token": (
         operators.equals_in_condition,
+        names.misspelled_connector,
+        values.variable_in_slice,
+        values.calculated_bound,
         blocks.block_word,
         blocks.loop_form,
         calls.callsub_with_parentheses,
@@ -77,19 +101,16 @@ _STAND_ALONE = frozenset(
 """Kinds of hints that are given without their edit if the edit alone does not get the compiler further."""
 
 
-def find_hint(
-    source: str, target: TargetDescription, attempt: Attempt, compile_again: Callable[[str], Attempt | None]
-) -> Hint | None:
+def find_hint(source: str, attempt: Attempt, compile_again: Callable[[str], Attempt | None]) -> Hint | None:
     """Return the hint for a rejected text, None if there is none.
 
     Args:
         source: text of the program.
-        target: target of the program.
         attempt: how far the compiler got.
         compile_again: compiles another text to try an edit; None means success.
     """
     recognizers = _RECOGNIZERS.get(attempt.error.kind, ())
-    context = locate_error(source, target, attempt) if recognizers and attempt.error.pos is not None else None
+    context = locate_error(source, attempt) if recognizers and attempt.error.pos is not None else None
     if context is None:
         return None
     for recognize in recognizers:

@@ -153,6 +153,76 @@ FOUND = {
         ("var a\nif a then end", "var a\nif a != 0 then end"),
         ("var a[2]\nwhile a[1] do a[1]-- end", "var a[2]\nwhile a[1] != 0 do a[1]-- end"),
     ],
+    "hint-name": [
+        ("motor.left.traget = 100", "motor.left.target = 100"),
+        ("MOTOR.LEFT.TARGET = 3", "motor.left.target = 3"),
+        ("var a = prox.horiz[2]", "var a = prox.horizontal[2]"),
+        ("if buton.forward == 1 then end", "if button.forward == 1 then end"),
+        ("call leds.tpo(0, 0, 0)", "call leds.top(0, 0, 0)"),
+        ("call leds.tpo(0, 0)", "call leds.top(0, 0)"),
+        ("call Leds.Top(0, 0, 0)", "call leds.top(0, 0, 0)"),
+        ("timer = 3", "timer.period = 3"),
+        ("led.top(0, 0, 0)", "leds.top(0, 0, 0)"),
+        ("onevent porx", "onevent prox"),
+        ("onevent button", "onevent buttons"),
+        ("onevent TIMER0", "onevent timer0"),
+        ("sub turn\nonevent tap\ncallsub trun", "sub turn\nonevent tap\ncallsub turn"),
+        ("const LAST = 3\nvar i\nfor i in 0:LATS do end", "const LAST = 3\nvar i\nfor i in 0:LAST do end"),
+        ("onevnt prox", "onevent prox"),
+        ("var a\nwhlie a > 3 do a++ end", "var a\nwhile a > 3 do a++ end"),
+        ("var a\nif a > 3 then a = 2 esle a = 4 end", "var a\nif a > 3 then a = 2 else a = 4 end"),
+        ("var a\nif a > 3 then a = 2 edn", "var a\nif a > 3 then a = 2 end"),
+        ("cal leds.top(0, 0, 0)", "call leds.top(0, 0, 0)"),
+        ("cosnt X = 3", "const X = 3"),
+        ("var a\nif a > 3 thne a = 2 end", "var a\nif a > 3 then a = 2 end"),
+        ("var a\nif a > 3 adn a < 5 then end", "var a\nif a > 3 and a < 5 then end"),
+        ("var a\nfor a in 0:9 stpe 2 do end", "var a\nfor a in 0:9 step 2 do end"),
+        ("var a\nif nto (a > 3) then end", "var a\nif not (a > 3) then end"),
+    ],
+    "hint-part-of-name": [
+        ("call leds.bottom(0, 32, 0)", None),
+        ("leds.bottom(0, 32, 0)", None),
+        ("motor.target = 3", None),
+        ("motor.left = 3", None),
+        ("if prox > 3 then end", None),
+    ],
+    "hint-constant-bound": [
+        ("var n = 3\nvar i\nfor i in 0:n do end", None),
+        ("var n = 3\nvar i\nfor i in n:9 do end", None),
+        ("var n = 3\nvar i\nfor i in 0:-n do end", None),
+        ("var n = 3\nvar i\nfor i in 0:9 step n do end", None),
+        ("var i\nfor i in 0:prox.horizontal[2] do end", None),
+    ],
+    "hint-constant-size": [
+        ("var n = 3\nvar a[n]", None),
+        ("var n = 3\nvar a[2 * n + 1]", None),
+        ("var a[n]\nvar n = 3", None),
+    ],
+    "hint-constant-value": [("const A = motor.left.target * 2", None), ("const A = n\nvar n = 3", None)],
+    "hint-constant-slice": [
+        ("var n\nvar a[9]\na[0:n] = [1, 2]", None),
+        ("var n\nvar a[9]\na[n:3] = [1, 2]", None),
+        ("var n\nvar a[9]\ncall math.fill(a[0:n + 1], 3)", None),
+    ],
+    "hint-calculated-bound": [
+        ("const N = 3\nvar i\nfor i in 0:N-1 do end", None),
+        ("const N = 3\nvar i\nfor i in 0:-N do end", None),
+        ("var i\nfor i in 0:(3) do end", None),
+    ],
+    "hint-whole-array": [
+        ("if prox.horizontal > 2000 then end", None),
+        ("if 2000 < prox.horizontal then end", None),
+        ("if prox.horizontal then end", None),
+        ("while acc do end", None),
+        ("when acc > [1, 2, 3] do end", None),
+        ("motor.left.target = prox.ground.delta", None),
+        ("var a\na += 2 * prox.horizontal", None),
+        ("prox.horizontal = 0", None),
+        ("if prox.horizontal[0:1] > 3 then end", None),
+        ("call sound.freq(prox.horizontal, 1)", None),
+        ("var d\ncall math.muldiv(d, prox.horizontal, 2, 3)", None),
+        ("for acc in 0:3 do end", None),
+    ],
 }
 
 
@@ -202,6 +272,13 @@ def test_every_hint_of_the_tables_is_given_and_every_given_one_is_in_the_tables(
         "if",
         "var a\na = 1 / / 2",
         "var a = $",
+        "a = 3",
+        "speed = 3",
+        "fo = 3",
+        "const N = 3\nvar i\nfor i in 0:M do end",
+        "var b[3] = 0",
+        "if acc == [1, 2, prox.horizontal] then end",
+        "onevent button.left.pressed",
     ],
 )
 def test_an_error_that_is_not_understood_has_no_hint(source):
@@ -215,6 +292,35 @@ def test_a_hint_names_the_line_of_the_open_block_in_the_file():
     assert str(hint) == "the 'if' of line 2 has no 'end'"
     assert hint.message(rows=(10, 11, 12)) == "the 'if' of line 12 has no 'end'"
     assert hint.message(texts("compiler", "de")) == "dem 'if' von Zeile 2 fehlt ein 'end'"
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        ("call leds.bottom(0, 32, 0)", ("leds.bottom.left", "leds.bottom.right")),
+        ("motor.target = 3", ("motor.left.target", "motor.right.target")),
+        ("if prox > 3 then end", ("prox.horizontal", "prox.ground.delta")),
+        ("var n = 3\nvar i\nfor i in 0:n do end", ("numbers or constants", "const n = 3", "while")),
+        ("var i\nfor i in 0:prox.horizontal[2] do end", ("'prox.horizontal' is a variable", "const N = 3")),
+        ("if prox.horizontal > 2000 then end", ("7 values", "prox.horizontal[2]")),
+        ("var a = acc[0] * prox.ground.delta", ("2 values", "prox.ground.delta[1]")),
+        ("if prox.horizontal[0:1] > 3 then end", ("2 values", "prox.horizontal[0]")),
+    ],
+)
+@pytest.mark.parametrize("language", ["en", "de", "fr", "it"])
+def test_a_hint_names_what_can_be_written_in_every_language(source, words, language):
+    said = refused(source).hint.message(texts("compiler", language))
+    names = [word for word in words if language == "en" or not re.search("[0-9a-z] [a-z]", word)]
+    assert [word for word in names if word not in said] == []
+
+
+def test_a_whole_array_in_an_event_of_one_value_has_a_hint():
+    assert "acc[2]" in str(refused("emit level acc", events=[("level", 1)]).hint)
+
+
+def test_the_name_of_an_event_to_emit_is_corrected():
+    error = refused("emit levle 1", events=[("level", 1)])
+    assert error.hint.edit.applied("emit levle 1") == "emit level 1"
 
 
 # -- every edit helps --------------------------------------------------------------------------------------------------
@@ -239,6 +345,9 @@ MISTAKES = {
     "comment": (r"#", "//"),
     "capital": (r"\bif\b", "If"),
     "brace": (r"\bthen\b", "{"),
+    "swapped letters": (r"\bmotor\.left\b", "motor.lfet"),
+    "misspelled keyword": (r"\bonevent\b", "onevetn"),
+    "misspelled connector": (r"\bdo\b", "od"),
 }
 PROGRAMS = [vector for vector in load("aseba-compile") if vector["target"] == "thymio2"]
 

@@ -4,12 +4,13 @@ from aseba_vm import CompileError
 from aseba_vm.frontend.lexer import tokenize
 from aseba_vm.frontend.lowering import lower
 from aseba_vm.frontend.parser import parse
+from aseba_vm.frontend.symbols import SymbolTable
 from aseba_vm.frontend.syntax_tree import While, Word
 from aseba_vm.targets import THYMIO_II
 
 
 def expanded(source):
-    return lower(parse(tokenize(source), THYMIO_II), THYMIO_II.variables_size)
+    return lower(parse(tokenize(source), SymbolTable(THYMIO_II, (), ())), THYMIO_II.variables_size)
 
 
 def stores(source):

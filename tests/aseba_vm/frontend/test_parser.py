@@ -3,12 +3,13 @@ import pytest
 from aseba_vm import CompileError
 from aseba_vm.frontend.lexer import tokenize
 from aseba_vm.frontend.parser import parse
+from aseba_vm.frontend.symbols import SymbolTable
 from aseba_vm.frontend.syntax_tree import For, If, Number
 from aseba_vm.targets import THYMIO_II
 
 
-def tree(source, **definitions):
-    return parse(tokenize(source), THYMIO_II, **definitions)
+def tree(source, events=(), constants=()):
+    return parse(tokenize(source), SymbolTable(THYMIO_II, events, constants))
 
 
 def shape(source):
