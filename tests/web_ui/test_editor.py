@@ -358,6 +358,8 @@ MISTAKES = [
     ("var a\nwhile a < 3 do\na++\n", "Insert end", "var a\nwhile a < 3 do\na++\nend\n"),
     ("var a\na = 1; a = 2;\n", "Correct it", "var a\na = 1 a = 2\n"),
     ("onevent tap\nend\n", "Remove end", "onevent tap\n"),
+    ("motor.left.traget = 1\n", "Correct it", "motor.left.target = 1\n"),
+    ("onevnt tap\n", "Change it to onevent", "onevent tap\n"),
 ]
 
 

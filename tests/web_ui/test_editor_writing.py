@@ -40,6 +40,17 @@ def place_cursor(page, line, column):
         page.keyboard.press("ArrowRight")
 
 
+def test_enter_after_a_complete_word_breaks_the_line_however_slowly_it_is_typed(world, page):
+    open_page(page, world("base"))
+    open_editor(page)
+    wait_for_service(page, "/aseba_runtime/check")
+    page.focus(".cm-content")
+    page.keyboard.press("Control+a")
+    page.keyboard.press("Delete")
+    page.keyboard.type("onevent prox\nmotor.left.target = 100\nif acc[0] > 3 then\nend\n", delay=150)
+    assert text_of(page).rstrip() == "onevent prox\n\tmotor.left.target = 100\n\tif acc[0] > 3 then\n\tend"
+
+
 @pytest.mark.slow
 def test_writing_a_program_as_one_is_used_to(world, page):
     open_page(page, world("base"))

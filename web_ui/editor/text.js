@@ -4,7 +4,6 @@ import {
   autocompletion,
   closeBrackets,
   closeBracketsKeymap,
-  completionKeymap,
   snippet,
 } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyField, historyKeymap, indentWithTab, toggleLineComment } from "@codemirror/commands";
@@ -32,6 +31,7 @@ import {
 } from "@codemirror/view";
 
 import { breakpointField, breakpointGutter } from "./breakpoints.js";
+import { completionKeys } from "./completion_keys.js";
 import { explain, suggestions } from "./help.js";
 import { aseba, INDENT } from "./language.js";
 import { outline } from "./outline.js";
@@ -106,7 +106,8 @@ export function createText(options) {
     EditorState.tabSize.of(TAB_COLUMNS),
     bracketMatching(),
     closeBrackets(),
-    autocompletion({ override: [complete], icons: false }),
+    autocompletion({ override: [complete], icons: false, defaultKeymap: false }),
+    completionKeys,
     highlightActiveLine(),
     highlightSelectionMatches(),
     search({ top: true }),
@@ -137,7 +138,6 @@ export function createText(options) {
       { key: "Mod-.", run: () => (correct(), true) },
       { key: "Mod-d", run: toggleLineComment },
       ...closeBracketsKeymap,
-      ...completionKeymap,
       ...defaultKeymap,
       ...searchKeymap,
       ...historyKeymap,
