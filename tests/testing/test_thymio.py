@@ -44,6 +44,14 @@ WALL = json.dumps(
 )
 
 
+LISTENS = """
+var claps
+mic.threshold = 250
+onevent mic
+  claps++
+"""
+
+
 def alone(program: str = "none", playground: str = "base") -> Thymio:
     (thymio,) = Classroom(playground, program)
     return thymio
@@ -74,6 +82,13 @@ def test_claps_taps_and_keys_are_felt() -> None:
     thymio.tap()
     thymio.key(80)
     thymio.until(lambda: thymio["heard"] and thymio["tapped"] and thymio["keyed"] == 80, 1.0)
+
+
+def test_a_clap_is_louder_than_the_thresholds_of_vpl_and_of_the_attentive_behavior() -> None:
+    thymio = alone(LISTENS)
+    thymio.run(0.2)
+    thymio.clap()
+    thymio.until(lambda: thymio["claps"] > 0, 1.0)
 
 
 def test_a_tilt_is_felt() -> None:

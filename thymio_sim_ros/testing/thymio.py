@@ -12,6 +12,7 @@ from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.device.robot_device import RobotDevice
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
+from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL
 from thymio_sim_ros.sim.commands import (
     BUTTONS,
     LED_GROUPS,
@@ -191,8 +192,8 @@ class Thymio:
                 self._press(button, pressed=pressed)
             self.run(seconds)
 
-    def clap(self, loudness: int = 200) -> None:
-        """Clap beside it; `loudness` is in units of mic.intensity, 0…255."""
+    def clap(self, loudness: int = FULL_LEVEL) -> None:
+        """Clap beside it; `loudness` is in units of mic.intensity, 0…255. The clap row of VPL needs more than 250."""
         self.post(Clap(loudness))
 
     def tap(self) -> None:

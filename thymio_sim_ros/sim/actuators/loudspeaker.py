@@ -24,7 +24,7 @@ from thymio_sim_ros.sim.commands import (
 from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Native
 from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
-__all__ = ["ACTUATOR", "SPEAKER_SHARE", "LoudspeakerState"]
+__all__ = ["ACTUATOR", "LoudspeakerState"]
 
 ALARM_NS = 3_000_000_000
 """Between two sounds of an alarm (docs/spec/ros-interface.md section 4.2)."""
@@ -32,9 +32,6 @@ _NO_SOUND = b"\x80"
 """One sample of silence: a sound of no length ends, too."""
 SHORTEST_TICKS = 4
 """Ticks of the shortest tone that a program can ask for (section 6.3)."""
-SPEAKER_SHARE = 0.6
-"""Level near a loudspeaker per count of its samples' peak-to-peak value. Assumption: clear beside the robot, and always
-below the 246 that the built-in attentive behavior takes for a clap (docs/spec/thymio-behaviors.md section 8)."""
 
 
 @dataclass(slots=True)
@@ -63,8 +60,12 @@ class LoudspeakerState:
         return self.note is None and not self.samples
 
     def sound_level(self, _now_ns: int) -> float:
-        """Return the level near the robot; 0 is silent."""
-        return SPEAKER_SHARE * self.sounding_level
+        """Return the level near the robot; 0 is silent.
+
+        Assumption: a loudspeaker at full swing drives the microphone beside it to full swing, as in classrooms, where
+        tones start the clap rows of VPL, which need more than 250.
+        """
+        return self.sounding_level
 
     def play(self, notes: tuple[Note, ...], samples: bytes, now_ns: int) -> None:
         """Start to play notes or samples; without either, be silent."""
