@@ -33,6 +33,7 @@ import { applyTransforms } from "./transforms.js";
  * @property {Readonly<Record<string, string>>} worldNames  names of the robots in the world, by their names in topics
  * @property {string[]} fallen    robots that fell off an edge, by their names in topics
  * @property {string[]} movables  names of movable objects
+ * @property {string[]} unconnected  why endpoints of ROS nodes are not connected, in English
  */
 /** @typedef {Readonly<Record<string, string>>} Label   texts by language */
 /**
@@ -277,8 +278,9 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs:
       ),
       fallen: (reported.robots ?? []).filter((/** @type {any} */ robot) => robot.fallen).map((/** @type {any} */ { name }) => name),
       movables: reported.movables ?? [],
+      unconnected: reported.unconnected ?? [],
     };
-    return withChannels({ ...state, simulator }, state);
+    return withChannels(withUnconnected({ ...state, simulator }, state.simulator?.unconnected ?? []), state);
   },
   "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviors: JSON.parse(value.data) }),
   "/simulator/_sensors": (state, value) => ({ ...state, sensors: JSON.parse(value.data) }),
@@ -316,6 +318,27 @@ function withNotice(state, { level, text, technical = "", cause = "" }) {
 function withoutNotices(state, causes) {
   const notices = state.notices.filter(({ cause }) => cause === "" || !causes.includes(cause));
   return notices.length === state.notices.length ? state : { ...state, notices };
+}
+
+/**
+ * Show what is new among the ROS nodes that are not connected, and hide what is no longer true.
+ *
+ * @param {State} state @param {readonly string[]} before @returns {State}
+ */
+function withUnconnected(state, before) {
+  const now = state.simulator?.unconnected ?? [];
+  const gone = before.filter((line) => !now.includes(line)).map(unconnectedCause);
+  return now
+    .filter((line) => !before.includes(line))
+    .reduce(
+      (shown, line) => withNotice(shown, { level: "warning", text: "", technical: line, cause: unconnectedCause(line) }),
+      withoutNotices(state, gone),
+    );
+}
+
+/** Cause of notices about ROS nodes that are not connected. @param {string} line */
+function unconnectedCause(line) {
+  return `unconnected ${line}`;
 }
 
 /** Cause of notices about a rejected file. @param {UploadKind} what */

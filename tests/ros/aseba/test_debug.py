@@ -170,7 +170,7 @@ def test_all_robots_are_on_diagnostics(ros, runtime):
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")
     ros.until(lambda: any(len(message.status) == 3 for message in diagnostics))
     names = next([one.name for one in message.status] for message in diagnostics if len(message.status) == 3)
-    assert names == ["aseba: anna", "aseba: bert", "aseba_runtime: inputs"]
+    assert names == ["aseba: anna", "aseba: bert", "aseba_runtime: connections"]
 
 
 def test_simulated_time_that_jumps_back_ends_a_pause(ros, simulation, runtime):

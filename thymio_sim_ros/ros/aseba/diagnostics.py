@@ -1,4 +1,4 @@
-"""Publishes `/diagnostics` of the runtime: the status of each robot, publishers with the wrong type."""
+"""Publishes `/diagnostics` of the runtime: the status of each robot, endpoints that are not connected."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.interface import qos
-from thymio_sim_ros.ros.rclpy_ext.type_mismatch import TypeMismatches
+from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 
 __all__ = ["DiagnosedRobot", "RuntimeDiagnostics"]
 
@@ -31,14 +31,14 @@ class RuntimeDiagnostics:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
-        self._type_mismatches = TypeMismatches(node)
+        self._connections = Connections(node)
 
     def publish_all(self, robots: Sequence[DiagnosedRobot]) -> None:
-        """Observe the load of all robots, poll for mismatched types and publish all statuses."""
+        """Observe the load of all robots, poll for endpoints that are not connected and publish all statuses."""
         for robot in robots:
             robot.observe_load()
-        self._type_mismatches.poll()
-        self._publish([*(robot.status_message for robot in robots), self._type_mismatches.status()])
+        self._connections.poll()
+        self._publish([*(robot.status_message for robot in robots), self._connections.status()])
 
     def publish_changed(self, robot: DiagnosedRobot) -> None:
         """Publish the status of one robot, which has changed."""

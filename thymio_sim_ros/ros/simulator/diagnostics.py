@@ -1,4 +1,4 @@
-"""Publishes `/diagnostics`: pace of the simulation, rejected messages, types of inputs, clock conflicts."""
+"""Publishes `/diagnostics`: pace of the simulation, rejected messages, wrong endpoints, clock conflicts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.interface.headers import SECOND_NS, stamp
-from thymio_sim_ros.ros.rclpy_ext.type_mismatch import TypeMismatches
+from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.simulator.clock_conflict import ClockConflict
 from thymio_sim_ros.ros.simulator.tick_scheduler import TickScheduler
 from thymio_sim_ros.ros.simulator.world_endpoints import WorldState
@@ -33,16 +33,16 @@ class MessageCounters:
 class Diagnostics:
     """Collects the statuses of the node and publishes them together."""
 
-    def __init__(self, node: Node, counters: MessageCounters, clock_conflict: ClockConflict | None) -> None:
+    def __init__(
+        self, node: Node, counters: MessageCounters, connections: Connections, clock_conflict: ClockConflict | None
+    ) -> None:
         self._name = node.get_fully_qualified_name().removeprefix("/")
-        self._counters, self._clock_conflict = counters, clock_conflict
-        self._type_mismatches = TypeMismatches(node)
+        self._counters, self._connections, self._clock_conflict = counters, connections, clock_conflict
         self._publisher = node.create_publisher(TOPICS[TOPIC].type, TOPIC, TOPICS[TOPIC].profile)
 
     def publish(self, state: WorldState, scheduler: TickScheduler) -> None:
-        """Poll for mismatched types and clock conflicts, then publish all statuses."""
-        self._type_mismatches.poll()
-        statuses = [self._pace(state, scheduler), self._type_mismatches.status()]
+        """Poll for clock conflicts, then publish all statuses."""
+        statuses = [self._pace(state, scheduler), self._connections.status()]
         if self._clock_conflict is not None:
             self._clock_conflict.poll()
             statuses.append(self._clock_conflict.status())

@@ -25,6 +25,7 @@ from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
+from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
@@ -98,12 +99,15 @@ class Simulator:
             world = new_world(prepared.playground, values, prepared.ground)
         else:
             world = logged.new_world(prepared.ground)
-        self.runner = WorldRunner(self.node, self.params, self.endpoints, self._recording, prepared, world, logged)
+        self._connections = Connections(self.node, values.switched_off)
+        self.runner = WorldRunner(
+            self.node, self.params, self.endpoints, self._connections, self._recording, prepared, world, logged
+        )
         self.runner.start()
         if logged is not None:
             self.runner.step(logged.tick_at(values.replay_from))
         self._services = WorldServices(self.control, self.runner, self.endpoints.robots, self._counters)
-        self._diagnostics = Diagnostics(self.node, self._counters, self.endpoints.clock.conflict)
+        self._diagnostics = Diagnostics(self.node, self._counters, self._connections, self.endpoints.clock.conflict)
         self.parameter_callbacks = ParameterCallbacks(self.node, self.params, self._loader, self.runner)
         self._interfaces: services.SimInterfaces | None = None
         if isinstance(self.control, LocalNode):
@@ -153,6 +157,7 @@ class Simulator:
             self.endpoints.clock.publish(self.runner.world.now_ns, last=True)
             self.runner.update_robots()
             self.endpoints.publish_poses(self.runner.world)
+        self._connections.poll()
         self.runner.publish_state()
         self._diagnostics.publish(self.runner.state(), self.runner.scheduler)
 

@@ -189,12 +189,22 @@ class SimulatorParams:
         )
 
     @property
+    def switched_off(self) -> Mapping[str, str]:
+        """Topics that are not published, with the parameters that would switch them on."""
+        parameters = {
+            DESCRIPTION: "publish_description",
+            TRUTH: "publish_ground_truth",
+            "map": "publish_map",
+            "clock": "publish_clock",
+        }
+        return {topic: name for topic, name in parameters.items() if not getattr(self, name)}
+
+    @property
     def endpoint_options(self) -> EndpointOptions:
         """Options for the topics of all robots."""
-        left_out = {DESCRIPTION: not self.publish_description, TRUTH: not self.publish_ground_truth}
         return EndpointOptions(
             stamped_cmd_vel=self.stamped_cmd_vel,
-            left_out=frozenset(topic for topic, is_out in left_out.items() if is_out),
+            left_out=frozenset(self.switched_off),
             every_ns={JOINTS: _period_ns(self.odom_max_rate)},
         )
 

@@ -15,6 +15,7 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
+from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, deliver
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
@@ -30,7 +31,7 @@ from thymio_sim_ros.sim.world import World
 __all__ = ["WorldRunner"]
 
 MAX_NOTES = 20
-"""Number of notes about a playground in the state; the log has all of them."""
+"""Number of notes, and of endpoints that are not connected, in the state; the log has all of them."""
 
 
 class WorldRunner:
@@ -41,6 +42,7 @@ class WorldRunner:
         node: Node,
         params: CurrentParams,
         endpoints: SimulatorEndpoints,
+        connections: Connections,
         recording: Recording,
         prepared: PreparedPlayground,
         world: World,
@@ -48,6 +50,7 @@ class WorldRunner:
     ) -> None:
         """`start` publishes the world; endpoints may use this object only then. `logged`: what happens in the world."""
         self._node, self._params, self._endpoints, self._recording = node, params, endpoints, recording
+        self._connections = connections
         self.prepared = prepared
         """The playground of the world."""
         self.world = world
@@ -151,6 +154,7 @@ class WorldRunner:
             robots=self._endpoints.robots.names,
             raw=self._endpoints.world.raw.topic_name,
             fallen=self._fallen(),
+            unconnected=tuple(map(str, self._connections.unconnected[:MAX_NOTES])),
         )
 
     def publish_state(self) -> None:

@@ -34,7 +34,7 @@ TOPICS: Mapping[str, WorldTopic] = {
         String,
         "1, change",
         "JSON: playground, paused, factors, seed, ns, robots and which of them fell, movable objects, the "
-        "topic `~/_raw`",
+        "topic `~/_raw`, why endpoints of other nodes are not connected",
         qos.TRANSIENT_LOCAL,
     ),
     "~/_raw": WorldTopic(
@@ -67,7 +67,7 @@ TOPICS: Mapping[str, WorldTopic] = {
         DiagnosticArray,
         "1",
         "real-time factor requested and achieved, late and dropped ticks, rejected and clamped messages, robots; "
-        "publishers with the wrong type; another simulator on the same clock",
+        "endpoints of other nodes that are not connected; another simulator on the same clock",
         qos.SENSOR,
     ),
 }

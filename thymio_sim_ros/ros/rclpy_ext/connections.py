@@ -1,0 +1,349 @@
+"""Detects endpoints of other nodes that ROS silently does not connect to a node, and says why, with the cure.
+
+Such an endpoint has another type than ours, an incompatible QoS, or another name: a namespace that the robot does not
+have, a misspelled name, or a topic that is switched off. The usual cases are a TwistStamped on `cmd_vel`, as published
+by newer teleoperation nodes and Nav2, and a node in a namespace.
+
+The graph is queried per node, because there are fewer nodes than topics; the period depends on the cost of the query.
+"""
+
+from __future__ import annotations
+
+import difflib
+import time
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from rclpy.node import Node, NodeNameNonExistentError
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from thymio_sim_ros.lockstep.matching import fit
+from thymio_sim_ros.type_names import type_name
+
+__all__ = ["CLIENT", "PUBLISHER", "SERVER", "SUBSCRIBER", "Connections", "Side", "Unconnected", "wrong_type"]
+
+SHARE = 0.002
+"""Largest share of one core that polling may use."""
+POLL_PERIOD_S = 1.0
+"""Shortest wall time between two polls."""
+VELOCITY, STAMPED_PARAMETER = "cmd_vel", "stamped_cmd_vel"
+NAMES_PARAMETER = "robot_names"
+SIMILAR = 0.8
+"""Least similarity of two words, of which one may be a misspelling of the other (`difflib`)."""
+MAX_NAMES = 3
+"""Largest number of names that a warning proposes."""
+
+_OURS = ("simulator", "aseba_runtime", "_aseba_runtime")
+"""Nodes of this package with many endpoints, all of which fit: they are skipped, since queries cost time."""
+_OF_EVERY_NODE = frozenset({
+    "rosout", "parameter_events", "describe_parameters", "get_parameter_types", "get_parameters", "list_parameters",
+    "set_parameters", "set_parameters_atomically", "get_type_description",
+})  # fmt: skip
+"""Last words of names that every node has: a node that uses those of another node does not mean ours."""
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One side of a connection. `effect`: of an endpoint without a peer; `use`: what the user does there."""
+
+    name: str
+    peer: str
+    effect: str
+    use: str
+
+
+PUBLISHER = Side("publisher", "subscriber", "its messages never arrive", "Publish on")
+SUBSCRIBER = Side("subscriber", "publisher", "it gets no message", "Subscribe to")
+CLIENT = Side("client", "server", "its calls are never answered", "Call")
+SERVER = Side("server", "client", "it gets no call", "Serve")
+
+
+@dataclass(frozen=True, slots=True)
+class _Query:
+    """How endpoints of a side and their peers are found: methods of a node, and the attribute with our own peers."""
+
+    side: Side
+    by_node: str
+    own_peers: str
+    count_peers: str
+
+
+_QUERIES = (
+    _Query(PUBLISHER, "get_publisher_names_and_types_by_node", "subscriptions", "count_subscribers"),
+    _Query(SUBSCRIBER, "get_subscriber_names_and_types_by_node", "publishers", "count_publishers"),
+    _Query(CLIENT, "get_client_names_and_types_by_node", "services", "count_services"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Unconnected:
+    """An endpoint that is not connected: fully qualified name and node, what was found and expected, and the cure."""
+
+    topic: str
+    node: str
+    side: Side
+    found: str
+    expected: str
+    cure: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.topic} has a {self.side.name} of {self.found} by node {self.node}; expected {self.expected}:"
+            f" {self.side.effect}. {self.cure}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Endpoint:
+    """An endpoint of another node; `node` without, `namespace` with a slash at its end only if it is the root."""
+
+    query: _Query
+    topic: str
+    type: str
+    node: str
+    namespace: str
+
+    @property
+    def full_node(self) -> str:
+        """Fully qualified name of the node."""
+        return _full(self.namespace, self.node)
+
+
+class _OwnNames:
+    """The names and types of endpoints of our node, with an index by their last words."""
+
+    def __init__(self, endpoints: Sequence[Any]) -> None:
+        self.endpoints = endpoints
+        self.types = dict(map(_name_and_type, endpoints))
+        self._by_word: dict[str, list[str]] = {}
+        for name in self.types:
+            if (word := _last(name)) not in _OF_EVERY_NODE:
+                self._by_word.setdefault(word, []).append(name)
+        self._plain = {_plain(word): word for word in sorted(self._by_word)}
+        self._similar: dict[str, str | None] = {}
+
+    def meant(self, name: str, kind: str) -> list[str]:
+        """Return the names that another one could mean: those with the same last word, or a similar one and its type.
+
+        Of several, those that share the most words at the end, of these those with its type, of these the shortest.
+        """
+        near = self._by_word.get(_last(name), [])
+        if not near and (word := self._similar_word(_last(name))) is not None:
+            near = [one for one in self._by_word[word] if self.types[one] == kind]
+        ranks = {one: (_common_end(name, one), self.types[one] == kind, -one.count("/")) for one in near}
+        best = max(ranks.values(), default=None)
+        return [one for one in near if ranks[one] == best]
+
+    def _similar_word(self, word: str) -> str | None:
+        if word not in self._similar:
+            found = difflib.get_close_matches(_plain(word), self._plain, n=1, cutoff=SIMILAR)
+            self._similar[word] = self._plain[found[0]] if found else None
+        return self._similar[word]
+
+
+class Connections:
+    """Finds endpoints that are not connected to the topics and services of a node, and warns once about each."""
+
+    def __init__(self, node: Node, switched_off: Mapping[str, str] | None = None) -> None:
+        """`switched_off`: parameters by the topics that they would switch on, relative to a robot or the node."""
+        self._node = node
+        self._switched_off = switched_off or {}
+        self._own: dict[Side, _OwnNames] = {}
+        self._misfits: dict[_Endpoint, Unconnected | None] = {}
+        """Endpoints with name and type of ours, with what is wrong with their QoS."""
+        self._suspects: frozenset[_Endpoint] = frozenset()
+        self._next_s = 0.0
+        self.unconnected: tuple[Unconnected, ...] = ()
+        """Result of the last poll."""
+
+    def poll(self) -> None:
+        """Query the graph if it is time, and warn about new endpoints that are not connected."""
+        if time.monotonic() < self._next_s:
+            return
+        began_s = time.thread_time()
+        before, self.unconnected = self.unconnected, self.find()
+        for one in self.unconnected:
+            if one not in before:
+                self._node.get_logger().warning(str(one))
+        cost_s = time.thread_time() - began_s
+        self._next_s = time.monotonic() + max(POLL_PERIOD_S, cost_s / SHARE)
+
+    def status(self) -> DiagnosticStatus:
+        """Return the entry for `/diagnostics`: WARN while an endpoint is not connected."""
+        count = len(self.unconnected)
+        return DiagnosticStatus(
+            level=DiagnosticStatus.WARN if count else DiagnosticStatus.OK,
+            name=f"{self._node.get_name()}: connections",
+            hardware_id="thymio_sim_ros",
+            message=str(self.unconnected[0]) if count else "all nodes use the names and types of this node",
+            values=[KeyValue(key=one.topic, value=str(one)) for one in self.unconnected],
+        )
+
+    def find(self, *, is_settled: bool = False) -> tuple[Unconnected, ...]:
+        """Return all endpoints that are not connected.
+
+        One with a name that is not ours is included when it is found a second time, since its peer may be about to
+        start; with `is_settled` the first time.
+        """
+        found: list[Unconnected | None] = []
+        suspects: set[_Endpoint] = set()
+        misfits, self._misfits = self._misfits, {}
+        for one in self._others():
+            types = self._own_names(one.query).types
+            if one.topic not in types:
+                if not self._may_be_wrong(one) or getattr(self._node, one.query.count_peers)(one.topic):
+                    continue
+                suspects.add(one)
+                if is_settled or one in self._suspects:
+                    found.append(self._wrong_name(one))
+            elif one.type != types[one.topic]:
+                found.append(wrong_type(one.query.side, one.topic, one.full_node, one.type, types))
+            else:
+                self._misfits[one] = misfits[one] if one in misfits else self._wrong_qos(one)
+                found.append(self._misfits[one])
+        self._suspects = frozenset(suspects)
+        return tuple(dict.fromkeys(one for one in found if one is not None))
+
+    def _others(self) -> Iterator[_Endpoint]:
+        own = (self._node.get_name(), self._node.get_namespace())
+        for name, namespace in dict.fromkeys(self._node.get_node_names_and_namespaces()):
+            if (name, namespace) == own or (namespace == own[1] and name in _OURS):
+                continue
+            for query in _QUERIES:
+                try:
+                    listed = getattr(self._node, query.by_node)(name, namespace)
+                except NodeNameNonExistentError:  # the node has just ended
+                    break
+                yield from (_Endpoint(query, topic, kind, name, namespace) for topic, types in listed for kind in types)
+
+    def _own_names(self, query: _Query) -> _OwnNames:
+        """Return the names of our node that connect to a side."""
+        endpoints = list(getattr(self._node, query.own_peers))
+        known = self._own.get(query.side)
+        if known is None or known.endpoints != endpoints:
+            self._own[query.side] = known = _OwnNames(endpoints)
+        return known
+
+    def _may_be_wrong(self, one: _Endpoint) -> bool:
+        """Whether a name that is not ours could mean one of ours."""
+        return bool(self._parameter_of(one) or self._own_names(one.query).meant(one.topic, one.type))
+
+    def _parameter_of(self, one: _Endpoint) -> str:
+        """Return the parameter that would switch on the publisher of a topic; empty if there is none."""
+        if one.query.side is not SUBSCRIBER:
+            return ""
+        return next((of for topic, of in self._switched_off.items() if one.topic.endswith(f"/{topic}")), "")
+
+    def _wrong_name(self, one: _Endpoint) -> Unconnected:
+        side, names = one.query.side, self._own_names(one.query)
+        meant = names.meant(one.topic, one.type)
+        if parameter := self._parameter_of(one):
+            cure = f"It is switched off: start the simulator with {_argument(f'{parameter}:=true')}"
+            return Unconnected(one.topic, one.full_node, side, one.type, f"a {side.peer}", cure)
+        heard = " or ".join(
+            name if names.types[name] == one.type else f"{name} of {names.types[name]}" for name in meant[:MAX_NAMES]
+        )
+        cures = [f"{side.use} {meant[0]}"]
+        space = one.namespace.rstrip("/")
+        if space and one.topic.removeprefix(space) in meant:
+            cures.append(f"start the node without the namespace {space}")
+        if (robot := self._robot_of(one.topic, meant)) and self._node.has_parameter(NAMES_PARAMETER):
+            argument = _argument(f"{NAMES_PARAMETER}:=[{robot}]")
+            cures.append(f"start the simulator with {argument}")
+        expected = f"{heard}, since {one.topic} has no {side.peer}"
+        return Unconnected(one.topic, one.full_node, side, one.type, expected, _alternatives(cures))
+
+    def _robot_of(self, topic: str, meant: Collection[str]) -> str:
+        """Return the name that a robot without a name would need for this topic; empty if that is not the reason."""
+        space = self._node.get_namespace().rstrip("/")
+        robot, _, rest = topic.removeprefix(f"{space}/").partition("/")
+        return robot if topic.startswith(f"{space}/") and f"{space}/{rest}" in meant else ""
+
+    def _wrong_qos(self, one: _Endpoint) -> Unconnected | None:
+        """Return what is wrong with the QoS of an endpoint; services have the same everywhere."""
+        if one.query.side is CLIENT:
+            return None
+        published = self._node.get_publishers_info_by_topic(one.topic)
+        subscribed = self._node.get_subscriptions_info_by_topic(one.topic)
+        is_publisher = one.query.side is PUBLISHER
+        theirs, ours = (published, subscribed) if is_publisher else (subscribed, published)
+        own = self._node.get_fully_qualified_name()
+        for info in theirs:
+            for peer in ours:
+                if (_node_of(info), _node_of(peer)) != (one.full_node, own):
+                    continue
+                found, expected = info.qos_profile, peer.qos_profile
+                pair = (found, expected) if is_publisher else (expected, found)
+                if not fit(*pair):
+                    policy, what, need = _misfit(found, expected)
+                    return Unconnected(
+                        one.topic, one.full_node, one.query.side, f"{one.type} with {policy} {what}",
+                        f"{policy} {need}", f"Create it with the {policy} {need}",
+                    )  # fmt: skip
+        return None
+
+
+def wrong_type(side: Side, topic: str, node: str, found: str, types: Mapping[str, str]) -> Unconnected:
+    """Describe an endpoint of type `found` on a topic of another one; `types`: those of all names of ours."""
+    return Unconnected(topic, node, side, found, types[topic], cure(side, topic, found, types))
+
+
+def cure(side: Side, topic: str, found: str, types: Mapping[str, str]) -> str:
+    """Return advice for an endpoint of type `found` on a topic of another one; `types`: those of all names of ours."""
+    space, _, word = topic.rpartition("/")
+    family = VELOCITY if word.startswith(VELOCITY) else word
+    others = [name for name, kind in types.items() if kind == found and name.startswith(f"{space}/{family}")]
+    if not others:
+        return f"Use the type {types[topic]}"
+    is_stamped = found.endswith("TwistStamped") and word == VELOCITY
+    option = f", or start the simulator with {_argument(f'{STAMPED_PARAMETER}:=true')}" if is_stamped else ""
+    return f"{side.use} {others[0]}{option}"
+
+
+def _misfit(found: QoSProfile, expected: QoSProfile) -> tuple[str, str, str]:
+    """Return the policy that does not fit, its value and the value that fits."""
+    for policy, kind in (("reliability", ReliabilityPolicy), ("durability", DurabilityPolicy)):
+        what, need = (kind(getattr(profile, policy)).name.lower() for profile in (found, expected))
+        if what != need:
+            return policy, what, need
+    return "deadline and liveliness", "of its own", "of the default profile"
+
+
+def _argument(rule: str) -> str:
+    """Return the command line argument that sets a parameter, for `thymio-sim` as for `ros2 run`."""
+    return f"--ros-args -p '{rule}'" if "[" in rule else f"--ros-args -p {rule}"
+
+
+def _name_and_type(endpoint: Any) -> tuple[str, str]:
+    if hasattr(endpoint, "srv_type"):
+        return endpoint.service_name, type_name(endpoint.srv_type)
+    return endpoint.topic_name, type_name(endpoint.msg_type)
+
+
+def _node_of(info: Any) -> str:
+    return _full(info.node_namespace, info.node_name)
+
+
+def _full(namespace: str, name: str) -> str:
+    return f"{namespace.rstrip('/')}/{name}"
+
+
+def _last(name: str) -> str:
+    return name.rpartition("/")[2]
+
+
+def _plain(word: str) -> str:
+    return word.lower().replace("_", "")
+
+
+def _common_end(one: str, other: str) -> int:
+    """Return the number of words at their ends that two names share."""
+    pairs = zip(reversed(one.split("/")), reversed(other.split("/")), strict=False)
+    return next((count for count, (left, right) in enumerate(pairs) if left != right), len(one))
+
+
+def _alternatives(parts: Iterable[str]) -> str:
+    *first, last = parts
+    return f"{', '.join(first)}, or {last}" if first else last
