@@ -7,18 +7,19 @@ import threading
 
 import pytest
 import rclpy
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Range
 from std_msgs.msg import Bool, String
-from std_srvs.srv import Trigger
+from std_srvs.srv import Empty, Trigger
 
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 from thymio_sim_ros.testing.ros import Ros, Simulation
 from thymio_sim_ros.testing.ros.domain import reserved
+from thymio_sim_ros.testing.ros.student import StudentError
 
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -66,6 +67,22 @@ class Wanderer(Node):
         command = Twist()
         command.linear.x, command.angular.z = (0.1, 0.0) if seen.range > 0.1 else (0.0, 1.0)
         self.wheels.publish(command)
+
+
+class Stamped(Node):
+    """Publishes as newer teleoperation nodes do."""
+
+    def __init__(self):
+        super().__init__("stamped")
+        self.create_publisher(TwistStamped, "cmd_vel", 10)
+
+
+class Asking(Node):
+    """Calls a service as another type."""
+
+    def __init__(self):
+        super().__init__("asking")
+        self.create_client(Empty, "reset_odometry")
 
 
 def test_a_node_under_test_needs_to_know_nothing_of_tests(ros):
@@ -171,6 +188,31 @@ def test_a_time_out_is_reported_with_all_that_is_known(ros, simulation):
     assert "/cmd_vle geometry_msgs/msg/Twist: 1 publisher, 0 subscribers (no subscriber)" in lines
     assert "/proximity/center sensor_msgs/msg/Range: 1 publisher, 1 subscriber" in lines
     assert lines[-1].endswith(" other topics")
+
+
+def test_an_endpoint_of_the_wrong_type_is_refused_with_the_cure(ros, simulation):
+    simulation()
+    with pytest.raises(StudentError) as caught:
+        ros.start(Stamped)
+    assert str(caught.value) == (
+        "/cmd_vel has a publisher of geometry_msgs/msg/TwistStamped by node /stamped; expected geometry_msgs/msg/Twist:"
+        " its messages never arrive. Publish on /cmd_vel_stamped, or start the simulator with --ros-args -p"
+        " stamped_cmd_vel:=true"
+    )
+    with pytest.raises(StudentError, match=r"/reset_odometry has a client of std_srvs/srv/Empty by node /asking;"):
+        ros.start(Asking)
+
+
+def test_a_node_in_a_namespace_that_there_is_not_is_reported(ros, simulation):
+    sim = simulation()
+    ros.start(Wanderer, namespace="thymio0")
+    with pytest.raises(pytest.fail.Exception) as caught:
+        sim.until(lambda: sim.thymio.pose.x_m > 0.1, seconds=0.1)
+    assert (
+        "/thymio0/cmd_vel has a publisher of geometry_msgs/msg/Twist by node /thymio0/wanderer; expected /cmd_vel"
+        in (str(caught.value))
+    )
+    assert "/thymio0/proximity/center has a subscriber of sensor_msgs/msg/Range" in str(caught.value)
 
 
 def test_time_that_stood_still_is_reported(ros, simulation):

@@ -45,9 +45,11 @@ def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:
             continue
         sides = f"{pluralized(len(publishers), 'publisher')}, {pluralized(len(subscribers), 'subscriber')}"
         unmatched = "" if publishers and subscribers else " (no subscriber)" if publishers else " (no publisher)"
-        unfit = [
-            (one, other) for one in publishers for other in subscribers if not fit(one.qos_profile, other.qos_profile)
-        ]
+        pairs = [(one, other) for one in publishers for other in subscribers]
+        same = [(one, other) for one, other in pairs if one.topic_type == other.topic_type]
+        if pairs and not same:
+            unmatched = " (different types: they are not connected)"
+        unfit = [(one, other) for one, other in same if not fit(one.qos_profile, other.qos_profile)]
         quality = f" ({_name(unfit[0][0])} and {_name(unfit[0][1])} have incompatible QoS)" if unfit else ""
         lines.append(f"{topic} {' '.join(kinds)}: {sides}{unmatched}{quality}")
     return [*lines, f"and {pluralized(others, 'other topic')}"] if others else lines

@@ -23,6 +23,7 @@ from thymio_sim_ros import course_packages
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
+from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
 from thymio_sim_ros.testing.awaited import Awaited
@@ -418,6 +419,8 @@ class Ros:
         lines += [*self._remarks, *self.programs.lines()]
         lines += [repr(recorder) for recorder in self._recorders]
         ours = [TEST_NODE, *(life.node.get_name() for life in self._lives)]
+        for life in self._lives:
+            lines += [str(one) for one in Connections(life.node).find(is_settled=True)]
         pytest.fail("\n".join([*lines, *discovery.topic_lines(self.node, ours)]))
 
     def close(self) -> None:

@@ -19,12 +19,15 @@ from types import ModuleType
 from typing import Any
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.context import Context
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Side, wrong_type
+from thymio_sim_ros.type_names import type_name
 
 __all__ = ["StudentError", "load_class", "place", "remap_arguments", "spinning_forbidden", "start"]
 
@@ -106,6 +109,22 @@ def start(
             kwargs["parameter_overrides"] = [*(kwargs.get("parameter_overrides") or []), *overrides]
             super().__init__(*args, **kwargs)
 
+        def create_publisher(self, msg_type: Any, topic: str, *args: Any, **kwargs: Any) -> Any:
+            with _types_explained(self, PUBLISHER, msg_type, topic):
+                return super().create_publisher(msg_type, topic, *args, **kwargs)
+
+        def create_subscription(self, msg_type: Any, topic: str, *args: Any, **kwargs: Any) -> Any:
+            with _types_explained(self, SUBSCRIBER, msg_type, topic):
+                return super().create_subscription(msg_type, topic, *args, **kwargs)
+
+        def create_client(self, srv_type: Any, srv_name: str, *args: Any, **kwargs: Any) -> Any:
+            with _types_explained(self, CLIENT, srv_type, srv_name):
+                return super().create_client(srv_type, srv_name, *args, **kwargs)
+
+        def create_service(self, srv_type: Any, srv_name: str, *args: Any, **kwargs: Any) -> Any:
+            with _types_explained(self, SERVER, srv_type, srv_name):
+                return super().create_service(srv_type, srv_name, *args, **kwargs)
+
     derived = type(kind.__name__, (kind, WithTestContext), {"__module__": kind.__module__, "__doc__": kind.__doc__})
     with spinning_forbidden():
         node: Node = derived(**arguments)
@@ -113,6 +132,25 @@ def start(
         node.destroy_node()
         raise StudentError(f"{kind.__name__} calls Node.__init__ itself: expected super().__init__(…)")
     return node
+
+
+@contextlib.contextmanager
+def _types_explained(node: Node, side: Side, kind: Any, name: str) -> Iterator[None]:
+    """Raise StudentError for an endpoint of another type than the topic or service has.
+
+    One participant refuses it; in processes of their own both would exist without a connection.
+    """
+    try:
+        yield
+    except RCLError as error:
+        is_topic = side in (PUBLISHER, SUBSCRIBER)
+        full = node.resolve_topic_name(name) if is_topic else node.resolve_service_name(name)
+        listed = node.get_topic_names_and_types() if is_topic else node.get_service_names_and_types()
+        types = {topic: kinds[0] for topic, kinds in listed}
+        found = type_name(kind)
+        if types.get(full, found) == found:
+            raise
+        raise StudentError(str(wrong_type(side, full, node.get_fully_qualified_name(), found, types))) from error
 
 
 def place(kind: type[Node]) -> str:
