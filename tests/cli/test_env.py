@@ -14,6 +14,7 @@ dds_profile = pytest.importorskip("thymio_sim_ros.ros.compat.dds_profile")
 
 PREFIXES = "AMENT_PREFIX_PATH"
 PATH = "PYTHONPATH"
+CHECKS = "ROS_PYTHON_CHECK_FIELDS"
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 
 
@@ -22,7 +23,7 @@ def _unset(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     others = ("FASTDDS_DEFAULT_PROFILES_FILE", "RMW_FASTRTPS_USE_QOS_FROM_XML")
-    for name in (PATH, PREFIXES, RANGE, dds_profile.VARIABLE, *others):
+    for name in (PATH, PREFIXES, RANGE, CHECKS, dds_profile.VARIABLE, *others):
         monkeypatch.delenv(name, raising=False)
 
 
@@ -34,10 +35,11 @@ def printed(capsys):
     return dict(assignment.split("=", 1) for _, assignment in words)
 
 
-def test_it_prints_discovery_range_and_profile(capsys):
+def test_it_prints_discovery_range_checks_and_profile(capsys):
     found = printed(capsys)
-    assert (found[RANGE], found[dds_profile.VARIABLE]) == ("LOCALHOST", str(dds_profile.ANNOUNCING))
-    assert found.keys() == {RANGE, dds_profile.VARIABLE, PATH}
+    assert (found[RANGE], found[CHECKS]) == ("LOCALHOST", "1")
+    assert found[dds_profile.VARIABLE] == str(dds_profile.ANNOUNCING)
+    assert found.keys() == {RANGE, CHECKS, dds_profile.VARIABLE, PATH}
 
 
 def test_the_packages_of_the_wheels_are_found(capsys, tmp_path):
@@ -45,7 +47,7 @@ def test_the_packages_of_the_wheels_are_found(capsys, tmp_path):
     assert printed(capsys)[PREFIXES] == str(tmp_path)
 
 
-@pytest.mark.parametrize("name", [RANGE, PREFIXES, dds_profile.VARIABLE])
+@pytest.mark.parametrize("name", [RANGE, PREFIXES, CHECKS, dds_profile.VARIABLE])
 def test_a_variable_that_is_set_is_left_alone(capsys, monkeypatch, tmp_path, name):
     (tmp_path / "share" / "ament_index").mkdir(parents=True)
     monkeypatch.setenv(name, "theirs")

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from aseba_vm.cli.output import standard_output
-from thymio_sim_ros import course_packages
+from thymio_sim_ros import course_packages, field_checks
 from thymio_sim_ros.cli.options import check_ros
 
 __all__ = ["run"]
@@ -23,8 +23,9 @@ In each terminal, before `ros2` or a node of your own is started:
 
 Discovery is limited to this computer, as that of `thymio-sim`, and every process announces itself to new ones four
 times a second, so that they find it at once. Where ROS comes from Python wheels, `ros2 run` and `ros2 interface` find
-its packages. `tf2_ros`, `tf2_msgs`, `tf2_geometry_msgs` and `tf_transformations` can be imported, also where they are
-not installed. Variables that are set already are not printed; PYTHONPATH keeps its folders and gets one more.
+its packages. Nodes in Python report a value of the wrong type, such as `linear.x = 1`. `tf2_ros`, `tf2_msgs`,
+`tf2_geometry_msgs` and `tf_transformations` can be imported, also where they are not installed. Variables that are set
+already are not printed; PYTHONPATH keeps its folders and gets one more.
 """
 
 
@@ -48,6 +49,7 @@ def _variables() -> Mapping[str, str]:
     from thymio_sim_ros.ros.compat import dds_profile
 
     values = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    field_checks.switch_on(values)
     if not dds_profile.has_own_profile():
         values[dds_profile.VARIABLE] = str(dds_profile.ANNOUNCING)
     if Path(sys.prefix, "share", "ament_index").is_dir():  # the wheels leave this variable unset

@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from thymio_sim_ros import field_checks
 from thymio_sim_ros.lockstep.channel import Channel, ClosedError
 from thymio_sim_ros.lockstep.main import Options
 from thymio_sim_ros.lockstep.real_time import LAST_RESORT_S
@@ -122,6 +123,7 @@ class Program:
         given = Options(read_fd=from_test, write_fd=to_test, stacks_fd=stacks_fd, **options)
         command = [sys.executable, "-m", "thymio_sim_ros.lockstep.main", json.dumps(asdict(given))]
         environment = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"}
+        field_checks.switch_on(environment)
         with dds_profile.used(dds_profile.ANNOUNCING, environment):
             self._process = subprocess.Popen(
                 command,
