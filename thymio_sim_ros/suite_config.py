@@ -14,6 +14,8 @@ HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765
 ADDRESS = "localhost"
 """Loopback only, unless the network is requested."""
+OUT_OF_RANGE = ("rep117", "driver")
+"""Ranges without an obstacle and too close: +inf and -inf as in REP 117, or -1 and the minimum as in the driver."""
 REPLAY_FROM_S = -3.0
 """A replay starts shortly before its end, which is the failure of a test."""
 
@@ -46,6 +48,7 @@ class SuiteConfig:
     device: DeviceOptions = DEFAULTS
     motor_model: str = MOTOR_MODELS[0]
     proximity_model: str = PROXIMITY_MODELS[0]
+    out_of_range: str = OUT_OF_RANGE[0]
     robot: str = ""
     address: str = ADDRESS
     port: int = HTTP_PORT

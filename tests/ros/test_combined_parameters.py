@@ -117,3 +117,7 @@ def test_parameters_with_one_name_in_several_nodes_have_a_rule():
     names = {node: set(parameters.by_name(values)) for node, values in defaults(SuiteConfig()).items()}
     shared = set().union(*(names[one] & names[other] for one, other in itertools.combinations(names, 2)))
     assert shared <= SHARED
+
+
+def test_ranges_of_the_driver_are_an_option_of_the_suite():
+    assert defaults(SuiteConfig(out_of_range="driver"))[SIMULATOR].out_of_range == "driver"

@@ -33,14 +33,24 @@ from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
 from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.runlog.replay import LoggedRun, last_run
 from thymio_sim_ros.runlog.run_log import RunLogError
-from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
+from thymio_sim_ros.suite_config import ADDRESS, OUT_OF_RANGE, SuiteConfig
 
 __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
 
 _OF_WORLD = ("playground", "behaviour", "seed", "motors", "proximity")
-_SIMULATOR_ONLY = (*_OF_WORLD, "log", "card", "settings", "layout", "events", "real_time_factor", "replay")
+_SIMULATOR_ONLY = (
+    *_OF_WORLD,
+    "log",
+    "card",
+    "settings",
+    "layout",
+    "events",
+    "real_time_factor",
+    "replay",
+    "out_of_range",
+)
 """Options that a real robot does not have."""
 
 
@@ -129,6 +139,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         device=device_options(options),
         motor_model=options.motors,
         proximity_model=options.proximity,
+        out_of_range=options.out_of_range,
         robot=options.robot,
         address=options.address,
         port=options.port,
@@ -196,6 +207,12 @@ def _parser() -> argparse.ArgumentParser:
         default=SuiteConfig.real_time_factor,
         metavar="F",
         help="simulated seconds per second, 0 is as fast as possible (default: %(default)g)",
+    )
+    parser.add_argument(
+        "--out-of-range",
+        choices=OUT_OF_RANGE,
+        default=SuiteConfig.out_of_range,
+        help="range without an obstacle: +inf, or -1 as code written for the ROS driver expects (default: %(default)s)",
     )
     parser.add_argument("--version", action="version", version=f"thymio-sim {thymio_sim_ros.__version__}")
     return parser

@@ -59,6 +59,7 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
             seed=suite.seed,
             motor_model=suite.motor_model,
             proximity_model=suite.proximity_model,
+            out_of_range=suite.out_of_range,
             log=suite.log,
             replay=suite.replay,
             replay_from=suite.replay_from_s,

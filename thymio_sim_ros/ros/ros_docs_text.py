@@ -35,8 +35,9 @@ ros2 launch thymio_sim_ros thymio.launch.py driver_compat:=true program:=none
 
 `driver_compat` sets two parameters of the simulator:
 
-- `out_of_range` to `driver`: a range without an obstacle is -1, as in the driver, instead of +inf. Code that adds or
-  averages ranges needs this setting; code that compares them (`r < 0.08`) needs the default;
+- `out_of_range` to `driver` (`thymio-sim --out-of-range driver`): a range without an obstacle is -1, as in the driver,
+  instead of +inf. Code that adds or averages ranges needs this setting; code that compares them (`r < 0.08`) needs the
+  default;
 - `driver_topics` to true: less common driver topics, which have [hidden names](#hidden-topics) here, are also available
   under the names of the driver. So are the topics with types of the driver's package `thymio_msgs`, [if it is
   installed](#topics-with-types-of-thymio_msgs). All other driver topics are always available.

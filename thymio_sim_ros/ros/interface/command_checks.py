@@ -15,6 +15,32 @@ class CommandError(ThymioSimError, ValueError):
     """A rejected message; the text says what was found and what was expected."""
 
 
+class NotFiniteError(CommandError):
+    """A rejected message with NaN or an infinity."""
+
+
+SMALLEST = 1e-300
+"""Numbers nearer to zero, except zero, are no commands: rclpy sends the int n in a float field as n · 5e-324."""
+
+
+def tiny_field(message: Any) -> str:
+    """Return the name of a field with a float below `SMALLEST`; empty if there is none."""
+    for name, kind in message.get_fields_and_field_types().items():
+        value = getattr(message, name)
+        if kind == "double":
+            values = (value,)
+        elif "double" in kind:
+            values = value
+        else:
+            inner = tiny_field(value) if hasattr(value, "get_fields_and_field_types") else ""
+            if inner:
+                return f"{name}.{inner}"
+            continue
+        if any(0.0 < abs(one) < SMALLEST for one in values):
+            return str(name)
+    return ""
+
+
 def body_twist(message: TwistMsg, timeout_ns: int) -> commands.BodyTwist:
     """Convert a geometry_msgs/Twist; only linear.x and angular.z are used. Raises CommandError for NaN and inf."""
     finite(message.linear.x, "linear.x")
@@ -57,6 +83,6 @@ def sized(data: Any, size: int, what: str) -> list[Any]:
 
 
 def finite(value: float, what: str) -> None:
-    """Raise CommandError for NaN and infinities."""
+    """Raise NotFiniteError for NaN and infinities."""
     if not math.isfinite(value):
-        raise CommandError(f"{what} is {value}, expected a finite number")
+        raise NotFiniteError(f"{what} is {value}, expected a finite number")

@@ -27,7 +27,7 @@ from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
 from thymio_sim_ros.sim.sensors.proximity import SENSOR as SCANNER
-from thymio_sim_ros.suite_config import REPLAY_FROM_S
+from thymio_sim_ros.suite_config import OUT_OF_RANGE, REPLAY_FROM_S
 
 __all__ = ["CurrentParams", "SimulatorParams"]
 
@@ -132,9 +132,9 @@ class SimulatorParams:
         fixed=True,
     )
     out_of_range: str = param(
-        "rep117",
+        OUT_OF_RANGE[0],
         "Range without obstacle and too close: rep117 (+inf, -inf) or driver (-1, minimum)",
-        choices=("rep117", "driver"),
+        choices=OUT_OF_RANGE,
     )
     ground_threshold: int = param(
         200, "Ground counts below this value mean «not reflecting»", name="ground.threshold", low=0, high=1023

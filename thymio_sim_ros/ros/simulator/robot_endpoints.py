@@ -17,7 +17,7 @@ from std_srvs.srv import Trigger
 
 from thymio_sim_ros.ros.interface import qos, sensor_topics
 from thymio_sim_ros.ros.interface.cdr_templates import Template
-from thymio_sim_ros.ros.interface.command_checks import CommandError
+from thymio_sim_ros.ros.interface.command_checks import CommandError, NotFiniteError, tiny_field
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
 from thymio_sim_ros.ros.interface.names import HIDDEN, RobotNames, full_name
@@ -53,6 +53,16 @@ SERVICES: Mapping[str, tuple[type, str]] = {
     "reset_odometry": (Trigger, "reset the odometry to zero: `odom -> base_link` jumps once"),
 }
 """Type and description of every service of a robot."""
+
+
+_SUM_OF_RANGES = (
+    "may be computed from ranges: one without an obstacle is +inf, and inf - inf is nan. For code written for the"
+    " driver, where it is -1, start `thymio-sim --out-of-range driver`, or --ros-args -p out_of_range:=driver"
+)
+_INT_IN_FLOAT = (
+    "an int in a float field, such as linear.x = 1 in place of 1.0? ROS_PYTHON_CHECK_FIELDS=1 (thymio-sim env) shows"
+    " the line (reported once per topic)"
+)
 
 
 def first_words() -> frozenset[str]:
@@ -146,6 +156,9 @@ class RobotEndpoints:
         self._control = node if control is None else control
         self._owner = owner
         self._limited: set[str] = set()
+        self._tiny: set[str] = set()
+        """Topics on which an int in a float field was reported."""
+        self._is_cause_named = False
         self._warn = ThrottledLog(node)
         self._demand = demand
         self._publishers: dict[str, list[_SensorPublisher]] = {sensor.name: [] for sensor in all_sensors()}
@@ -284,9 +297,16 @@ class RobotEndpoints:
                 limit_check = one.limit_check(message)
                 if limit_check:
                     self._report_limit(one, limit_check)
+                if one.topic not in self._tiny and (field := tiny_field(message)):
+                    self._tiny.add(one.topic)
+                    self._report(one, f"has a value near zero in {field}: {_INT_IN_FLOAT}")
             except (CommandError, PlacementError) as error:
                 self._owner.count_rejected()
                 self._warn(self._full_name(one), f"rejected: {error}")
+                if isinstance(error, NotFiniteError) and not self._is_cause_named:
+                    self._is_cause_named = not self._owner.convert_options.driver_ranges
+                    if self._is_cause_named:
+                        self._report(one, _SUM_OF_RANGES)
 
         return handle
 
@@ -295,7 +315,10 @@ class RobotEndpoints:
         self._owner.count_clamped()
         if one.topic not in self._limited:
             self._limited.add(one.topic)
-            self._node.get_logger().warning(f"{self._full_name(one)} clamped: {limit_check} (reported once per topic)")
+            self._report(one, f"clamped: {limit_check} (reported once per topic)")
+
+    def _report(self, one: RobotInput, text: str) -> None:
+        self._node.get_logger().warning(f"{self._full_name(one)} {text}")
 
     def _full_name(self, one: RobotInput) -> str:
         return full_name(self._node, self.names.topic(one.topic))
