@@ -1,5 +1,6 @@
 // The checks of a VPL program: the first error, from top to bottom, as VPL reports it.
 
+import { BUTTONS, hasCondition } from "./blocks.js";
 import { isEmptyRow, sameEvent } from "./program.js";
 
 /** @typedef {import("./program.js").Program} Program */
@@ -15,6 +16,27 @@ import { isEmptyRow, sameEvent } from "./program.js";
  * @property {"event" | "actions"} slot  where the row lacks a block, or has the wrong one
  * @property {number | null} other  the other row with the same event
  */
+
+/** Blocks that have a condition only if something is chosen in them, and the text that says so. */
+const CHOICES = /** @type {Record<string, string>} */ ({
+  button: "check.any.button",
+  prox: "check.any.sensor",
+  proxground: "check.any.sensor",
+});
+
+/**
+ * The key of a warning about a row whose event block, or further condition, has nothing chosen: it is true at each
+ * event. Null if there is none.
+ *
+ * @param {Pick<import("./program.js").Row, "event" | "conditions">} row
+ */
+export function warningOf({ event, conditions }) {
+  const open = [event, ...conditions].find(
+    (block) =>
+      block !== null && block.name in CHOICES && !hasCondition(block) && (block.name !== "button" || block.values[5] === BUTTONS),
+  );
+  return open ? CHOICES[open.name] : null;
+}
 
 /**
  * The first refusal of a program, or null if it can be run.

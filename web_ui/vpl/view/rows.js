@@ -4,6 +4,7 @@ import { isEmptyRow } from "../program.js";
 import { palette } from "../mode.js";
 import { h, setAttribute } from "../../ui/dom.js";
 import { icon } from "../../ui/icons.js";
+import { warningOf } from "../check.js";
 import { picture } from "./picture.js";
 import { spotOf, written } from "./place.js";
 import { sentence } from "./sentences.js";
@@ -91,20 +92,26 @@ export function rowList({ t }) {
       ...(row.state === null ? [] : [at(row.state, "state", 0)]),
       ...(program.mode === "extended" ? [h("span", { class: "vpl-conditions" }, ...conditions, more("conditions"))] : []),
       h("span", { class: "vpl-arrow", "aria-hidden": "true" }, icon("right", { small: true })),
-      h("span", { class: "vpl-actions" }, ...actions, ...(isFull ? [] : [more("actions")]), ...whyOf(index, refusal)),
+      h("span", { class: "vpl-actions" }, ...actions, ...(isFull ? [] : [more("actions")]), ...whyOf(row, index, refusal)),
       ...(isLast ? [] : [bin]),
       h("span", { class: "chip vpl-ran", hidden: true }, icon("check", { small: true }), t("row.ran")),
     ); // prettier-ignore
   };
 
-  /** What is wrong in a row, beside the place where it is. @param {number} index @param {Refusal | null} refusal */
-  const whyOf = (index, refusal) => {
+  /** What is wrong in a row, beside the place where it is.
+   * @param {Readonly<import("../program.js").Row>} row @param {number} index @param {Refusal | null} refusal */
+  const whyOf = (row, index, refusal) => {
     if (refusal?.row === index) {
       const look = refusal.hint ? "vpl-why hint" : "vpl-why";
       const words = t(refusal.key, refusal.values);
       return [h("span", { class: look }, icon(refusal.hint ? "idea" : "warning", { small: true }), h("span", {}, words))];
     }
-    if (refusal === null || refusal.other !== index) return [];
+    if (refusal === null || refusal.other !== index) {
+      const key = warningOf(row);
+      if (key === null) return [];
+      const text = t(key, { row: index + 1 });
+      return [h("span", { class: "vpl-why hint" }, icon("warning", { small: true }), h("span", {}, text))];
+    }
     const words = t("row.twin", { row: refusal.row + 1 });
     return [h("span", { class: "vpl-why twin" }, icon("warning", { small: true }), h("span", {}, words))];
   };
