@@ -30,6 +30,7 @@ from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.grading.assignment import Assignment
 from thymio_sim_ros.grading.finished import FinishedReports
 from thymio_sim_ros.grading.reports.folder import write_reports, write_submission
+from thymio_sim_ros.grading.reports.texts import file_name
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.submissions import Submission
@@ -130,7 +131,7 @@ def _pupils_program(folder: Path, second: bool) -> None:
 def _reports(folder: Path, second: bool) -> None:
     test = GradedTest("test_a.py::test_it", Fraction(1 + second))
     graded = Graded(Submission("Ada"), [Verdict(test, "failed", files={"run.jsonl": b"{}" * (1 + second)})])
-    write_submission(folder, graded, 1)
+    write_submission(folder, graded)
     write_reports(folder, "task", "none", [test], {1: graded})
 
 
@@ -142,7 +143,8 @@ def _kept_report(folder: Path, second: bool) -> None:
     FinishedReports(folder / "kept", _TASK).add(Submission("Ada"), Report({}, remark="second" if second else "first"))
 
 
-_PUPIL = "pupils/001-Ada"
+_ADA = file_name(Graded(Submission("Ada"), []))
+_PUPIL = f"pupils/{_ADA}"
 WRITERS = [
     Writer("aseba fmt", _format, ("a.aseba",)),
     Writer("aseba compile", _compile, ("words.hex",)),
@@ -158,7 +160,7 @@ WRITERS = [
     Writer("kept report of a grading", _kept_report, (f"kept/{_KEPT}",)),
     Writer("reports", _reports, (
         "marks.csv", "junit.xml", "index.html", f"{_PUPIL}/index.html", f"{_PUPIL}/results.json",
-        f"{_PUPIL}/test-1.jsonl", "teacher/001-Ada.txt",
+        f"{_PUPIL}/test-1.jsonl", f"teacher/{_ADA}.txt",
     )),
 ]  # fmt: skip
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 import signal
 from pathlib import Path
 
@@ -95,17 +96,28 @@ def test_a_late_or_changed_submission_is_graded_alone(loop: Loop, sandbox: Sandb
 def test_reports_of_an_earlier_grading_do_not_stay(loop: Loop) -> None:
     assert main(GRADE) == 0
     pupils, teacher = Path("grades/pupils"), Path("grades/teacher")
-    for own in (pupils / "notes", pupils / "001-Anna" / "test-1.jsonl"):
+    for own in (pupils / "notes", next(pupils.glob("Anna-*")) / "test-1.jsonl"):
         own.write_text("")
+    shutil.rmtree("class/Cleo")
+    hand_in("Amir", "bad")
+    assert main(GRADE) == 0
+    names = sorted(path.name for path in pupils.iterdir())
+    assert [name.partition("-")[0] for name in names] == ["Amir", "Anna", "Ben", "notes"]
+    assert sorted(path.stem for path in teacher.iterdir()) == names[:-1]
+    log = pupils / names[0] / "test-1.jsonl"
+    log.write_text("")
     hand_in("Amir", "good")
     assert main(GRADE) == 0
-    numbered = ["001-Amir", "002-Anna", "003-Ben", "004-Cleo"]
-    assert sorted(path.name for path in pupils.iterdir()) == [*numbered, "notes"]
-    assert sorted(path.stem for path in teacher.iterdir()) == numbered
-    hand_in("Amir", "bad")
-    (pupils / "001-Amir" / "test-1.jsonl").write_text("")
+    assert not log.exists()
+
+
+def test_a_late_submission_moves_no_page(loop: Loop) -> None:
     assert main(GRADE) == 0
-    assert not (pupils / "001-Amir" / "test-1.jsonl").exists()
+    pages = {path.name: (path / "index.html").read_text() for path in Path("grades/pupils").iterdir()}
+    hand_in("Amir", "good")
+    assert main(GRADE) == 0
+    assert pages == {name: Path("grades/pupils", name, "index.html").read_text() for name in pages}
+    assert len(list(Path("grades/pupils").iterdir())) == 4
 
 
 def test_a_damaged_report_is_made_again(loop: Loop, sandbox: Sandbox) -> None:
@@ -137,6 +149,9 @@ def test_a_submission_that_no_machine_could_grade_is_said_and_repeated(
     captured = capsys.readouterr()
     assert "0/2  Ben: could not be graded: OSError: [Errno 28] No space left on device" in captured.out
     assert "3 of 3 submissions, 1 with errors" in captured.err
+    pages = "".join(path.read_text() for path in Path("grades/pupils").glob("Ben-*/*"))
+    assert "could not be graded" in pages
+    assert "No space left" not in pages  # on the machine of the teacher
     monkeypatch.setattr(grader, "run_job", run_job)
     sandbox.runs.clear()
     assert main(GRADE) == 0
@@ -144,9 +159,9 @@ def test_a_submission_that_no_machine_could_grade_is_said_and_repeated(
 
 
 def test_a_worker_without_the_isolation_grades_nobody(sandbox: Sandbox, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(grader, "_why_unavailable", lambda level: "bwrap is not installed")
-    with pytest.raises(GradingError, match=r"isolation bubblewrap is not available on .*: bwrap is not installed"):
-        grader.run_submission(None, assignment=None, tests=(), level="bubblewrap")  # type: ignore[arg-type]
+    monkeypatch.setattr(grader, "_why_unavailable", lambda level: "unshare: not permitted")
+    with pytest.raises(GradingError, match=r"isolation namespaces is not available on .*: unshare: not permitted"):
+        grader.run_submission(None, assignment=None, tests=(), level="namespaces")  # type: ignore[arg-type]
     assert sandbox.runs == []
 
 
@@ -172,3 +187,82 @@ def test_a_folder_that_cannot_be_written_is_one_line(loop: Loop, capsys: pytest.
     assert main([*GRADE, "-o", "taken"]) == USAGE_ERROR
     (line,) = capsys.readouterr().err.splitlines()[-1:]
     assert "expected a folder that can be written" in line
+
+
+NOT_HERE = Outcome("failed", "conftest.py:3: in robot\nE   RuntimeError: no free ROS domain", phase="setup")
+
+
+def setups(monkeypatch: pytest.MonkeyPatch, sandbox: Sandbox, outcomes: dict[str, Outcome]) -> None:
+    """Give submissions with these texts these outcomes."""
+
+    def run_job(job: Job) -> Report:
+        if job.selected is None:
+            return Report({}, (("test_it.py::test_a", "2"),))
+        return Report({"test_it.py::test_a": outcomes[job.submission["a.py"].decode().strip()]})
+
+    monkeypatch.setattr(grader, "run_job", run_job)
+
+
+@pytest.mark.parametrize("outcome", [NOT_HERE, Outcome("skipped", "ROS is not here", phase="setup")])
+def test_a_set_up_that_fails_for_all_fails_the_command(
+    loop: Loop,
+    sandbox: Sandbox,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    outcome: Outcome,
+) -> None:
+    run_job = sandbox.run_job
+    setups(monkeypatch, sandbox, {"good": outcome, "bad": outcome})
+    assert main(GRADE) == command.FAILED
+    reason = outcome.message.rpartition("E   ")[2]
+    assert f"the same set-up failed for all submissions: test_it.py::test_a: {reason}" in capsys.readouterr().err
+    monkeypatch.setattr(grader, "run_job", run_job)  # the machine was mended
+    assert main(GRADE) == 0
+    assert points() == {"Anna": "2", "Ben": "0", "Cleo": "0"}
+
+
+@pytest.mark.parametrize(
+    "outcomes",
+    [
+        {"good": NOT_HERE, "bad": Outcome("failed", "E   other", phase="setup")},
+        {"good": NOT_HERE, "bad": Outcome("passed")},
+        dict.fromkeys(("good", "bad"), Outcome("failed", "a.py:1: in <module>\nE   SyntaxError", phase="setup")),
+        dict.fromkeys(("good", "bad"), Outcome("failed", "E   assert False", phase="call")),
+    ],
+)
+def test_set_ups_that_fail_by_pupils_do_not_fail_the_command(
+    loop: Loop, sandbox: Sandbox, monkeypatch: pytest.MonkeyPatch, outcomes: dict[str, Outcome]
+) -> None:
+    setups(monkeypatch, sandbox, outcomes)
+    assert main(GRADE) == 0
+
+
+def test_a_solution_is_graded_first_and_needs_all_points(
+    loop: Loop, sandbox: Sandbox, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("it.toml").write_text('tests = ["test_it.py"]\nfiles = ["a.py"]\nsolution = "solution"\n')
+    Path("solution").mkdir()
+    Path("solution/a.py").write_text("good")
+    grade = [*GRADE[:-1], "it.toml"]
+    assert main(grade) == 0
+    assert sandbox.runs[0] == "good"
+    assert "solution: 2 of 2 points" in capsys.readouterr().out
+    for text, reason in {"bad": "test_it.py::test_a: failed", "": "no file a.py"}.items():
+        sandbox.runs.clear()
+        Path("solution/a.py").write_text(text)
+        if not text:
+            Path("solution/a.py").rename("solution/b.md")
+        assert main(grade) == USAGE_ERROR
+        assert f"the solution solution has 0 of 2 points, expected all: mend test, solution or machine: {reason}" in (
+            capsys.readouterr().err
+        )
+        assert sandbox.runs in (["bad"], [])
+
+
+def test_a_test_file_that_is_skipped_as_a_whole_is_an_error(
+    loop: Loop, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    skipped = Report({}, (("test_it.py::test_a", "2"),), notes=("test_ros.py: could not import 'rclpy'",))
+    monkeypatch.setattr(grader, "run_job", lambda job: skipped)
+    assert main(GRADE) == USAGE_ERROR
+    assert "test_ros.py: could not import 'rclpy'" in capsys.readouterr().err

@@ -125,9 +125,9 @@ PUPILS = {
     ),
     "Calls the network": Pupil(acting("socket.create_connection(('127.0.0.1', HOST_PORT), 1)"), "0", "failed"),
     "Prints gigabytes": Pupil(acting("while True: print('x' * 10000)"), "0", "output limit"),
-    "Eats memory": Pupil(acting("eaten = bytearray(10 ** 9)"), "0", "failed"),
+    "Eats memory": Pupil(acting("eaten = bytearray(10 ** 9)"), "0", "memory limit"),
     "Fills the disk": Pupil(
-        acting("with open('/tmp/full', 'wb') as f:\n    while True: f.write(bytes(10 ** 6))"), "0", "failed"
+        acting("with open('/tmp/full', 'wb') as f:\n    while True: f.write(bytes(10 ** 6))"), "0", "disk limit"
     ),
     "Kills": Pupil(acting("os.kill(-1, 9)"), "0", "failed"),
     "Kills the supervisor": Pupil(

@@ -176,6 +176,6 @@ def test_pupils_see_nothing_of_hidden_tests_and_their_data(graded: Path) -> None
 
 
 def test_what_was_replaced_is_named(graded: Path) -> None:
-    pages = "".join(path.read_text() for path in graded.glob("teacher/*Replaces*.txt"))
+    pages = "".join(path.read_text() for path in graded.glob("teacher/Replaces*.txt"))
     assert "replaced thymio_sim_ros.testing.thymio.Thymio.touches" in pages
     assert "no_contact, a function of the tests" in pages

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ pytest.importorskip("rclpy")
 
 from tests.grading.test_grade import level
 from thymio_sim_ros.cli import main
+from thymio_sim_ros.grading.sandbox.levels import LEVELS, why_unavailable
+from thymio_sim_ros.grading.sandbox.readable import PACKAGE_FOLDER
 
 __all__ = ["level"]
 
@@ -27,8 +30,9 @@ import pytest
 @pytest.mark.thymio(playground="base")
 def test_it_drives(ros, simulation):
     sim = simulation()
-    ros.run("driver.py")
+    program = ros.run("driver.py")
     sim.until(lambda: sim.thymio.pose.x_m > 0.1, seconds=3)
+    assert program.output == "drives\\n"
 """
 GOOD = """
 import time
@@ -37,6 +41,7 @@ from geometry_msgs.msg import Twist
 rclpy.init()
 node = rclpy.create_node("driver")
 publisher = node.create_publisher(Twist, "cmd_vel", 10)
+print("drives")
 while rclpy.ok():
     message = Twist()
     message.linear.x = 0.1
@@ -51,18 +56,51 @@ for pid in (os.getppid(), *range(2, 100)):
     except OSError:
         pass
 """
+NOISY = "while True: print('x' * 1_000_000)"
+FAILS = """
+print("printed before")
+with open("full", "wb") as file:
+    while True: file.write(bytes(10 ** 6))
+"""
+
+
+def grade(folder: Path, submissions: dict[str, str], level: str) -> Path:
+    """Grade these programs; return the folder of the reports."""
+    (folder / "assignment.toml").write_text(ASSIGNMENT)
+    (folder / "test_driver.py").write_text(TEST)
+    for name, text in submissions.items():
+        (folder / "class" / name).mkdir(parents=True)
+        (folder / "class" / name / "driver.py").write_text(text)
+    words = ["grade", folder / "class", "--assignment", folder / "assignment.toml", "-o", folder / "grades"]
+    assert main.main([*map(str, words), "--workers", "2", "--isolation", level]) == 0
+    return folder / "grades"
+
+
+def points(output: Path) -> dict[str, str]:
+    """The points of each program."""
+    with (output / "marks.csv").open(newline="") as file:
+        return {row["name"]: row["points"] for row in csv.DictReader(file)}
 
 
 def test_programs_are_graded_and_cannot_end_the_grader(tmp_path: Path, level: str) -> None:
-    (tmp_path / "assignment.toml").write_text(ASSIGNMENT)
-    (tmp_path / "test_driver.py").write_text(TEST)
-    for name, text in {"Good": GOOD, "Hostile": HOSTILE, "Stands": GOOD.replace("= 0.1", "= 0.0")}.items():
-        folder = tmp_path / "class" / name
-        folder.mkdir(parents=True)
-        (folder / "driver.py").write_text(text)
-    output = tmp_path / "grades"
-    words = ["grade", tmp_path / "class", "--assignment", tmp_path / "assignment.toml", "-o", output, "--workers", 3]
-    assert main.main(list(map(str, words))) == 0
-    with (output / "marks.csv").open(newline="") as file:
-        points = {row["name"]: row["points"] for row in csv.DictReader(file)}
-    assert points == {"Good": "2", "Hostile": "0", "Stands": "0"}
+    output = grade(tmp_path, {"Good": GOOD, "Hostile": HOSTILE, "Noisy": NOISY, "Fails": FAILS}, level)
+    assert points(output) == {"Good": "2", "Hostile": "0", "Noisy": "0", "Fails": "0"}
+    pages = {name: next(output.glob(f"pupils/{name}-*/index.html")).read_text() for name in ("Noisy", "Fails")}
+    assert "it printed more than 10 MB" in pages["Noisy"]
+    assert "output limit" in pages["Noisy"]
+    assert "it wrote more than the 64 MB of files that it may write" in pages["Fails"]
+    assert "printed before" in pages["Fails"]
+    assert all(
+        folder not in "".join(pages.values())
+        for folder in ("/grade", str(PACKAGE_FOLDER), os.path.dirname(os.__file__))
+    )
+
+
+@pytest.mark.parametrize("name", LEVELS)
+def test_every_level_gives_the_same_marks(tmp_path: Path, name: str) -> None:
+    if reason := why_unavailable(name):
+        pytest.skip(f"{name}: {reason}")
+    assert points(grade(tmp_path, {"Good": GOOD, "Stands": GOOD.replace("= 0.1", "= 0.0")}, name)) == {
+        "Good": "2",
+        "Stands": "0",
+    }

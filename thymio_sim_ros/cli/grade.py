@@ -19,6 +19,7 @@ from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.grading import assignment as assignments
 from thymio_sim_ros.grading import grader, submissions
 from thymio_sim_ros.grading.assignment import Assignment
+from thymio_sim_ros.grading.common_failure import common_failure, fails_in_setup
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.finished import FinishedReports
 from thymio_sim_ros.grading.reports.folder import remove_former, write_reports, write_submission
@@ -40,7 +41,8 @@ FILE is a pytest file, or a TOML file that names tests, hidden tests, expected f
 (docs/grading-a-class.md). The same command continues an interrupted grading, and grades only what is new or changed.
 
 exit code: 0 all submissions have been graded, whatever their marks; 1 a machine could not grade some of them (column
-`remark`); 2 rejected input, or a cluster that cannot be used
+`remark`), or the same set-up failed for all; 2 rejected input, a solution without all points, or a cluster that cannot
+be used
 
 example:
   thymio-sim grade submissions/ --assignment test_follower.py --output grades
@@ -61,6 +63,8 @@ def run(argv: Sequence[str]) -> int:
         _print(f"{len(found)} submissions, {len(tests)} tests, {total} points")
         if hidden := assignment.hidden_data():
             _print(f"for hidden tests only: {', '.join(hidden)}")
+        if assignment.solution is not None:
+            _check_solution(assignment, assignment.solution, tests, level)
         return _Execution(options, assignment, found, tests, level).run()
     except (GradingError, EngineError) as error:
         raise UsageError(str(error)) from error
@@ -84,6 +88,7 @@ class _Execution:
         self._options, self._assignment, self._found, self._tests = options, assignment, found, tests
         self._level, self._output = level, options.output
         self._finished = FinishedReports(options.output / "finished", assignment)
+        self._reports: dict[int, Report] = {}
         self._class: dict[int, Graded] = {}
         """Graded submissions by position from 1."""
         self._printed = 0
@@ -108,6 +113,14 @@ class _Execution:
             exit_by_signal(stop.number)
         remove_former(self._output, self._class)
         _print("written: " + ", ".join(str(self._output / name) for name in ("marks.csv", "index.html", "junit.xml")))
+        runs = [(self._found[position - 1], report) for position, report in sorted(self._reports.items())]
+        if self._assignment.solution is None and (failure := common_failure(runs, self._tests)):
+            print(
+                f"thymio-sim grade: the marks are worth nothing: the same set-up failed for all submissions: {failure}."
+                " Mend machine or test, then give the same command again",
+                file=sys.stderr,
+            )
+            return FAILED
         return FAILED if self._not_graded else 0
 
     def _run(self, missing: Sequence[int], stop: StopSignal, progress: Progress) -> None:
@@ -137,12 +150,14 @@ class _Execution:
 
     def _add(self, position: int, report: Report | Failure | None) -> None:
         submission = self._found[position - 1]
-        graded = self._class[position] = grader.graded(submission, self._tests, report)
-        write_submission(self._output, graded, position)
+        graded = self._class[position] = grader.graded(submission, self._tests, report, self._assignment.limits)
+        write_submission(self._output, graded)
         if isinstance(report, Failure):
             self._not_graded += 1
         elif report is not None:
-            self._finished.add(submission, report)
+            self._reports[position] = report
+            if not fails_in_setup(submission, report):  # the machine may be mended before the next call
+                self._finished.add(submission, report)
         while self._printed + 1 in self._class:  # in the order of the class
             self._printed += 1
             _print(_line(self._class[self._printed]))
@@ -151,6 +166,24 @@ class _Execution:
         isolation = f"{self._level} ({LEVELS[self._level]})"
         write_reports(self._output, self._assignment.name, isolation, self._tests, self._class)
         self._written_s = time.monotonic()
+
+
+def _check_solution(assignment: Assignment, path: Path, tests: Sequence[GradedTest], level: str) -> None:
+    """Grade the solution of the assignment. Raises GradingError with the first test in which it loses points."""
+    submission = submissions.prepared(submissions.read_one(path), assignment.expected)
+    names = tuple(test.name for test in tests)
+    report = None
+    if not submission.problem:
+        report = grader.run_submission(submission, assignment=assignment, tests=names, level=level)
+    result = grader.graded(submission, tests, report, assignment.limits)
+    points = f"{number(result.points)} of {number(result.maximum)}"
+    if result.points < result.maximum:
+        lost = next(verdict for verdict in result.verdicts if verdict.points < verdict.test.points)
+        reason = result.remark or f"{lost.test.name}: {lost.outcome}: {lost.message.strip().rpartition(chr(10))[2]}"
+        raise GradingError(
+            f"the solution {path} has {points} points, expected all: mend test, solution or machine: {reason}"
+        )
+    _print(f"solution: {points} points")
 
 
 def _level(wanted: str) -> str:

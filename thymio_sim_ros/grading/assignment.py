@@ -6,6 +6,7 @@ An assignment is a pytest file, or a TOML file beside its tests:
     hidden = ["test_hidden.py"]      # pupils see the verdicts of these tests, but neither messages nor output
     files = ["follower.aesl"]        # what each submission must contain
     data = ["maze.json"]             # other files that the tests read
+    solution = "solution"            # a submission that must get all points
 
     [limits]
     cpu_s = 30
@@ -62,6 +63,8 @@ class Assignment:
     content: Mapping[str, bytes] = field(repr=False)
     """Content of all files of the assignment."""
     limits: Limits = Limits()
+    solution: Path | None = None
+    """A submission that must get all points."""
 
     def is_hidden(self, test: str) -> bool:
         """Whether a test, given by its pytest node ID, is one of a hidden file."""
@@ -118,14 +121,18 @@ def _load_toml(path: Path) -> Assignment:
     except (ValueError, RecursionError) as error:
         raise GradingError(f"{path}: {error}; expected TOML in UTF-8") from error
     limits = _limits(path, table.pop("limits", {}))
+    solution = table.pop("solution", "")
+    if not isinstance(solution, str) or (solution and not _is_inside(solution)):
+        raise GradingError(f"{path}: solution: found {solution!r}, expected the relative path of a folder, file or zip")
     for key, value in table.items():
         if key not in _LISTS:
-            raise GradingError(f"{path}: found the key {key!r}, expected {', '.join(_LISTS)} or limits")
+            raise GradingError(f"{path}: found the key {key!r}, expected {', '.join(_LISTS)}, solution or limits")
         if not isinstance(value, list) or not all(isinstance(name, str) and _is_inside(name) for name in value):
             raise GradingError(f"{path}: {key}: found {value!r}, expected a list of relative paths below its folder")
     if not table.get("tests") and not table.get("hidden"):
         raise GradingError(f"{path}: tests: found none, expected a list of test files")
-    return _assignment(path.stem, path.parent, table, limits)
+    loaded = _assignment(path.stem, path.parent, table, limits)
+    return replace(loaded, solution=path.parent / solution) if solution else loaded
 
 
 def _is_inside(name: str) -> bool:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import socket
 from collections.abc import Generator, Sequence
 from contextlib import closing
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 
 from thymio_sim_ros.batch_runs.failure import Failure
-from thymio_sim_ros.grading.assignment import Assignment
+from thymio_sim_ros.grading.assignment import Assignment, Limits
 from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.limit_reasons import limit_in
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
 from thymio_sim_ros.grading.sandbox.levels import run_job, why_unavailable
@@ -19,16 +21,17 @@ from thymio_sim_ros.grading.submissions import Submission
 __all__ = ["collect", "graded", "run_submission", "run_submissions"]
 
 _NO_VERDICT = "not run"
+_NOT_GRADED = "could not be graded"
 
 
 def collect(assignment: Assignment, level: str) -> tuple[GradedTest, ...]:
     """Return the tests of an assignment. Raises GradingError if they cannot be collected without a submission."""
     job = Job(level, assignment.tests, assignment.content, {}, None, assignment.limits)
     report = run_job(job)
-    if not report.collected:
+    if not report.collected or report.notes:
         reason = ": ".join(filter(None, [report.remark, "; ".join(report.notes)])) or "no tests found"
         raise GradingError(
-            f"assignment {assignment.name}: its tests cannot be collected without a submission: {reason}"
+            f"assignment {assignment.name}: not all of its tests can be collected without a submission: {reason}"
         )
     return tuple(GradedTest(name, Fraction(points), assignment.is_hidden(name)) for name, points in report.collected)
 
@@ -83,21 +86,27 @@ def run_submission(submission: Submission, *, assignment: Assignment, tests: tup
 _why_unavailable = cache(why_unavailable)
 
 
-def graded(submission: Submission, tests: Sequence[GradedTest], report: Report | Failure | None) -> Graded:
+def graded(
+    submission: Submission, tests: Sequence[GradedTest], report: Report | Failure | None, limits: Limits
+) -> Graded:
     """Return the verdicts of a report; None: the submission has a problem and was not run."""
     if report is None:
         return _without_points(submission, tests, submission.problem)
     if isinstance(report, Failure):
-        return _without_points(submission, tests, f"could not be graded: {report.reason}")
+        result = _without_points(submission, tests, _NOT_GRADED)
+        return replace(result, remark=f"{_NOT_GRADED}: {report.reason}", for_pupil=_NOT_GRADED)
     if report.remark:
         return _without_points(submission, tests, report.remark)
-    return Graded(submission, [_verdict(test, report.outcomes.get(test.name)) for test in tests])
+    return Graded(submission, [_verdict(test, report.outcomes.get(test.name), limits) for test in tests])
 
 
-def _verdict(test: GradedTest, outcome: Outcome | None) -> Verdict:
+def _verdict(test: GradedTest, outcome: Outcome | None, limits: Limits) -> Verdict:
     if outcome is None:
         return Verdict(test, _NO_VERDICT, "a limit of the submission as a whole was reached before")
-    return Verdict(test, outcome.outcome, outcome.message, outcome.output, outcome.cpu_s, outcome.files)
+    verdict, message = outcome.outcome, outcome.message
+    if verdict == "failed" and (found := limit_in(message, limits)):
+        verdict, message = found[0], f"{found[1]}\n\n{message}"
+    return Verdict(test, verdict, message, outcome.output, outcome.cpu_s, outcome.files)
 
 
 def _without_points(submission: Submission, tests: Sequence[GradedTest], remark: str) -> Graded:

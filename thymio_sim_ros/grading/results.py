@@ -54,6 +54,8 @@ class Graded:
     submission: Submission
     verdicts: Sequence[Verdict]
     remark: str = ""
+    for_pupil: str = ""
+    """What the pupil reads in place of a remark about the teacher's machine."""
 
     @property
     def points(self) -> Fraction:

@@ -26,7 +26,7 @@ from thymio_sim_ros.grading.archives import (
 )
 from thymio_sim_ros.grading.errors import GradingError
 
-__all__ = ["Submission", "find", "prepared"]
+__all__ = ["Submission", "find", "prepared", "read_one"]
 
 _MOODLE = re.compile(r"(?P<name>.+)_(?P<id>\d+)_assignsubmission_(?:file|onlinetext)_?")
 _CANVAS = re.compile(r"(?P<name>[^_]+)_(?:LATE_)?(?P<id>\d+)_\d+_(?P<file>.+)")
@@ -72,6 +72,11 @@ def find(path: Path) -> list[Submission]:
     if not merged:
         raise GradingError(f"{path}: found no submissions, expected a folder, file or zip for each pupil")
     return _with_unique_names(sorted(merged.values(), key=lambda one: (one.name.casefold(), one.name, one.identifier)))
+
+
+def read_one(path: Path) -> Submission:
+    """Read one submission, a folder, a file or a zip; it has a `problem` if it cannot be read."""
+    return _from_path(path, {})
 
 
 def prepared(submission: Submission, expected: Iterable[str]) -> Submission:

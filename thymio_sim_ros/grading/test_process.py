@@ -127,11 +127,12 @@ class GradingPlugin:
     @pytest.hookimpl(trylast=True)
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Report the tests; continue when the supervisor has replaced their sources by the submission."""
+        if not self._broken and (reason := _import_for(session.items)):
+            self._broken.append(reason)
         if self._broken:
             self._send("broken", message="\n".join(self._broken)[-_LONGEST:])
             os._exit(0)
         _keep_sources(Path.cwd())
-        _import_for(session.items)
         self._functions.remember(Path.cwd())
         tests = [(item.nodeid, str(self._points[item.nodeid])) for item in session.items]
         self._send("collected", tests=tests, notes=self._skipped)
@@ -192,15 +193,19 @@ def _keep_sources(folder: Path) -> None:
         linecache.cache[str(path)] = (len(lines), None, lines, str(path))  # without a time, it is never checked again
 
 
-def _import_for(items: Sequence[pytest.Item]) -> None:
-    """Import what the fixtures of tests import, before the submission is there."""
+def _import_for(items: Sequence[pytest.Item]) -> str:
+    """Import what the fixtures of tests import, before the submission is there; return why that is not possible."""
     import thymio_sim_ros.testing
 
     used = {name for item in items for name in getattr(item, "fixturenames", ())}
     if used & {"ros", "simulation", "runtime"} and importlib.util.find_spec("rclpy") is not None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported with the first node's messages
-            import thymio_sim_ros.testing.ros  # noqa: F401
+            try:
+                import thymio_sim_ros.testing.ros  # noqa: F401
+            except ImportError as error:
+                return f"ROS cannot be imported: {error}"
+    return ""
 
 
 def _draw(item: pytest.Item, path: Path) -> None:

@@ -11,7 +11,7 @@ from fractions import Fraction
 from thymio_sim_ros.grading.reports.csv_table import csv_table
 from thymio_sim_ros.grading.reports.junit import junit_xml
 from thymio_sim_ros.grading.reports.page import index_page, submission_page
-from thymio_sim_ros.grading.reports.texts import shown_name
+from thymio_sim_ros.grading.reports.texts import file_name, shown_name
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 from thymio_sim_ros.grading.submissions import Submission
 
@@ -45,3 +45,20 @@ def test_pages_escape_text_and_pictures() -> None:
     for page in (submission_page(GRADED, {}), index_page("class", "none", {"a.html": GRADED})):
         assert "<script" not in page
         assert "onload" not in page
+
+
+def test_names_of_files_depend_on_the_owner_only_and_stay_readable() -> None:
+    names = {
+        name: file_name(Graded(Submission(name, identifier), []))
+        for name, identifier in [
+            ("Łukasz Žák", ""), ("Анна Иванова", ""), ("山田 太郎", ""), ("अनीता", ""), ("a b", ""), ("a-b", ""),
+            ("\u202e!?", ""), ("x" * 300, ""), ("\U00020000" * 300, ""), ("../..", ""), ("Anna (7)", "7"),
+            ("Anna", "8"),
+        ]
+    }  # fmt: skip
+    readable = [name[:-9] for name in names.values()]
+    assert readable[:7] == ["Łukasz-Žák", "Анна-Иванова", "山田-太郎", "अनीता", "a-b", "a-b", "submission"]
+    assert (readable[9], readable[10], readable[11]) == ("submission", "Anna", "Anna")
+    assert len(set(names.values())) == len(names)
+    assert all(len(f"{name}.txt".encode()) <= 255 for name in names.values())
+    assert names["Anna (7)"] == file_name(Graded(Submission("Anna", "7"), []))  # also before another Anna came

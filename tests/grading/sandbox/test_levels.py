@@ -30,10 +30,17 @@ def test_it_reads_files_of_others(): probe("read")()
 def test_it_connects_by_tcp(): probe("connect")()
 def test_it_signals_others(): probe("signal")()
 def test_it_gets_rights(): probe("unshare")()
+def test_it_fills_memory_of_no_process(): probe("memfd")()
+def test_it_maps_shared_memory(): probe("shared")()
+def test_it_maps_zeros(): probe("zeros")()
+def test_it_gets_a_segment(): probe("segment")()
+def test_it_fills_the_root(): probe("fill")("/")
+def test_it_fills_devices(): probe("fill")("/dev")
+def test_it_fills_shared_memory(): probe("fill")("/dev/shm")
 def test_its_program_reads_the_tests_in_memory(): probe("read_parent")()
 """
 PROBE = """
-import ctypes, os, socket, subprocess, sys
+import ctypes, mmap, os, socket, subprocess, sys
 def write_here():
     with open("file", "w") as file: file.write("1")
 def read(): open({path!r}).read()
@@ -41,6 +48,14 @@ def connect(): socket.create_connection(("127.0.0.1", {port}), 1)
 def signal(): os.kill({pid}, 0)
 def unshare():
     if ctypes.CDLL(None).unshare(0x10000000): raise OSError("refused")
+def memfd(): os.write(os.memfd_create("a"), bytes(1000))
+def shared(): mmap.mmap(-1, 4096)
+def zeros(): mmap.mmap(os.open("/dev/zero", os.O_RDWR), 4096)
+def segment():
+    if ctypes.CDLL(None).shmget(0, 4096, 0o1600) < 0: raise OSError("refused")
+def fill(folder):
+    for name in "a", "b":
+        with open(os.path.join(folder, name), "wb") as file: file.write(bytes(40 * 10 ** 6))
 def read_parent():
     subprocess.run([sys.executable, "-c", "import os; open(f'/proc/{{os.getppid()}}/mem', 'rb')"], check=True)
 """

@@ -3,8 +3,8 @@
 marks.csv            the table of the class
 junit.xml            all verdicts
 index.html           points of all submissions, with links
-pupils/001-Anna/     index.html, results.json (Gradescope), run logs of failed tests: what a pupil may get
-teacher/001-Anna.txt messages and output of all tests, hidden ones included
+pupils/Anna-1a2b3c4d/     index.html, results.json (Gradescope), run logs of failed tests: what a pupil may get
+teacher/Anna-1a2b3c4d.txt messages and output of all tests, hidden ones included
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from thymio_sim_ros.grading.results import Graded, GradedTest
 
 __all__ = ["remove_former", "write_reports", "write_submission"]
 
-_NUMBERED = re.compile(r"\d{3,}-")
+_OURS = re.compile(r".+-[0-9a-f]{8}(\.txt)?")
 
 
 def write_reports(
@@ -35,13 +35,13 @@ def write_reports(
     ordered = [class_[position] for position in sorted(class_)]
     _write(folder / "marks.csv", csv_table(ordered, tests))
     _write(folder / "junit.xml", junit_xml(ordered))
-    rows = {f"pupils/{file_name(class_[n], n)}/index.html": class_[n] for n in sorted(class_)}
+    rows = {f"pupils/{file_name(graded)}/index.html": graded for graded in ordered}
     _write(folder / "index.html", index_page(title, isolation, rows))
 
 
-def write_submission(folder: Path, graded: Graded, position: int) -> None:
-    """Write the reports of one submission, number `position` of the class from 1. Raises OSError."""
-    name = file_name(graded, position)
+def write_submission(folder: Path, graded: Graded) -> None:
+    """Write the reports of one submission. Raises OSError."""
+    name = file_name(graded)
     own = folder / "pupils" / name
     own.mkdir(parents=True, exist_ok=True)
     logs = {}
@@ -59,10 +59,10 @@ def write_submission(folder: Path, graded: Graded, position: int) -> None:
 
 
 def remove_former(folder: Path, class_: Mapping[int, Graded]) -> None:
-    """Remove reports of submissions that an earlier grading counted differently. Raises OSError."""
-    names = {file_name(graded, position) for position, graded in class_.items()}
+    """Remove reports of submissions that are not in the class any more. Raises OSError."""
+    names = {file_name(graded) for graded in class_.values()}
     for path in (*(folder / "pupils").glob("*"), *(folder / "teacher").glob("*.txt")):
-        if _NUMBERED.match(path.name) and path.name.removesuffix(".txt") not in names:
+        if _OURS.fullmatch(path.name) and path.name.removesuffix(".txt") not in names:
             if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path)
             else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from thymio_sim_ros.grading.reports.texts import number, short_names, shown_message, shown_remark
+from thymio_sim_ros.grading.reports.texts import number, pupil_remark, short_names, shown_message
 from thymio_sim_ros.grading.results import Graded
 
 __all__ = ["gradescope_json"]
@@ -24,5 +24,5 @@ def gradescope_json(graded: Graded) -> str:
         }
         for name, verdict in zip(names, graded.verdicts, strict=True)
     ]
-    result = {"score": float(number(graded.points)), "output": shown_remark(graded), "tests": tests}
+    result = {"score": float(number(graded.points)), "output": pupil_remark(graded), "tests": tests}
     return json.dumps(result, indent=1, ensure_ascii=False) + "\n"

@@ -6,7 +6,14 @@ import base64
 import html
 from collections.abc import Mapping
 
-from thymio_sim_ros.grading.reports.texts import number, short_names, shown_message, shown_name, shown_remark
+from thymio_sim_ros.grading.reports.texts import (
+    number,
+    pupil_remark,
+    short_names,
+    shown_message,
+    shown_name,
+    shown_remark,
+)
 from thymio_sim_ros.grading.results import Graded, Verdict
 
 __all__ = ["index_page", "submission_page"]
@@ -34,7 +41,7 @@ def submission_page(graded: Graded, logs: Mapping[str, str]) -> str:
     names = short_names([verdict.test for verdict in graded.verdicts])
     parts = [_head(shown_name(graded))]
     parts.append(f"<p><b>{number(graded.points)} of {number(graded.maximum)} points</b></p>\n")
-    if remark := shown_remark(graded):
+    if remark := pupil_remark(graded):
         parts.append(f"<p>{html.escape(remark)}</p>\n")
     parts.append("<table><tr><th>Test</th><th>Verdict</th><th>Points</th></tr>\n")
     parts += [_row(name, verdict) for name, verdict in zip(names, graded.verdicts, strict=True)]

@@ -8,6 +8,7 @@ import stat
 from collections.abc import Sequence
 
 from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.grading.sandbox.readable import DEVICES
 
 __all__ = ["restrict", "version"]
 
@@ -47,8 +48,8 @@ def restrict(readable: Sequence[str], listable: str, writable: Sequence[str]) ->
         _allow(rules, path, (_EXECUTE | _READ_FILE | _READ_DIR) & rights)
     _allow(rules, listable, _READ_DIR)
     _allow(rules, "/proc", (_READ_FILE | _READ_DIR) & rights)
-    for path in ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"):
-        _allow(rules, path, (_READ_FILE | 2) & rights)
+    for name in DEVICES:
+        _allow(rules, f"/dev/{name}", (_READ_FILE | 2) & rights)
     for path in writable:
         _allow(rules, path, rights)
     syscalls.syscall(_RESTRICT_SELF, ctypes.c_int(rules), ctypes.c_uint32(0))

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 import os
 import pickle
-import shutil
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from thymio_sim_ros.grading.assignment import Limits
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.sandbox.job import Job, Report
-from thymio_sim_ros.grading.sandbox.readable import python_path, readable_paths
+from thymio_sim_ros.grading.sandbox.readable import python_path
 
 __all__ = ["LEVELS", "best_level", "run_job", "why_unavailable"]
 
 LEVELS: Mapping[str, str] = {
-    "bubblewrap": "own file system, processes and network, by bubblewrap",
     "namespaces": "own file system, processes and network, by Linux namespaces",
     "landlock": "files of others are closed and TCP is refused, by Landlock; UDP and the list of processes are open",
     "limits": "limits of CPU time, memory, processes and output only; files of your user and the network are OPEN",
 }
 """Levels, strongest first, and what they give."""
 
-AUTOMATIC = ("bubblewrap", "namespaces", "landlock")
+AUTOMATIC = ("namespaces", "landlock")
 """Levels that are chosen without being asked for."""
 
 _LAUNCHER = "thymio_sim_ros.grading.sandbox.launcher"
@@ -48,10 +46,6 @@ def why_unavailable(level: str) -> str:
     """Why a level is not available here; empty if it is. It is tried, not guessed."""
     if not sys.platform.startswith("linux"):
         return "found no Linux; on Windows use WSL 2"
-    if level == "bubblewrap" and shutil.which("bwrap") is None:
-        return "bwrap is not installed"
-    if level == "bubblewrap" and os.geteuid() == 0:
-        return "not used as root, for whom namespaces are enough"
     probe = b"def test_nothing(): pass\n"
     job = Job(level, ("test_probe.py",), {"test_probe.py": probe}, {}, None, Limits())
     try:
@@ -66,7 +60,7 @@ def run_job(job: Job) -> Report:
     limit = job.limits.wall_s + _GRACE_S
     environment = {**os.environ, "PYTHONPATH": python_path()}
     with subprocess.Popen(
-        _command(job),
+        [sys.executable, "-P", "-m", _LAUNCHER],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -83,21 +77,3 @@ def run_job(job: Job) -> Report:
     except ValueError:
         said = errors.decode("utf-8", "replace").strip().rpartition("\n")[2]
         raise GradingError(f"the sandbox ended with code {process.returncode}: {said or 'no message'}") from None
-
-
-def _command(job: Job) -> Sequence[str]:
-    launcher = [sys.executable, "-P", "-m", _LAUNCHER]
-    return [*_bubblewrap(int(job.limits.disk_mb * 1e6)), *launcher] if job.level == "bubblewrap" else launcher
-
-
-def _bubblewrap(disk_bytes: int) -> list[str]:
-    options = ["bwrap", "--unshare-all", "--die-with-parent", "--as-pid-1", "--new-session", "--cap-drop", "ALL"]
-    options += ["--proc", "/proc", "--dev", "/dev"]
-    for folder in ("/dev/shm", "/tmp", "/grade"):
-        options += ["--size", str(disk_bytes), "--tmpfs", folder]
-    for path in readable_paths():
-        if os.path.islink(path) and not os.readlink(path).startswith("/"):
-            options += ["--symlink", os.readlink(path), path]
-        else:
-            options += ["--ro-bind", os.path.realpath(path), path]
-    return [*options, "--chdir", "/"]

@@ -27,6 +27,7 @@ from thymio_sim_ros.grading.sandbox.confinement import Confinement, confine
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
 from thymio_sim_ros.grading.sandbox.readable import python_path, readable_paths
 from thymio_sim_ros.grading.sandbox.report_protocol import ForgedError, ReportProtocol
+from thymio_sim_ros.grading.sandbox.shown_paths import without_folders
 from thymio_sim_ros.grading.sandbox.usage import descendants
 from thymio_sim_ros.grading.sandbox.watched_process import Ended, LimitError, WatchedProcess
 from thymio_sim_ros.runlog.test_files import kept_files
@@ -60,7 +61,8 @@ def supervise(job: Job, place: Place) -> Report:
     syscalls.reap_orphans()
     supervisor = _Supervisor(job, place)
     supervisor.run()
-    return Report(supervisor.outcomes, supervisor.collected, supervisor.remark, supervisor.notes)
+    report = Report(supervisor.outcomes, supervisor.collected, supervisor.remark, supervisor.notes)
+    return without_folders(report, place.folder)
 
 
 class _Supervisor:

@@ -153,31 +153,33 @@ class WatchedProcess:
                 self._head, chunk = self._head + chunk[:room], chunk[room:]
             self._tail = (self._tail + chunk)[-_KEPT:]
             if self._size > self._limits.output_mb * 1e6:
-                raise LimitError("output limit", f"more than {self._limits.output_mb:g} MB of output")
+                raise LimitError("output limit", f"it printed more than {self._limits.output_mb:g} MB")
 
     def _check_limits(self) -> None:
         limits, now = self._limits, time.monotonic()
         memory_limit = int(limits.memory_mb * 1e6)
         self._polls += 1
         if self._polls % _MEMORY_POLLS == 0 and memory_used(memory_limit) > memory_limit:
-            raise LimitError("memory limit", f"more than {limits.memory_mb:g} MB of memory")
+            raise LimitError("memory limit", f"it used more than {limits.memory_mb:g} MB of memory")
         usage = used()
         if usage.cpu_s > limits.total_cpu_s:
             raise LimitError(
-                "CPU time limit", f"more than {limits.total_cpu_s:g} s of CPU time for all tests", is_final=True
+                "CPU time limit", f"it computed for more than {limits.total_cpu_s:g} s in all tests", is_final=True
             )
         if usage.cpu_s - self._test_began_s > limits.cpu_s:
-            raise LimitError("CPU time limit", f"more than {limits.cpu_s:g} s of CPU time")
+            text = f"it computed for more than {limits.cpu_s:g} s: perhaps in a loop without an end"
+            raise LimitError("CPU time limit", text)
         since, cpu_s = self._idle_from
         if usage.is_working or usage.cpu_s - cpu_s > max(0.02, _IDLE_SHARE * (now - since)):
             self._idle_from = (now, usage.cpu_s)
         elif now - since > limits.idle_s:
-            raise LimitError("idle limit", f"no process computed for {limits.idle_s:g} s: it sleeps or waits in vain")
+            text = f"it did nothing for {limits.idle_s:g} s: it sleeps, or waits for something that does not come"
+            raise LimitError("idle limit", text)
         if now > self._ends_at:
-            text = f"more than {limits.wall_s:g} s of real time for all tests, the last resort"
+            text = f"it took more than {limits.wall_s:g} s of real time in all tests, the last resort"
             raise LimitError("wall-clock limit", text, is_final=True)
         if self._disk_folder is not None and _disk_use(self._disk_folder) > limits.disk_mb * 1e6:
-            raise LimitError("disk limit", f"more than {limits.disk_mb:g} MB of files")
+            raise LimitError("disk limit", f"it wrote more than {limits.disk_mb:g} MB of files")
 
 
 def _read(file: int, selector: selectors.BaseSelector) -> bytes:

@@ -19,11 +19,13 @@ DOMAINS = range(1, 101)
 Source: docs/spec/ros-packaging.md section 4.
 """
 
-DOMAIN_PORT = 17400
-"""Loopback TCP port of domain 0. A process that listens at this port plus the id has reserved the domain."""
-
 DISCOVERY_PORT = 7400
 PORTS_PER_DOMAIN = 250
+RESERVATION_PORT = 2
+"""UDP port of a domain that DDS leaves unused. Who is bound to it on loopback has reserved the domain.
+
+UDP, because sandboxes may refuse TCP.
+"""
 PARTICIPANT_PORTS = (0, *range(10, 32, 2))
 """UDP ports of a domain: discovery by multicast, then its first participants'.
 
@@ -48,9 +50,9 @@ def reserved() -> Iterator[int]:
     begin = next(_turns)
     for turn in range(len(free)):
         domain = free[(begin + turn) % len(free)]
-        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as held:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as held:
             try:
-                held.bind(("127.0.0.1", DOMAIN_PORT + domain))
+                held.bind(("127.0.0.1", _port(domain, RESERVATION_PORT)))
             except OSError:
                 continue
             if _has_participants(domain):
@@ -64,8 +66,11 @@ def reserved() -> Iterator[int]:
 
 def _has_participants(domain: int) -> bool:
     """Whether a process uses the domain without a reservation."""
-    first = DISCOVERY_PORT + PORTS_PER_DOMAIN * domain
-    return not all(_is_free(first + port) for port in PARTICIPANT_PORTS)
+    return not all(_is_free(_port(domain, port)) for port in PARTICIPANT_PORTS)
+
+
+def _port(domain: int, number: int) -> int:
+    return DISCOVERY_PORT + PORTS_PER_DOMAIN * domain + number
 
 
 def _is_free(port: int) -> bool:

@@ -236,7 +236,9 @@ class Program:
         self._check_output()
         if self._check and self.exit_code:
             self._has_shown_errors = True
-            pytest.fail(f"{self.title} ended with exit code {self.exit_code}\n{self.errors}".rstrip())
+            # Its traceback has no room on a full disk either.
+            why = "" if os.fstatvfs(self._errors.fileno()).f_bavail else ": the disk is full"
+            pytest.fail(f"{self.title} ended with exit code {self.exit_code}{why}\n{self.errors}".rstrip())
 
     def _check_output(self) -> None:
         __tracebackhide__ = True
