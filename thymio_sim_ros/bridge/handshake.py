@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed, NegotiationError
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
-from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens, given_token
+from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError, given_token
 from thymio_sim_ros.bridge.origin_policy import is_allowed
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.protocol.messages import Status
@@ -40,11 +40,11 @@ class HandshakeCheck:
         self._tokens = tokens
         self._allowed_origins = allowed_origins
         self._log = log
-        self._attempts = AttemptLimiter(time.monotonic)
+        self._check = TokenCheck(tokens, allowed_origins)
         self._warned_s: dict[str, float] = {}
         """Time of the last warning, by topic."""
 
-    def check(self, connection: ServerConnection, request: Request) -> Response | None:
+    async def check(self, connection: ServerConnection, request: Request) -> Response | None:
         """Return the response that rejects a handshake without a valid token or from a foreign page, otherwise None.
 
         With a valid token any page is accepted. Without one, a page is accepted for now, because browsers show it only
@@ -53,13 +53,13 @@ class HandshakeCheck:
         assert isinstance(connection, SharedConnection)
         address = _address(connection)
         token = given_token(request.path, request.headers.get_all("Authorization"))
-        if self._tokens.is_required and not self._attempts.is_allowed_to_try(address):
-            self._warn("attempts", f"connections from {address} are rejected for some seconds: too many wrong tokens")
-            return connection.respond(HTTPStatus.TOO_MANY_REQUESTS, "Too many wrong tokens; wait some seconds.\n")
-        connection.role = self._tokens.role(token)
         origin, host = _header(request.headers, "Origin"), _header(request.headers, "Host")
+        try:
+            connection.role = await self._check.role(token, address, origin=origin, host=host)
+        except TooManyAttemptsError as error:
+            self._warn("attempts", f"connections from {address} are rejected for some seconds: too many wrong tokens")
+            return connection.respond(HTTPStatus.TOO_MANY_REQUESTS, f"{error}\n")
         if connection.role is None:
-            self._attempts.record_failure(address)
             self._warn("token", f"connection from {address} rejected: its token is wrong or missing")
             if origin is not None:
                 return None  # `reject` sends the reason

@@ -12,7 +12,7 @@ import ipaddress
 from collections.abc import Collection
 from urllib.parse import SplitResult, urlsplit
 
-__all__ = ["is_allowed", "is_local", "is_numeric"]
+__all__ = ["is_allowed", "is_local", "is_numeric", "is_same_local_name"]
 
 _FOXGLOVE_APPS = frozenset({"https://app.foxglove.dev", "https://studio.foxglove.dev", "file://"})
 """The hosted app, under both of its names, and desktop applications, whose pages are files."""
@@ -36,6 +36,15 @@ def is_local(origin: str, host: str | None) -> bool:
         return True
     server = _split(f"http://{host}")
     return server is not None and page.hostname == server.hostname and is_numeric(page.hostname)
+
+
+def is_same_local_name(origin: str | None, host: str | None) -> bool:
+    """Whether a page is from the name by which the server is addressed, and no foreign page can have that name."""
+    page, server = _split(origin or ""), _split(f"http://{host}")
+    name = page.hostname if page is not None else None
+    if not name or server is None or name != server.hostname:
+        return False
+    return "." not in name or name.endswith(".local")
 
 
 def _split(url: str) -> SplitResult | None:

@@ -11,7 +11,7 @@ from socket import socket
 
 from aiohttp import web
 
-from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens, given_token
+from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError, given_token
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.requests import MAX_BODY, RefusalError, answer
 from thymio_sim_ros.web.content import Content
@@ -30,8 +30,7 @@ class _Teacher:
 
     def __init__(self, classroom: Classroom, page: Page, token: str) -> None:
         self._classroom, self._page = classroom, page
-        self._tokens = Tokens(token)
-        self._limiter = AttemptLimiter(asyncio.get_running_loop().time)
+        self._tokens = TokenCheck(Tokens(token))
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
@@ -39,7 +38,7 @@ class _Teacher:
         if not path.startswith(_PREFIX):
             return await self._page.answer(request)
         try:
-            self._check(request)
+            await self._check(request)
             body = await _body(request)
             start_answer(request)
             done = await answer(self._classroom, request.method, path.removeprefix(_PREFIX), body)
@@ -53,15 +52,15 @@ class _Teacher:
             headers["Content-Disposition"] = f'attachment; filename="{done.file}"'
         return web.Response(body=done.body, headers=headers)
 
-    def _check(self, request: web.BaseRequest) -> None:
+    async def _check(self, request: web.BaseRequest) -> None:
         """Raise RefusalError without the token of the teacher. It is in a header, which no foreign page can send."""
-        address = request.remote or ""
-        if not self._limiter.is_allowed_to_try(address):
-            raise RefusalError(429, "too many wrong tokens; wait a minute")
         given = given_token("", request.headers.getall("Authorization", []))
-        if self._tokens.role(given) is None:
-            if given is not None:
-                self._limiter.record_failure(address)
+        origin, host = request.headers.get("Origin"), request.headers.get("Host")
+        try:
+            role = await self._tokens.role(given, request.remote or "", origin=origin, host=host)
+        except TooManyAttemptsError as error:
+            raise RefusalError(429, str(error)) from error
+        if role is None:
             raise RefusalError(401, "expected the token of the teacher: Authorization: Bearer …")
 
 

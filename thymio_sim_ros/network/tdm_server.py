@@ -22,6 +22,7 @@ from uuid import uuid4
 from websockets.asyncio.server import Server
 
 from aseba_vm.protocol.messages import Message as AsebaMessage
+from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.acceptor import Acceptor
@@ -33,6 +34,8 @@ from thymio_sim_ros.network.tdm.conversation.handshake import ManagerSettings
 from thymio_sim_ros.network.tdm.protocol.codec import decode, encode
 from thymio_sim_ros.network.tdm.protocol.constants import NodeType
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
+from thymio_sim_ros.network.tdm.protocol.messages import ConnectionHandshake
+from thymio_sim_ros.network.tdm.protocol.messages import Message as TdmMessage
 from thymio_sim_ros.network.tdm_peers import Peer, Report, TcpPeer, is_this_computer, serve_websocket
 
 __all__ = ["MAX_CLIENTS", "MAX_UNSENT", "TdmServer"]
@@ -77,7 +80,8 @@ class TdmServer:
         """
         self._opened = opened
         self._hub, self._settings, self._report = hub, settings, report
-        self._password, self._max_clients, self._max_unsent = password, max_clients, max_unsent
+        self._passwords = TokenCheck(Tokens(password))
+        self._max_clients, self._max_unsent = max_clients, max_unsent
         self._clock_ns = time.time_ns() - time.monotonic_ns()
         self.uuid = uuid4()
         """Its id."""
@@ -113,7 +117,7 @@ class TdmServer:
         for listener in (*tcp, *websocket):  # clients inherit it; otherwise the kernel keeps megabytes of old values
             listener.setsockopt(SOL_SOCKET, SO_SNDBUF, _KERNEL_BUFFER)
         self.port, self.ws_port = tcp[0].getsockname()[1], websocket[0].getsockname()[1]
-        manager = ManagerSettings(self.uuid, self.ws_port, self._password)
+        manager = ManagerSettings(self.uuid, self.ws_port, self._passwords.tokens.full)
         self._manager = DeviceManager(manager, self._now_ns())
         self._hub.follow(self)
         self._acceptor = Acceptor(tcp, self._serve_tcp, self._report_error)
@@ -217,6 +221,9 @@ class TdmServer:
         self._manager.join(client, is_local=is_this_computer(peer.address))
         try:
             await self._read(client, peer)
+        except TooManyAttemptsError as error:
+            self._report("tdm password", f"client {peer.address} of the device manager is disconnected: {error}")
+            peer.abort()
         except TdmFrameError as error:
             self._report("tdm frame", f"client {peer.address} of the device manager is disconnected: {error}")
             peer.abort()
@@ -235,7 +242,10 @@ class TdmServer:
             if client not in self._peers:
                 return
             with spent.measured():
-                compilation = self._manager.receive(client, decode(buffer))
+                message = decode(buffer)
+            await self._count_password(message, peer)
+            with spent.measured():
+                compilation = self._manager.receive(client, message)
                 asked = self._deliver()
             if compilation is not None:
                 result = await asyncio.get_running_loop().run_in_executor(self._compiler, compilation.run)
@@ -244,6 +254,11 @@ class TdmServer:
             while any(self._links[network].is_full for network in asked if network in self._links):
                 await asyncio.sleep(_FULL_PAUSE_S)
             await spent.pause_if_busy()
+
+    async def _count_password(self, message: TdmMessage, peer: Peer) -> None:
+        """Delay the message that has a client's password, or raise TooManyAttemptsError, as long as many were wrong."""
+        if isinstance(message, ConnectionHandshake) and not is_this_computer(peer.address):
+            await self._passwords.role(message.password, peer.address)
 
     def _deliver(self) -> set[int]:
         """Send what the manager has for networks and clients; return the networks that have got something."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
-from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens
+from thymio_sim_ros.bridge.access import TokenCheck, Tokens
 from thymio_sim_ros.bridge.protocol.constants import Role
 from thymio_sim_ros.network.http.access import AccessPolicy, check_origin, check_token, cors_headers
 from thymio_sim_ros.network.http.requests import RequestError
@@ -79,21 +81,25 @@ def test_a_preflight_request_names_methods_and_headers():
 
 
 def test_a_token_comes_in_the_query_or_in_a_header():
-    limiter = AttemptLimiter(lambda: 0.0)
-    assert check_token("/nodes?token=full-token", [], "a", WITH_TOKEN, limiter) is Role.FULL
-    assert check_token("/nodes", ["Bearer watch-token"], "a", WITH_TOKEN, limiter) is Role.READ_ONLY
-    assert check_token("/nodes", [], "a", LOOPBACK, limiter) is Role.FULL
+    check = TokenCheck(WITH_TOKEN.tokens)
+
+    def role(target, authorizations=(), tokens=check):
+        return asyncio.run(check_token(target, authorizations, "a", {}, tokens))
+
+    assert role("/nodes?token=full-token") is Role.FULL
+    assert role("/nodes", ["Bearer watch-token"]) is Role.READ_ONLY
+    assert role("/nodes", tokens=TokenCheck(LOOPBACK.tokens)) is Role.FULL
     with pytest.raises(RequestError) as caught:
-        check_token("/nodes", [], "a", WITH_TOKEN, limiter)
+        role("/nodes")
     assert caught.value.status == 401
 
 
 def test_tokens_cannot_be_guessed():
-    limiter = AttemptLimiter(lambda: 0.0)
-    statuses = []
-    for _ in range(40):
-        with pytest.raises(RequestError) as caught:
-            check_token("/nodes?token=wrong", [], "a", WITH_TOKEN, limiter)
-        statuses.append(caught.value.status)
-    assert statuses == [401] * 30 + [429] * 10
-    assert check_token("/nodes?token=full-token", [], "b", WITH_TOKEN, limiter) is Role.FULL
+    async def statuses():
+        check = TokenCheck(WITH_TOKEN.tokens, now_s=lambda: 0.0)
+        tries = [check_token("/nodes?token=wrong", [], "a", {}, check) for _ in range(40)]
+        found = await asyncio.gather(*tries, return_exceptions=True)
+        assert await check_token("/nodes?token=full-token", [], "b", {}, check) is Role.FULL
+        return [error.status for error in found]
+
+    assert asyncio.run(statuses()) == [401] * 35 + [429] * 5

@@ -65,7 +65,9 @@ class Served:
 
 
 @contextmanager
-def served(*nodes: MachineNode, allowed_origins: tuple[str, ...] = (), **limits: int) -> Iterator[Served]:
+def served(
+    *nodes: MachineNode, allowed_origins: tuple[str, ...] = (), password: str = "", **limits: int
+) -> Iterator[Served]:
     """Serve nodes, each alone on its network with the name thymio_<place>."""
     ready = threading.Event()
     found: list[Served] = []
@@ -75,7 +77,9 @@ def served(*nodes: MachineNode, allowed_origins: tuple[str, ...] = (), **limits:
     async def serve() -> None:
         hub, reports = Hub(), []
         networks = [MachineNetwork(node, place) for place, node in enumerate(nodes)]
-        server = TdmServer(hub, settings, lambda about, text: reports.append((about, text)), **limits)
+        server = TdmServer(
+            hub, settings, lambda about, text: reports.append((about, text)), password=password, **limits
+        )
         server.start()
         for network in networks:
             hub.add(network.network)

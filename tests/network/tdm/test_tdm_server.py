@@ -10,6 +10,8 @@ import random
 import socket
 import struct
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import pytest
 from websockets.asyncio.server import ServerConnection
@@ -21,6 +23,7 @@ from tests.network.tdm.raw_client import RawClient
 from tests.network.tdm.served import Served, served
 from tests.network.tdm.talk import values
 from tests.patience import PATIENCE_S, until
+from thymio_sim_ros.network import tdm_server
 from thymio_sim_ros.network.hub import Hub
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
 from thymio_sim_ros.network.tdm.protocol import messages as m
@@ -91,6 +94,23 @@ def test_connections_without_a_handshake_are_limited() -> None:
         for one in silent:
             one.close()
         assert found.reports[0] == ("tdm connections", f"4 connections to port {found.ws_port}: more are refused")
+
+
+def _gives_password(port: int, password: str) -> bool:
+    """Whether the device manager answers a client with this password."""
+    with RawClient(port, greet=False) as client:
+        client.send(m.ConnectionHandshake(password=password))
+        client.read()
+        return bool(client.received)
+
+
+def test_wrong_passwords_are_limited_and_do_not_lock_out_the_right_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tdm_server, "is_this_computer", lambda address: False)
+    with served(MachineNode(), password="chosen") as found:
+        with ThreadPoolExecutor(25) as pool:
+            assert not any(pool.map(partial(_gives_password, found.tcp_port), ["wrong"] * 75))
+        assert _gives_password(found.tcp_port, "chosen")
+    assert "tdm password" in dict(found.reports)
 
 
 @pytest.mark.parametrize("origin", ["https://example.org", "null", "http://192.168.1.7"])

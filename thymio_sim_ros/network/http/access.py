@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens, given_token, is_loopback
+from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError, given_token, is_loopback
 from thymio_sim_ros.bridge.origin_policy import is_local, is_numeric
 from thymio_sim_ros.bridge.protocol.constants import Role
 from thymio_sim_ros.network.http.requests import RequestError
@@ -51,17 +51,16 @@ def check_origin(headers: Mapping[str, str], policy: AccessPolicy) -> None:
         raise RequestError(403, f"pages from {origin[:100]!r} may not make requests; see allowed_origins")
 
 
-def check_token(
-    target: str, authorizations: Sequence[str], address: str, policy: AccessPolicy, limiter: AttemptLimiter
+async def check_token(
+    target: str, authorizations: Sequence[str], address: str, headers: Mapping[str, str], check: TokenCheck
 ) -> Role:
     """The role of a client. Raises RequestError without the token, or after too many wrong ones."""
     token = given_token(target, authorizations)
-    if policy.tokens.is_required and not limiter.is_allowed_to_try(address):
-        raise RequestError(429, "too many wrong tokens; wait a minute")
-    role = policy.tokens.role(token)
+    try:
+        role = await check.role(token, address, origin=headers.get("Origin"), host=headers.get("Host"))
+    except TooManyAttemptsError as error:
+        raise RequestError(429, str(error)) from error
     if role is None:
-        if token is not None:
-            limiter.record_failure(address)
         raise RequestError(401, "expected the token of this server: ?token=… or the header Authorization: Bearer …")
     return role
 

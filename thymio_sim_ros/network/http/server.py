@@ -16,7 +16,7 @@ from aiohttp import web
 
 from aseba_vm.protocol.messages import Message
 from aseba_vm.protocol.node_client import NodeClient
-from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens
+from thymio_sim_ros.bridge.access import TokenCheck, Tokens
 from thymio_sim_ros.bridge.protocol.constants import Role
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.network.http.access import AccessPolicy, check_origin, check_token, cors_headers
@@ -69,7 +69,7 @@ class HttpServer:
         self._gateway = Gateway()
         self._links: dict[Network, _Link] = {}
         self._loop = asyncio.get_running_loop()
-        self._limiter = AttemptLimiter(self._loop.time)
+        self._check = TokenCheck(tokens, settings.allowed_origins)
         self._pool = ThreadPoolExecutor(1, "http-compiler")
         self._compilations = 0
         self._stop = asyncio.Event()
@@ -157,7 +157,7 @@ class HttpServer:
             if request.method == "OPTIONS":
                 start_answer(request)
                 return _response(Reply(200, b"", "text/plain"), {**cors, "Allow": _ALLOW})
-            role = self._role(request)
+            role = await self._role(request)
             action = await _action(request)
             if role is not Role.FULL and self._gateway.is_change(action):
                 raise RequestError(403, "this token only reads")
@@ -172,9 +172,10 @@ class HttpServer:
                 response.force_close()
             return response
 
-    def _role(self, request: web.BaseRequest) -> Role:
+    async def _role(self, request: web.BaseRequest) -> Role:
         authorizations = request.headers.getall("Authorization", [])
-        return check_token(request.raw_path, authorizations, request.remote or "", self._policy, self._limiter)
+        address = request.remote or ""
+        return await check_token(request.raw_path, authorizations, address, request.headers, self._check)
 
     async def _carry_out(self, action: Action) -> Reply:
         result: asyncio.Future[Reply] = self._loop.create_future()
