@@ -299,3 +299,17 @@ def test_closing_twice_and_posting_afterwards_do_nothing() -> None:
     server.close()
     server.close()
     server.post(ev.AddChannels((CHANNEL,)))
+
+
+def test_connections_of_a_listening_socket_notice_that_their_peer_has_vanished() -> None:
+    for listener in listen("localhost", 0):
+        with listener, socket.create_connection(listener.getsockname()[:2]):
+            connection, _ = listener.accept()
+            with connection:
+                assert connection.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE) == 1
+                idle_s, period_s, probes = (
+                    connection.getsockopt(socket.IPPROTO_TCP, option)
+                    for option in (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
+                )
+                assert idle_s + period_s * probes <= 60
+                assert 0 < connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 60_000

@@ -13,7 +13,7 @@ from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer, EventSink, Serve
 from thymio_sim_ros.bridge.switchboard.events import Command
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 
-__all__ = ["ServerThread", "check_free", "listen"]
+__all__ = ["ServerThread", "check_free", "detect_lost_peer", "listen"]
 
 _LOOPBACK = ("127.0.0.1", "::1")
 """Addresses of `localhost`: a browser may try either first."""
@@ -23,6 +23,23 @@ _NO_ADDRESS = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 
 _TRIES = 20
 """Attempts to find a port that is free on two addresses."""
+
+
+_PROBES: tuple[tuple[str, int], ...] = (("TCP_KEEPIDLE", 30), ("TCP_KEEPINTVL", 10), ("TCP_KEEPCNT", 3))
+"""When a connection without traffic is probed, s, how often, s, and after how many probes it counts as lost."""
+_UNANSWERED_MS = 30_000
+"""Time after which a connection whose peer does not confirm sent bytes counts as lost. Linux retries for 15 minutes."""
+
+
+def detect_lost_peer(connection: socket.socket) -> None:
+    """End a TCP connection within a minute after its peer has vanished without closing it, with or without traffic.
+
+    Connections inherit it from a listening socket. Options that the system lacks are left out.
+    """
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for option, value in (*_PROBES, ("TCP_USER_TIMEOUT", _UNANSWERED_MS)):
+        if hasattr(socket, option):
+            connection.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
 
 
 def listen(address: str, port: int) -> list[socket.socket]:
@@ -78,6 +95,7 @@ def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         bound.bind(endpoint)
         if do_listen:
+            detect_lost_peer(bound)
             bound.listen(BACKLOG)
     except OSError as error:
         bound.close()

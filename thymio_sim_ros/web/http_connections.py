@@ -14,7 +14,7 @@ import logging
 import select
 from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
-from socket import IPPROTO_TCP, SO_SNDBUF, SOL_SOCKET, TCP_KEEPCNT, TCP_KEEPIDLE, TCP_KEEPINTVL, socket
+from socket import SO_SNDBUF, SOL_SOCKET, socket
 from types import MappingProxyType
 from typing import Any, cast
 
@@ -35,8 +35,6 @@ SEND_BUFFER = 131_072
 """Bytes that the kernel buffers for a client that does not read; by default these are megabytes."""
 MAX_AHEAD = 65_536
 """Bytes that a client may send while its request is answered: further requests, or an unread body."""
-_KEEP_ALIVE = ((TCP_KEEPIDLE, 30), (TCP_KEEPINTVL, 10), (TCP_KEEPCNT, 3))
-"""A client that has vanished without closing its connection, also that of a stream, is noticed within a minute; s."""
 COMMON_HEADERS = {
     "Server": "thymio-sim",
     "X-Content-Type-Options": "nosniff",
@@ -157,10 +155,7 @@ class _Acceptor:
         """Accept the connections of a listening socket, until it is cancelled."""
         loop = asyncio.get_running_loop()
         listener.setblocking(False)
-        # Accepted sockets inherit these options.
-        listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)
-        for option, value in _KEEP_ALIVE:
-            listener.setsockopt(IPPROTO_TCP, option, value)
+        listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)  # accepted sockets inherit it
         listener.listen(BACKLOG)
         while True:
             try:
