@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import pty
@@ -10,6 +11,7 @@ import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from random import Random
+from types import SimpleNamespace
 
 import pytest
 
@@ -94,6 +96,28 @@ def test_a_lost_connection_is_opened_again(listener: socket.socket) -> None:
             connection.sendall(encode(NodePresent(1, 5))[:4])
             connection.close()
             assert events.next() == LinkLost("the connection was closed")
+
+
+def test_only_a_robot_that_has_described_itself_is_tried_again_soon(
+    listener: socket.socket, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pauses: list[float] = []
+
+    async def pause(delay_s: float) -> None:
+        pauses.append(delay_s)
+
+    monkeypatch.setattr(robot_link, "asyncio", SimpleNamespace(**{**vars(asyncio), "sleep": pause}))
+    with linked(port_of(listener)) as (link, events):
+        for number in range(7):
+            connection, _ = listener.accept()
+            with connection:
+                assert events.next() == LinkOpened()
+                if number == 5:
+                    link.confirm()
+                connection.sendall(bytes([0xFF]) * 100)
+                assert isinstance(events.next(), LinkLost)
+        until(lambda: len(pauses) >= 7)
+    assert pauses[:7] == [0.25, 0.5, 1.0, 2.0, 4.0, 0.25, 0.5]
 
 
 def test_a_robot_that_is_not_there_is_reported_and_found_later() -> None:

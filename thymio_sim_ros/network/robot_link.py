@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode
+from thymio_sim_ros.bridge.server_thread import detect_lost_peer
 from thymio_sim_ros.network.robot_target import SerialTarget, Target, TcpTarget
 
 __all__ = ["LinkEvent", "LinkLost", "LinkOpened", "LinkReceived", "RobotLink"]
@@ -84,6 +85,7 @@ class RobotLink:
         self._stream: _Stream | None = None
         self._stop = asyncio.Event()
         self._is_closed = False
+        self._is_confirmed = False
         self._thread = threading.Thread(target=self._run, name="robot-link", daemon=True)
         self._thread.start()
 
@@ -91,6 +93,14 @@ class RobotLink:
         """Send bytes, which are dropped while there is no stream; from any thread."""
         if not self._is_closed:
             self._loop.call_soon_threadsafe(self._write, data)
+
+    def confirm(self) -> None:
+        """Note that a robot has described itself on this stream; from any thread.
+
+        If the stream ends, the next attempt follows soon. A port that opens is no robot yet: one that sends other data
+        is tried less and less often.
+        """
+        self._is_confirmed = True
 
     def close(self, last: bytes = b"") -> None:
         """Send `last`, then end stream and thread."""
@@ -118,15 +128,17 @@ class RobotLink:
     async def _connect_for_ever(self) -> None:
         pause_s = FIRST_PAUSE_S
         while True:
+            self._is_confirmed = False
             try:
                 async with asyncio.timeout(CONNECT_S):
                     self._stream = await _open(self._target)
             except (OSError, TimeoutError) as error:
                 self._on_event(LinkLost(_reason(error, f"no answer within {CONNECT_S:g} s")))
             else:
-                pause_s = FIRST_PAUSE_S
                 self._on_event(LinkOpened())
                 self._on_event(LinkLost(await self._read(self._stream)))
+            if self._is_confirmed:
+                pause_s = FIRST_PAUSE_S
             await asyncio.sleep(pause_s)
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
 
@@ -180,7 +192,9 @@ def _reason(error: Exception, timeout: str) -> str:
 async def _open(target: Target) -> _Stream:
     if isinstance(target, TcpTarget):
         reader, writer = await asyncio.open_connection(target.host, target.port)
-        writer.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        connection = writer.get_extra_info("socket")
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        detect_lost_peer(connection)
         return _Stream(reader, writer)
     return await _open_serial(target)
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from aseba_vm.protocol import Description, NamedVariable, NodePresent, Variables
 from aseba_vm.targets import THYMIO_II
 from tests.device.remote.pair import Pair
 from thymio_sim_ros.device.layout import described
 from thymio_sim_ros.device.programs.program import load_program
+from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
 from thymio_sim_ros.device.remote.ros_handlers import extended, served_natives
 from thymio_sim_ros.sim.commands import (
     BodyTwist,
@@ -76,6 +78,26 @@ def test_a_command_reaches_the_actuators(pair: Pair, command: object, expected: 
 def test_a_command_that_a_robot_does_not_know_is_refused(pair: Pair) -> None:
     with pytest.raises(ValueError, match="MoveRobot: a real robot cannot do this"):
         pair.robot.execute(MoveRobot(0.0, 0.0, 0.0), 0)
+
+
+@pytest.mark.parametrize("variables", [{"args": 4}, {"motor.left.target": 1}, {"motor.left.target": 2}])
+@pytest.mark.parametrize("command", [BodyTwist(0.1, 0.0, 500_000_000), MotorTargets(1, 1)])
+def test_a_robot_without_the_wheels_of_a_thymio_says_so_and_is_polled_on(
+    variables: dict[str, int], command: BodyTwist | MotorTargets
+) -> None:
+    robot = RemoteRobot()
+    robot.start(0)
+    robot.receive(NodePresent(1, 5))
+    robot.receive(Description(1, "arm", 5, 512, 64, 1060, len(variables), 0, 0))
+    for name, size in variables.items():
+        robot.receive(NamedVariable(1, size, name))
+    assert robot.is_connected
+    assert not robot.can_drive
+    with pytest.raises(ValueError, match=r"the robot cannot drive: it has no variable motor\..*right\.target"):
+        robot.execute(command, 0)
+    robot.poll(SECOND_NS)
+    robot.receive(Variables(1, 0, (5, 6)))
+    robot.poll(2 * SECOND_NS)
 
 
 def test_lights_of_the_robot_itself_cannot_be_set_but_switching_all_off_is_no_error(pair: Pair) -> None:

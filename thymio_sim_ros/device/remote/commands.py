@@ -73,6 +73,8 @@ class RemoteCommands:
         if self._session.node is None:
             raise ValueError(f"the robot is not connected ({self._session.problem})")
         match command:
+            case MotorTargets() | BodyTwist() | WheelVelocities() if missing := self._missing_motors:
+                raise ValueError(f"the robot cannot drive: it has no variable {' and no '.join(missing)} of one word")
             case MotorTargets(left, right):
                 self._override = None
                 self._drive((left, right))
@@ -110,7 +112,7 @@ class RemoteCommands:
     def on_read(self, start: int, values: Sequence[int]) -> None:
         """Compare the targets if these words include them: those of the program end a velocity at once."""
         override, targets, node = self._running_override, self._targets, self._session.node
-        if override is None or targets is None or node is None:
+        if override is None or targets is None or node is None or self._missing_motors:
             return
         address, _ = node.addresses[MOTORS[0]]
         if start == address and len(values) == len(MOTORS):  # requested by `_drive_for` just before it set others
@@ -135,6 +137,17 @@ class RemoteCommands:
         return self._override
 
     @property
+    def _missing_motors(self) -> tuple[str, ...]:
+        """The wheels' variables that the robot lacks, or has with another size: not every Aseba robot is a Thymio."""
+        addresses = {} if self._session.node is None else self._session.node.addresses
+        return tuple(name for name in MOTORS if addresses.get(name, (0, 0))[1] != 1)
+
+    @property
+    def can_drive(self) -> bool:
+        """Whether the robot is connected and has wheels."""
+        return self._session.node is not None and not self._missing_motors
+
+    @property
     def _targets(self) -> tuple[int, int] | None:
         left, right = (self._session.value(name) for name in MOTORS)
         return None if left is None or right is None else (left[0], right[0])
@@ -146,7 +159,7 @@ class RemoteCommands:
         if override is not None and override.targets == (left, right):
             override.ends_ns = ends_ns  # velocities may come faster than a robot can take them
             return
-        if override is None and node is not None and set(MOTORS) <= node.addresses.keys():
+        if override is None and node is not None:
             self._session.client.read(node.number, MOTORS)  # the last reading may be older than the program's targets
         before = override.before if override is not None else self._targets or (0, 0)
         self._override = _Override(self._session.program, before, (left, right), ends_ns)

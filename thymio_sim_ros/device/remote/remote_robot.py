@@ -48,6 +48,11 @@ class RemoteRobot:
         return self._session.node is not None
 
     @property
+    def can_drive(self) -> bool:
+        """Whether the robot is connected and has the wheels of a Thymio."""
+        return self._commands.can_drive
+
+    @property
     def name(self) -> str:
         """What the robot calls itself, and its number."""
         node = self._session.node

@@ -132,7 +132,7 @@ class RealRobot:
 
     def close(self) -> None:
         """Stop the wheels, end the link, destroy the topics."""
-        if self.robot.is_connected:
+        if self.robot.can_drive:
             self.robot.execute(MotorTargets(0, 0), self._now_ns())
         self._mailbox.close()
         self._link.close(b"".join(map(encode, self.robot.pop_messages())))
@@ -179,6 +179,7 @@ class RealRobot:
         self.flush()
 
     def _connect(self) -> None:
+        self._link.confirm()
         self._node.get_logger().info(f"robot {self._target}: connected to {self.robot.name}")
         absent = left_out(self.robot)
         if absent != self._left_out:
