@@ -23,6 +23,7 @@ from websockets.asyncio.server import Server
 
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError
+from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.acceptor import Acceptor
@@ -45,6 +46,8 @@ MAX_CLIENTS = 32
 MAX_UNSENT = 4 << 20
 """Bytes that wait for a client that does not read; it is disconnected beyond them."""
 
+_EVICTED = {Phase.SILENT: 0.0}
+"""Only clients without a handshake are evicted for a new one, at once: a handshake takes milliseconds."""
 _PERIOD_S, _IDLE_PERIOD_S = 0.05, 0.5
 """Time between two looks at what is due, with clients and without."""
 _SLICE_S = 0.002
@@ -82,6 +85,7 @@ class TdmServer:
         self._hub, self._settings, self._report = hub, settings, report
         self._passwords = TokenCheck(Tokens(password))
         self._max_clients, self._max_unsent = max_clients, max_unsent
+        self._slots = Connections(max_clients, time.monotonic)
         self._clock_ns = time.time_ns() - time.monotonic_ns()
         self.uuid = uuid4()
         """Its id."""
@@ -212,15 +216,20 @@ class TdmServer:
 
     async def _serve(self, peer: Peer) -> None:
         """Process messages of a client until it disconnects."""
-        if len(self._peers) >= self._max_clients:
+        if self._slots.is_full and (silent := self._slots.eviction_candidate(_EVICTED)) is not None:
+            self._slots.remove(silent)
+            silent.close()
+        if self._slots.is_full:
             self._report("tdm clients", f"{len(self._peers)} clients of the device manager: more are rejected")
             peer.abort()
             return
         client = next(self._client_numbers)
+        slot = self._slots.add(peer.address)
+        slot.close = partial(self._disconnect, client, "another client needs its place, and it has sent no handshake")
         self._peers[client] = peer
         self._manager.join(client, is_local=is_this_computer(peer.address))
         try:
-            await self._read(client, peer)
+            await self._read(client, peer, slot)
         except TooManyAttemptsError as error:
             self._report("tdm password", f"client {peer.address} of the device manager is disconnected: {error}")
             peer.abort()
@@ -232,11 +241,12 @@ class TdmServer:
             peer.abort()
         finally:
             self._peers.pop(client, None)
+            self._slots.remove(slot)
             self._congested.discard(client)
             self._manager.leave(client)
             self._deliver()
 
-    async def _read(self, client: int, peer: Peer) -> None:
+    async def _read(self, client: int, peer: Peer, slot: ConnectionSlot) -> None:
         spent = self._throttle.client()
         async for buffer in peer.buffers():
             if client not in self._peers:
@@ -246,6 +256,8 @@ class TdmServer:
             await self._count_password(message, peer)
             with spent.measured():
                 compilation = self._manager.receive(client, message)
+                if self._manager.is_greeted(client):
+                    self._slots.set_phase(slot, Phase.STREAMING)
                 asked = self._deliver()
             if compilation is not None:
                 result = await asyncio.get_running_loop().run_in_executor(self._compiler, compilation.run)

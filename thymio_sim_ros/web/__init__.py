@@ -1,7 +1,6 @@
 """The HTTP server of the page: static files with connection limits, independent of ROS.
 
 content       files, playgrounds and configuration as documents: bytes, type, entity tag
-connections   open connections and their limits
 hosts         names by which a server may be addressed
 http_connections
               connections with limits, on aiohttp (imported only in the server's thread: that takes a third of a second)

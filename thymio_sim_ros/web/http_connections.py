@@ -20,7 +20,7 @@ from typing import Any, cast
 
 from aiohttp import web
 
-from thymio_sim_ros.web.connections import Connections, ConnectionSlot, Phase
+from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
 
 __all__ = ["COMMON_HEADERS", "Handler", "Report", "serve_connections", "start_answer", "start_stream", "text_response"]
 

@@ -180,6 +180,25 @@ def test_more_clients_than_the_limit_are_rejected() -> None:
         RawClient(found.tcp_port).socket.close()
 
 
+def test_silent_connections_make_room_for_clients_and_the_oldest_goes_first() -> None:
+    with served(MachineNode(), max_clients=3) as found, RawClient(found.tcp_port) as greeted:
+        silent = [RawClient(found.tcp_port, greet=False)]
+        until(lambda: found.server.client_count == 2)
+        silent.append(RawClient(found.tcp_port, greet=False))
+        until(lambda: found.server.client_count == 3)
+        with RawClient(found.tcp_port) as first:
+            silent[0].wait_for_end()
+            with RawClient(found.tcp_port) as second:
+                silent[1].wait_for_end()
+                for client in (greeted, first, second):
+                    client.received.clear()
+                    client.wait_for(m.Ping)
+                with RawClient(found.tcp_port, greet=False) as third:
+                    third.wait_for_end()
+        for one in silent:
+            one.socket.close()
+
+
 def test_a_client_that_does_not_read_is_disconnected_and_others_are_served() -> None:
     with served(MachineNode(), max_unsent=200_000) as found, RawClient(found.tcp_port) as other:
         stalled = socket.socket()

@@ -91,6 +91,11 @@ class DeviceManager:
         """Add a connection, which must begin with a handshake."""
         self._directory.clients.add(Client(client, is_local, self._directory.now_ns))
 
+    def is_greeted(self, client: int) -> bool:
+        """Whether a connection has given its handshake and was not rejected."""
+        found = self._directory.clients.get(client)
+        return found is not None and found.is_greeted
+
     def leave(self, client: int) -> None:
         """Remove a connection and take its nodes back."""
         self._directory.clients.remove(client)

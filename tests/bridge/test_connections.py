@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.web.connections import MIN_WAIT_S, TIME_LIMIT_S, Connections, ConnectionSlot, Phase
+from thymio_sim_ros.bridge.connections import MIN_WAIT_S, TIME_LIMIT_S, Connections, ConnectionSlot, Phase
 
 
 class Clock:

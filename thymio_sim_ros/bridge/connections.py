@@ -10,7 +10,7 @@ in the queue of the kernel.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf
@@ -108,11 +108,14 @@ class Connections:
             slot.close()
         return len(overdue)
 
-    def eviction_candidate(self) -> ConnectionSlot | None:
-        """The connection to close for a new one if it stays idle, or None if there is none at the moment."""
+    def eviction_candidate(self, min_wait_s: Mapping[Phase, float] = MIN_WAIT_S) -> ConnectionSlot | None:
+        """The connection to close for a new one if it stays idle, or None if there is none at the moment.
+
+        `min_wait_s`: time after which a connection in each phase may be evicted; in other phases it never is.
+        """
         now_s = self._now_s()
         waiting = [
-            slot for slot in self._slots if slot.phase in MIN_WAIT_S and now_s - slot.since_s >= MIN_WAIT_S[slot.phase]
+            slot for slot in self._slots if slot.phase in min_wait_s and now_s - slot.since_s >= min_wait_s[slot.phase]
         ]
         waiting.sort(key=lambda slot: (-self._by_address[slot.address], slot.phase, slot.since_s))
         return next((slot for slot in waiting if not slot.has_pending_io()), None)
