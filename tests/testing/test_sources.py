@@ -11,7 +11,14 @@ from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.program_assignment import RobotId
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.resources import ResourceError
-from thymio_sim_ros.testing.sources import beside, is_name, playground_of, playground_source, program_source, programs_of
+from thymio_sim_ros.testing.sources import (
+    beside,
+    is_name,
+    playground_of,
+    playground_source,
+    program_source,
+    programs_of,
+)
 
 
 def _program_of(value: Any, folder: Path | None = None) -> ThymioProgram:
