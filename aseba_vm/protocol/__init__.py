@@ -66,6 +66,7 @@ from aseba_vm.protocol.messages import (
     decode,
     device_name,
     encode,
+    printable,
 )
 from aseba_vm.protocol.node_client import NodeClient
 from aseba_vm.protocol.remote_node import RemoteNode
@@ -129,5 +130,6 @@ __all__ = [
     "decode",
     "device_name",
     "encode",
+    "printable",
     "reports",
 ]

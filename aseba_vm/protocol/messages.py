@@ -254,6 +254,11 @@ class DeviceInfo(Message):
     data: fields.Bytes8
 
 
+def printable(name: str) -> str:
+    """A name without the characters that cannot be shown: terminals and logs would act on control characters."""
+    return "".join(filter(str.isprintable, name)).strip()
+
+
 def device_name(name: str) -> bytes:
     """A name as data of a device, of an even size.
 

@@ -139,7 +139,7 @@ class NetworkNode:
                 yield from self._device_info(message.kind)
             case protocol.SetDeviceInfo():
                 if message.kind == NAME:
-                    self.name = message.data[:MAX_NAME].decode(errors="ignore").rstrip()
+                    self.name = protocol.printable(message.data[:MAX_NAME].decode(errors="ignore"))
             case _:
                 self._run_control(message)
                 if isinstance(message, PAUSING):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from aseba_vm import TargetDescription
-from aseba_vm.protocol import Message, reports
+from aseba_vm.protocol import Message, printable, reports
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device.layout import described, target
 from thymio_sim_ros.device.remote.commands import RemoteCommands
@@ -56,7 +56,9 @@ class RemoteRobot:
     def name(self) -> str:
         """What the robot calls itself, and its number."""
         node = self._session.node
-        return "" if node is None else f"{node.description.name} (node {node.number}, protocol {node.version})"
+        return (
+            "" if node is None else f"{printable(node.description.name)} (node {node.number}, protocol {node.version})"
+        )
 
     @property
     def target(self) -> TargetDescription:

@@ -171,6 +171,9 @@ def test_a_new_name_reaches_the_node_and_all_clients() -> None:
     talk.take(2, m.NodesChanged)
     assert talk.ask(2, m.RenameNode, NODE, "mine").error == ErrorCode.UNKNOWN_NODE
     assert talk.ask(1, m.RenameNode, NODE, "n" * 56).error == ErrorCode.UNKNOWN_NODE
+    assert talk.ask(1, m.RenameNode, NODE, "\x1b\x07\n").error == ErrorCode.UNKNOWN_NODE
+    assert isinstance(talk.ask(1, m.RenameNode, NODE, "\x1b[2JÉ\nm\x9bil\u202e"), m.RequestCompleted)
+    assert talk.networks[0][0].name == talk.take(2, m.NodesChanged)[0].nodes[0].name == "[2JÉmil"
     assert isinstance(talk.ask(1, m.RenameNode, NODE, "Émile"), m.RequestCompleted)
     assert talk.networks[0][0].name == "Émile"
     assert talk.take(2, m.NodesChanged)[0].nodes[0].name == "Émile"

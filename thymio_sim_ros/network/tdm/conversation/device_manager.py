@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from uuid import UUID, uuid4
 
-from aseba_vm.protocol.messages import GetDeviceInfo, GetExecutionState
+from aseba_vm.protocol.messages import GetDeviceInfo, GetExecutionState, printable
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from aseba_vm.protocol.node_client import NodeClient
 from aseba_vm.protocol.reports import EventReceived, NodeConnected, NodeDisconnected, Report
@@ -190,7 +190,7 @@ class DeviceManager:
             reports.remove_node(self._directory, known)
         key = network.ids.setdefault(address, self._new_id())
         remote = network.link.nodes[address]
-        name = network.name or remote.description.name
+        name = network.name or printable(remote.description.name)
         node = ManagedNode(key, network.group, number, network.link, remote, kind=network.kind, name=name)
         self._directory.nodes[key] = node
         source = network.link.source

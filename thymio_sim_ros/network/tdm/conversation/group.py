@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from uuid import UUID
 
+from aseba_vm.protocol.messages import printable
 from thymio_sim_ros.network.tdm.protocol.errors import ValueTypeError
 from thymio_sim_ros.network.tdm.protocol.messages import (
     EventDescription,
@@ -62,7 +63,7 @@ class Group:
 
     def set_variables(self, values: Sequence[NamedValue]) -> bool:
         """Set shared variables; null removes one. False if there are too many."""
-        merged = {**self.variables, **{value.name: value.value for value in values}}
+        merged = {**self.variables, **{printable(value.name): value.value for value in values}}
         kept = {name: value for name, value in merged.items() if name and not _is_null(value)}
         if sum(len(name) + len(value) for name, value in kept.items()) > MAX_SHARED_BYTES:
             return False

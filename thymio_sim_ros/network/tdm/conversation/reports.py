@@ -6,7 +6,7 @@ Source: docs/spec/aseba-protocol.md section 2.3.
 from __future__ import annotations
 
 from aseba_vm.protocol import reports
-from aseba_vm.protocol.messages import SetBytecode, Step
+from aseba_vm.protocol.messages import SetBytecode, Step, printable
 from thymio_sim_ros.network.tdm.conversation.breakpoints import answer_breakpoints, record_breakpoint
 from thymio_sim_ros.network.tdm.conversation.directory import Directory
 from thymio_sim_ros.network.tdm.conversation.managed_node import ManagedNode
@@ -41,7 +41,7 @@ def handle(directory: Directory, node: ManagedNode, report: reports.Report) -> N
             record_breakpoint(directory, node, pc, is_set=is_set)
         case reports.DeviceInfoReceived(kind=kind, data=data):
             if kind == _DEVICE_NAME and data:
-                node.name = data.decode(errors="replace").rstrip()
+                node.name = printable(data.decode(errors="replace"))
                 directory.announce(node)
         case reports.RequestTimedOut(request=request):
             if isinstance(request, SetBytecode):

@@ -11,7 +11,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from aseba_vm.protocol.messages import SetDeviceInfo, UserMessage, device_name
+from aseba_vm.protocol.messages import SetDeviceInfo, UserMessage, device_name, printable
 from thymio_sim_ros.network.tdm.conversation import program_requests
 from thymio_sim_ros.network.tdm.conversation.breakpoints import clear_breakpoints
 from thymio_sim_ros.network.tdm.conversation.clients import Client
@@ -94,12 +94,12 @@ def release(directory: Directory, node: ManagedNode) -> None:
 
 def _rename(directory: Directory, client: Client, message: m.RenameNode) -> None:
     node = directory.node(message.node_id)
-    name = message.new_name.encode()
-    if node is None or not client.is_local or not 0 < len(name) <= MAX_NAME_BYTES:
+    name = printable(message.new_name)
+    if node is None or not client.is_local or not 0 < len(name.encode()) <= MAX_NAME_BYTES:
         directory.clients.fail(client.number, message.request_id, ErrorCode.UNKNOWN_NODE)
         return
-    node.name = message.new_name
-    node.link.send(SetDeviceInfo(node.link.source, node.number, _DEVICE_NAME, device_name(message.new_name)))
+    node.name = name
+    node.link.send(SetDeviceInfo(node.link.source, node.number, _DEVICE_NAME, device_name(name)))
     directory.announce(node)
     directory.clients.complete(client.number, message.request_id)
 
@@ -177,7 +177,9 @@ def _register_events(directory: Directory, client: Client, message: m.RegisterEv
     if directory.locked_nodes(client, message.node_or_group_id):
         group = directory.group(message.node_or_group_id)
         error = ErrorCode.UNKNOWN
-        if group is not None and group.set_events([(event.name, event.fixed_sized) for event in message.events]):
+        if group is not None and group.set_events(
+            [(printable(event.name), event.fixed_sized) for event in message.events]
+        ):
             error = ErrorCode.NONE
             directory.clients.notify(group.id, Watch.SHARED_EVENTS, group.events_message())
     directory.clients.finish(client.number, message.request_id, error)
@@ -191,7 +193,8 @@ def _send_events(directory: Directory, client: Client, message: m.SendEvents) ->
     node = nodes[0]
     sent = []
     for event in message.events:
-        size = node.group.event_size(event.name)
+        name = printable(event.name)
+        size = node.group.event_size(name)
         if size is None:
             continue  # the reference ignores it too
         try:
@@ -201,7 +204,7 @@ def _send_events(directory: Directory, client: Client, message: m.SendEvents) ->
         if len(words) != size:
             directory.clients.fail(client.number, message.request_id, ErrorCode.UNSUPPORTED_VARIABLE_TYPE)
             return
-        sent.append(UserMessage(node.link.source, node.group.event_number(event.name), words))
+        sent.append(UserMessage(node.link.source, node.group.event_number(name), words))
     node.link.send(*sent)
     directory.clients.complete(client.number, message.request_id)
 
