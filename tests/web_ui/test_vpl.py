@@ -94,6 +94,9 @@ def set_sensors(page: Any, row: int, states: dict[int, int]) -> None:
 def set_slider(page: Any, look: str, value: str) -> None:
     """Move a slider by keys until it shows a value."""
     slider = page.locator(f"#vpl-block [data-look={look}] input")
+    if look in ("left", "right"):  # upright, as in the picture of the block
+        box = slider.bounding_box()
+        assert box["height"] > 2 * box["width"]
     key = "ArrowRight" if value.lstrip("-").isdigit() and int(value) > 0 else "ArrowLeft"
     for _ in range(40):
         if page.locator(f"#vpl-block [data-look={look}] output").inner_text() == value:
