@@ -12,7 +12,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT
 from thymio_sim_ros import resources
-from thymio_sim_ros.loading import is_playground_text, load_playground, read_text
+from thymio_sim_ros.loading import is_playground_text, load_playground, read_program, read_text
 from thymio_sim_ros.resources import ResourceError
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
@@ -180,3 +180,27 @@ def test_a_file_that_is_no_program_by_its_name_is_not_read(tmp_path: Path, name:
 )
 def test_what_is_content_opens_no_file(value: str, is_text: bool) -> None:
     assert is_playground_text(value) is is_text
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["follower.aesl.txt", "follower (1).aesl", "follower - Copy.aesl", "FOLLOWER.AESL", "follower.aesl.download"],
+)
+def test_names_that_browsers_and_windows_give_are_names_of_programs(tmp_path, name):
+    (tmp_path / name).write_text("var a = 1")
+    assert read_text(str(tmp_path / name)) == ("var a = 1", name)
+
+
+def test_a_network_is_opened_whatever_its_name_is(tmp_path):
+    path = tmp_path / "follower.xml"
+    path.write_text("<network><node>var a</node></network>")
+    assert read_program(str(path)).source == "var a"
+
+
+def test_of_another_file_only_its_kind_is_said(tmp_path):
+    (tmp_path / "secret.conf").write_text("password = 1")
+    with pytest.raises(ResourceError, match=r"secret\.conf: expected a file whose name ends in \.aesl"):
+        read_text(str(tmp_path / "secret.conf"))
+    (tmp_path / "lesson.vpl3").write_text('{"basicBlocks": [], "program": []}')
+    with pytest.raises(ResourceError, match=r"lesson\.vpl3: this is a program of VPL 3; open it"):
+        read_text(str(tmp_path / "lesson.vpl3"))

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from aseba_vm import AeslError
+from aseba_vm.aesl.foreign_files import looks_like_network, refuse_foreign
 from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 from thymio_sim_ros import resources
@@ -33,7 +34,9 @@ _PART = "#"
 _UNNAMED = "uploaded playground"
 _PLAYGROUNDS = 'JSON with "format": 1, XML with <aseba-playground>, or a zip that holds one'
 _PROGRAMS = (".aesl", ".aseba", ".txt")
-"""Suffixes of program files. Other files are not opened, because error messages quote from the content."""
+"""Suffixes of program files. Of other files only the kind is said, because error messages quote from the content."""
+_PROGRAM_NAME = re.compile(r"\.(?:aesl|aseba|txt)(?![a-z])", re.IGNORECASE)
+"""Also in the names that browsers and Windows give: `follower.aesl.txt`, `follower.aesl.download`, `FOLLOWER.AESL`."""
 _BEFORE_TEXT = "\ufeff \t\r\n"
 
 
@@ -154,14 +157,24 @@ def read_text(path: str) -> tuple[str, str]:
     if path == NO_PROGRAM:
         return "", NO_PROGRAM
     found = resources.find_program(path)
-    if found.suffix.lower() not in _PROGRAMS:
-        raise resources.ResourceError(f"{found}: expected a file whose name ends in {', '.join(_PROGRAMS)}")
     try:
-        return decode(found.read_bytes()).text, found.name
+        text = decode(found.read_bytes()).text
+        if not _is_program(found.name, text):
+            refuse_foreign(text)
+            raise resources.ResourceError(f"{found}: expected a file whose name ends in {', '.join(_PROGRAMS)}")
     except TextError as error:
-        raise resources.ResourceError(f"{found}: line {error.line}, column {error.column}: {error}") from error
+        place = "" if error.kind.startswith("foreign-") else f" line {error.line}, column {error.column}:"
+        if not place or _PROGRAM_NAME.search(found.name):
+            raise resources.ResourceError(f"{found}:{place} {error}") from error
+        raise resources.ResourceError(f"{found}: expected a file whose name ends in {', '.join(_PROGRAMS)}") from error
     except OSError as error:
         raise resources.ResourceError(f"{found}: {error.strerror}; expected a file that can be read") from error
+    return text, found.name
+
+
+def _is_program(name: str, text: str) -> bool:
+    """Whether a file is opened: an .aesl file by its content, a plain program by its name."""
+    return _PROGRAM_NAME.search(name) is not None or looks_like_network(text)
 
 
 def check_behaviour(name: str, layout: str = THYMIO) -> str:

@@ -9,6 +9,7 @@ read.
 
 from __future__ import annotations
 
+from aseba_vm.aesl.foreign_files import refuse_foreign
 from aseba_vm.aesl.network import Network, Node, Plugin
 from aseba_vm.aesl.reader import MAX_CHARACTERS, MAX_NODES, checked_length, read
 from aseba_vm.aesl.text_decoding import decode
@@ -35,11 +36,17 @@ def loads(text: str | bytes, *, strict: bool = False) -> Network:
             text = decode(text).text
         except TextError as error:
             raise AeslError(error.kind, error.arguments, error.line, error.column) from error
+    if strict:
+        refuse_foreign(text)
     return read(text, is_strict=strict)
 
 
 def bare(text: str, name: str) -> Network:
-    """Return the network of a plain program for nodes called ``name``. Raises AeslError if it is too long."""
+    """Return the network of a plain program for nodes called ``name``.
+
+    Raises AeslError if it is too long, or the file of another program.
+    """
+    refuse_foreign(text)
     return Network(nodes=(Node(name, code=checked_length(text)),))
 
 

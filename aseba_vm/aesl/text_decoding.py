@@ -6,6 +6,7 @@ import codecs
 import re
 from dataclasses import dataclass
 
+from aseba_vm.aesl.foreign_files import refuse_foreign_bytes
 from aseba_vm.errors import TextError
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
@@ -30,7 +31,11 @@ class TextFile:
 
 
 def decode(data: bytes) -> TextFile:
-    """Return the text of a file. Raises TextError with the position of the first invalid byte."""
+    """Return the text of a file.
+
+    Raises TextError with the position of the first invalid byte, or for a file of another program that is no text.
+    """
+    refuse_foreign_bytes(data)
     encoding = next((name for mark, name in (*_MARKS, *_UNMARKED) if data.startswith(mark)), None)
     if encoding is None:
         declared = _DECLARED.match(data)
