@@ -54,6 +54,8 @@ def test_a_broken_program_is_located(capsys, tmp_path):
 def test_a_program_that_is_no_text_is_refused(capsys, tmp_path):
     program = tmp_path / "picture.aesl"
     program.write_bytes(b"\x89PNG\xff\xfe")
+    assert "this is a picture; choose the file of the program" in refused(capsys, "--program", str(program))
+    program.write_bytes(b"var a\xff")
     assert "UTF-8" in refused(capsys, "--program", str(program))
 
 
