@@ -12,9 +12,9 @@ import threading
 import pytest
 
 from tests.patience import PATIENCE_S
+from thymio_sim_ros.bridge import connections as places
 from thymio_sim_ros.bridge.connections import Phase
 from thymio_sim_ros.web import Content, PageThread, Settings
-from thymio_sim_ros.web import connections as places
 
 pytestmark = pytest.mark.process
 
