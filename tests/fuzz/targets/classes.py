@@ -158,7 +158,8 @@ def _reports() -> Iterator[bytes]:
     head = {"secret": SECRET}
     rows = (
         head | {"do": "collected", "tests": [["t.py::a", "3"]], "notes": []}, head | {"do": "begin", "test": "t.py::a"},
-        head | {"do": "result", "test": "t.py::a", "outcome": "passed"}, head | {"do": "end"},
+        head | {"do": "result", "test": "t.py::a", "phase": "", "outcome": "passed", "message": ""},
+        head | {"do": "end"},
     )  # fmt: skip
     yield b"\n".join(json.dumps(row).encode() for row in rows)
 
