@@ -68,7 +68,8 @@ def test_every_native_function_is_called():
 #: (docs/spec/aseba-language.md section 9.1, rule 8).
 UNREACHABLE = {"static-read-out-of-bounds", "static-write-out-of-bounds"}
 #: Limits of our own and faults of the machine's user have tests elsewhere (test_limits.py, test_vm.py),
-#: as have hints (test_hints.py), files of other programs (test_foreign_files.py) and the words of the command line (cli/test_main.py).
+#: as have hints (test_hints.py), files of other programs (test_foreign_files.py) and the words of the command line
+#: (cli/test_main.py).
 ELSEWHERE = (
     "too-many-tokens",
     "too-many-elements",
