@@ -10,6 +10,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
 from typing import Any
 
 import pytest
@@ -132,6 +133,34 @@ def test_message_objects_arrive() -> None:
         publisher.publish(sent)
         _until(lambda: bool(received), sender, receiver)
     assert received == [sent]
+
+
+def test_ctrl_c_cannot_interrupt_a_function_whose_pointer_c_uses() -> None:
+    """KeyboardInterrupt is raised in Python functions only; in one that C calls it is lost, and C crashed with 0."""
+    called: set[str] = set()
+    ours = typesupport.build.__code__.co_filename
+
+    def record(frame: FrameType, event: str, _argument: object) -> None:
+        if event == "call" and frame.f_code.co_filename == ours:
+            called.add(frame.f_code.co_name)
+
+    check_for_type_support(TFMessage)
+    with _peers("sender", "receiver") as (sender, receiver):
+        sys.setprofile(record)
+        try:
+            publisher = sender.node.create_publisher(TFMessage, "/tf", 10)
+            subscription = receiver.node.create_subscription(TFMessage, "/tf", lambda _message: None, 10)
+            assert called == set()
+            _until(lambda: publisher.get_subscription_count() == 1, sender, receiver)
+            publisher.publish(TFMessage(transforms=[tf2_messages.to_message(BASE)]))
+            deadline = Deadline()
+            while (taken := subscription.handle.take_message(TFMessage, False)) is None:
+                assert not deadline.is_over
+        finally:
+            sys.setprofile(None)
+    assert taken[0].transforms == [tf2_messages.to_message(BASE)]
+    # The others return false or 0, at which rclpy raises an error.
+    assert called - {"_held", "_hold", "destroy"} == {"convert_from_py", "serialize", "deserialize", "<lambda>"}
 
 
 def test_another_middleware_is_rejected_by_name() -> None:

@@ -139,7 +139,7 @@ SerializedSize = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_void_p)
 # What rclpy finds in a message class (rosidl_generator_py); they are called with the lock of the interpreter.
 Create = ctypes.PYFUNCTYPE(ctypes.c_void_p)
 ConvertFromPython = ctypes.PYFUNCTYPE(ctypes.c_bool, ctypes.py_object, ctypes.c_void_p)
-ConvertToPython = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p)
+ConvertToPython = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.POINTER(ctypes.py_object))
 Destroy = ctypes.PYFUNCTYPE(None, ctypes.c_void_p)
 
 Dispatch = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)

@@ -11,6 +11,11 @@ one reference to a Python object: the bytes that the codec made of a message tha
 made of received bytes. The Fast DDS callbacks copy these bytes to and from the buffer of Fast CDR by three of its
 functions that raise no C++ exceptions, since an exception could not pass through Python.
 
+Python handles Ctrl-C between two instructions of any Python function, also of one that C calls; the KeyboardInterrupt
+is then lost and C gets 0. Therefore a pointer that C uses without a check (of a table, of a new message, of a message
+for Python) comes from a callable that is implemented in C, such as a filled `functools.cache`, which has no such
+instructions.
+
 The middleware does not report when it stops using a structure; therefore everything that is built here is kept until
 the process ends. The alternative, compiling tf2_msgs on the user's computer, would take a minute and one ABI for each
 Python version.
@@ -19,7 +24,9 @@ Python version.
 from __future__ import annotations
 
 import ctypes
+import functools
 import logging
+import operator
 import os
 import struct
 import sys
@@ -175,11 +182,15 @@ def build(message: SequenceType, element_type: type, codec: Codec | None = None)
     description, sources = _description(message, element, keep), _sources(message, element, keep)
     getters = [_getter(part, keep) for part in (type_hash, description, sources)]
     # Called only during the creation of a publisher or subscription, in the thread that creates it.
-    dispatch = rosidl_structs.Dispatch(lambda _handle, identifier: addresses.get(identifier))
-    for handle in handles.values():
+    dispatch = rosidl_structs.Dispatch(functools.cache(lambda _handle, identifier: addresses.get(identifier)))
+    top = rosidl_structs.TypeSupport(_C)
+    for handle in (top, *handles.values()):
         handle.dispatch = dispatch
         handle.get_type_hash, handle.get_type_description, handle.get_sources = getters
-    top = rosidl_structs.TypeSupport(_C, None, dispatch, *getters)
+        for getter in getters:  # fills the caches
+            getter(ctypes.addressof(handle))
+        for identifier in handles:
+            dispatch(ctypes.addressof(handle), identifier)
     keep += [top, dispatch, handles]
     _keep_for_ever(keep)
     return _capsule_new(ctypes.addressof(top), None, None)
@@ -206,7 +217,7 @@ def _handle(identifier: bytes, data: ctypes.Structure, keep: list[Any]) -> rosid
 
 def _getter(part: ctypes.Structure, keep: list[Any]) -> Any:
     address = ctypes.addressof(part)
-    function = rosidl_structs.Getter(lambda _handle: address)
+    function = rosidl_structs.Getter(functools.cache(lambda _handle: address))
     keep += [part, function]
     return function
 
@@ -293,9 +304,9 @@ def conversions(codec: Codec) -> Conversions:
         free(place)
 
     functions = (
-        rosidl_structs.Create(lambda: allocate(1, ctypes.sizeof(rosidl_structs.Sequence))),
+        rosidl_structs.Create(functools.partial(allocate, 1, ctypes.sizeof(rosidl_structs.Sequence))),
         rosidl_structs.ConvertFromPython(convert_from_py),
-        rosidl_structs.ConvertToPython(_held),
+        rosidl_structs.ConvertToPython(operator.itemgetter(0)),
         rosidl_structs.Destroy(destroy),
     )
     _keep_for_ever(functions)
