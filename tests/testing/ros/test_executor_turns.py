@@ -14,7 +14,7 @@ from std_srvs.srv import Trigger
 from tests.patience import PATIENCE_S
 from tests.testing.ros.test_graph import Echo
 from thymio_sim_ros.testing.ros import Ros
-from thymio_sim_ros.testing.ros.student import StudentError, spinning_forbidden
+from thymio_sim_ros.testing.ros.student import StudentError, waiting_forbidden
 
 
 class TwoTimers(Node):
@@ -146,7 +146,7 @@ def test_a_spin_imported_by_name_is_an_error_too(ros, tmp_path):
 
 def test_a_spin_with_a_time_limit_or_in_a_thread_is_its_own_affair(ros):
     node = ros.start(Echo)
-    with spinning_forbidden():
+    with waiting_forbidden():
         rclpy.spin_once(node, timeout_sec=0)
         rclpy.spin_until_future_complete(node, rclpy.Future(), None, 0)
         thread = threading.Thread(target=rclpy.spin_once, args=(node,), daemon=True)

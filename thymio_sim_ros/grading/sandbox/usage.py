@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["Usage", "descendants", "is_working", "memory_used", "used"]
+__all__ = ["Usage", "descendants", "is_sleeping", "is_working", "memory_used", "used"]
 
 _TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -42,10 +42,24 @@ def used() -> Usage:
     return Usage(cpu_s, any(is_working(process.pid) for process in found))
 
 
-def is_working(pid: int) -> bool:
-    """Whether a thread of a process, apart from those of DDS, computes, or waits for a processor or a disk."""
+def is_sleeping(thread: int) -> bool:
+    """Whether a thread of this process, by its native id, waits for something else than a processor or a disk."""
     try:
-        threads = [(task / "stat").read_bytes() for task in Path(f"/proc/{pid}/task").iterdir()]
+        with open(f"/proc/self/task/{thread}/stat", "rb") as file:
+            return file.read().rpartition(b")")[2].split()[0].decode() not in _WORKING
+    except OSError:  # another system
+        return False
+
+
+def is_working(pid: int, *, without: int | None = None) -> bool:
+    """Whether a thread of a process computes, or waits for a processor or a disk.
+
+    Threads of DDS do not count, nor the thread with the native id `without`.
+    """
+    try:
+        threads = [
+            (task / "stat").read_bytes() for task in Path(f"/proc/{pid}/task").iterdir() if task.name != str(without)
+        ]
     except OSError:  # one has just ended
         return True
     return any(

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from types import FrameType
 
 import pytest
+
+from thymio_sim_ros.testing.ros.interruption import insist, place
 
 __all__ = ["CPU_LIMIT_S", "START_CPU_S", "limited"]
 
@@ -22,8 +24,6 @@ START_CPU_S = 15.0
 
 _AGAIN_S = 0.5
 """Processor time after which code that has caught the failure gets it again, in s."""
-
-_OUTSIDE = ("site-packages/", "thymio_sim_ros/testing/", "<frozen")
 
 
 @contextlib.contextmanager
@@ -42,8 +42,16 @@ def limited(what: Callable[[], str], limit_s: float) -> Iterator[None]:
         if rest_s > 0:  # other threads of the process count too
             signal.setitimer(signal.ITIMER_PROF, max(rest_s, 0.01), _AGAIN_S)
             return
-        pytest.fail(f"{what()} used more than {limit_s:g} s of processor time without returning{_place(frame)}")
+        failure = pytest.fail.Exception(
+            f"{what()} used more than {limit_s:g} s of processor time without returning{place(frame)}"
+        )
+        if failures:
+            insist(failure, frame)
+        failures.append(failure)
+        raise failure
 
+    failures: list[BaseException] = []
+    trace = sys.gettrace()
     before = signal.signal(signal.SIGPROF, check)
     signal.setitimer(signal.ITIMER_PROF, limit_s, _AGAIN_S)
     try:
@@ -51,16 +59,5 @@ def limited(what: Callable[[], str], limit_s: float) -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
         signal.signal(signal.SIGPROF, before)
-
-
-def _place(frame: FrameType | None) -> str:
-    """The innermost line outside libraries."""
-    while frame is not None and frame.f_back is not None and _is_library(frame.f_code.co_filename):
-        frame = frame.f_back
-    if frame is None:
-        return ""
-    return f"\n  it is at {frame.f_code.co_filename}, line {frame.f_lineno}, in {frame.f_code.co_name}"
-
-
-def _is_library(file: str) -> bool:
-    return any(part in file for part in _OUTSIDE) or Path(file).is_relative_to(Path(threading.__file__).parent)
+        if sys.gettrace() is not trace:
+            sys.settrace(trace)

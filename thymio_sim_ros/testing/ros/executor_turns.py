@@ -15,8 +15,8 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor, T
 from rclpy.node import Node
 from rclpy.timer import Timer
 
-from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, limited
-from thymio_sim_ros.testing.ros.student import spinning_forbidden
+from thymio_sim_ros.testing.ros.containment import Containment
+from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S
 
 __all__ = ["ExecutorTurns"]
 
@@ -27,8 +27,9 @@ MAX_ROUNDS = 10
 class ExecutorTurns:
     """The executor of one node. Each node has its own, so that nodes run in the order in which they were started."""
 
-    def __init__(self, node: Node, context: Context, cpu_limit: float = CPU_LIMIT_S) -> None:
+    def __init__(self, node: Node, context: Context, containment: Containment, cpu_limit: float = CPU_LIMIT_S) -> None:
         """`cpu_limit`: processor time in s that a callback may use; more fails the test."""
+        self._containment = containment
         self._node = node
         self._cpu_limit = cpu_limit
         self._executor = SingleThreadedExecutor(context=context)
@@ -57,9 +58,9 @@ class ExecutorTurns:
                 return may_be_more
             may_be_more |= not isinstance(entity, Timer) and getattr(entity, "topic_name", "") != "/clock"
             describe = partial(self._describe, entity)
-            with spinning_forbidden(), limited(describe, self._cpu_limit):
+            with self._containment.contain(describe, self._cpu_limit):
                 handler()
-            handler.result()
+                handler.result()  # raises what the callback has raised
 
     def _describe(self, entity: Any) -> str:
         """The callback of an entity."""

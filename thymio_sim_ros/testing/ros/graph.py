@@ -30,7 +30,8 @@ from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.ros import discovery, student
-from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, START_CPU_S, limited
+from thymio_sim_ros.testing.ros.containment import Containment
+from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, START_CPU_S
 from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
 from thymio_sim_ros.testing.ros.program import OUTPUT_BYTES, Program
 from thymio_sim_ros.testing.ros.program_files import find
@@ -93,6 +94,7 @@ class Ros:
         self.simulation: Stepped | None = None
         """The simulation of this test, if there is one; it owns simulated time."""
         self._folder, self._output_limit = folder, output_limit
+        self._containment = Containment()
         self._threads = set(threading.enumerate())
         # Code under test may use the default context (`rclpy.ok()`). If it is in use already, it is left alone.
         self.context = get_default_context()
@@ -129,7 +131,7 @@ class Ros:
         """Add a node under test; it gets an executor of its own and is destroyed when the test ends."""
         self._nodes.append(node)
         with self._alive():
-            self._turns[node] = ExecutorTurns(node, self.context, cpu_limit)
+            self._turns[node] = ExecutorTurns(node, self.context, self._containment, cpu_limit)
         return node
 
     def live(self, life: Any) -> Any:
@@ -169,7 +171,11 @@ class Ros:
             Exception: Whatever the constructor raises.
         """
         __tracebackhide__ = True
-        kind = source if isinstance(source, type) else student.load_class(beside(source, self._folder), class_name)
+        if isinstance(source, type):
+            kind = source
+        else:
+            with self._containment.contain(lambda: f"{source}, while it is loaded,", START_CPU_S):
+                kind = student.load_class(beside(source, self._folder), class_name)
         if use_sim_time is None:
             use_sim_time = self.simulation is not None
         values = {"use_sim_time": use_sim_time, **(parameters or {})}
@@ -185,7 +191,7 @@ class Ros:
         """Limit the processor time of a constructor; failure reports name one that takes long."""
         place = f"the constructor of {kind.__name__} ({student.place(kind)})"
         wall_s, cpu_s = time.monotonic(), time.process_time()
-        with limited(lambda: place, START_CPU_S):
+        with self._containment.contain(lambda: place, START_CPU_S):
             yield
         wall_s, cpu_s = time.monotonic() - wall_s, time.process_time() - cpu_s
         if wall_s > LONG_S:
@@ -245,7 +251,12 @@ class Ros:
         """Destroy a node before the test ends."""
         self._nodes.remove(node)
         self._forget(node)
-        node.destroy_node()
+        self._destroy(node)
+
+    def _destroy(self, node: Node) -> None:
+        what = f"destroy_node() of {node.get_name()}"
+        with self._containment.contain(lambda: what, CPU_LIMIT_S):
+            node.destroy_node()
 
     def end(self, life: Any) -> None:
         """Close a node added by `live` before the test ends."""
@@ -426,10 +437,11 @@ class Ros:
     def close(self) -> None:
         """Close all nodes, executors and the context."""
         with contextlib.ExitStack() as end:  # each step is done even when another fails
+            end.callback(self._containment.close)
             end.callback(self._close_context)
             end.callback(self._executor.shutdown)
             for node in self._nodes:
-                end.callback(node.destroy_node)
+                end.callback(self._destroy, node)
                 if node in self._turns:
                     end.callback(self._turns[node].shutdown)
                 else:

@@ -7,6 +7,7 @@ parameters, remappings and namespace: a class inserted between it and `Node` in 
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib
 import importlib.util
 import inspect
@@ -20,22 +21,43 @@ from typing import Any
 
 import rclpy
 from rclpy._rclpy_pybind11 import RCLError
+from rclpy.client import Client
+from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.timer import Rate
 
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Side, wrong_type
+from thymio_sim_ros.testing.record import SECOND_NS
+from thymio_sim_ros.testing.ros import interruption
 from thymio_sim_ros.type_names import type_name
 
-__all__ = ["StudentError", "load_class", "place", "remap_arguments", "spinning_forbidden", "start"]
+__all__ = [
+    "INSTEAD",
+    "WAIT_LIMIT_S",
+    "StudentError",
+    "load_class",
+    "place",
+    "remap_arguments",
+    "start",
+    "waiting_forbidden",
+]
+
+WAIT_LIMIT_S = 4.0
+"""Longest wait in a constructor or callback, in s."""
+
+INSTEAD = (
+    "expected: a timer, add_done_callback, or await in a callback; a program with a multi-threaded executor or with"
+    " threads, whose callbacks may wait, is tested with ros.run"
+)
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
-_SPUN = (
-    "rclpy.{}() in a constructor or callback waits for ever, since only the test lets messages come: expected"
-    " add_done_callback, or await in a callback"
-)
+_rclpy: Any = rclpy_implementation
+_signature = functools.lru_cache(maxsize=16)(inspect.signature)
 _TURNS = (*_SPINS, "spin_once_until_future_complete")
 
 
@@ -126,8 +148,7 @@ def start(
                 return super().create_service(srv_type, srv_name, *args, **kwargs)
 
     derived = type(kind.__name__, (kind, WithTestContext), {"__module__": kind.__module__, "__doc__": kind.__doc__})
-    with spinning_forbidden():
-        node: Node = derived(**arguments)
+    node: Node = derived(**arguments)
     if not reached:
         node.destroy_node()
         raise StudentError(f"{kind.__name__} calls Node.__init__ itself: expected super().__init__(…)")
@@ -230,7 +251,7 @@ def _spinning_disabled() -> Iterator[None]:
 
     def spin(node: Node, *_args: Any, **_kwargs: Any) -> None:
         if not loading:  # `from rclpy import spin` keeps this function after loading
-            raise StudentError(_SPUN.format("spin"))
+            raise _waits_for_ever("rclpy.spin()")
         node.destroy_node()
 
     def turn(executor: Executor, *_args: Any, **_kwargs: Any) -> None:
@@ -257,27 +278,70 @@ def _spinning_disabled() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def spinning_forbidden() -> Iterator[None]:
-    """Raise StudentError if this thread spins without a time limit: the middleware would then wait, deaf to signals."""
+def waiting_forbidden() -> Iterator[None]:
+    """Raise StudentError if this thread begins a wait of rclpy that cannot end.
+
+    Messages come and simulated time passes only when the callback has returned. Waits of the middleware and of clocks
+    ignore signals, so that they must not begin; the others are those that students use most.
+    """
     here = threading.get_ident()
 
-    def limited(name: str, spin: Callable[..., Any]) -> Callable[..., Any]:
-        def checked(*args: Any, **kwargs: Any) -> Any:
-            limit = inspect.signature(spin).bind(*args, **kwargs).arguments.get("timeout_sec")
-            if threading.get_ident() == here and limit is None:
-                raise StudentError(_SPUN.format(name))
-            return spin(*args, **kwargs)
+    def checked(name: str, wait: Callable[..., Any], is_endless: Callable[[Mapping[str, Any]], bool]) -> Any:
+        signature = _signature(wait)
 
-        return checked
+        def call(*args: Any, **kwargs: Any) -> Any:
+            if threading.get_ident() == here:
+                bound = signature.bind(*args, **kwargs)
+                bound.apply_defaults()
+                if is_endless(bound.arguments):
+                    raise _waits_for_ever(name)
+            return wait(*args, **kwargs)
 
-    before = {name: getattr(rclpy, name) for name in _SPINS}
-    for name, spin in before.items():
-        setattr(rclpy, name, limited(name, spin))
+        return call
+
+    def wait(wait_set: Any, timeout_nsec: int) -> None:
+        if threading.get_ident() == here and not 0 <= timeout_nsec <= WAIT_LIMIT_S * SECOND_NS:
+            raise _waits_for_ever("a wait for messages")
+        real_wait(wait_set, timeout_nsec)
+
+    real_wait = _rclpy.WaitSet.wait
+    replaced: list[tuple[Any, str, Any]] = [
+        *((rclpy, name, checked(f"rclpy.{name}()", getattr(rclpy, name), _has_no_limit)) for name in _SPINS),
+        (Rate, "sleep", checked("Rate.sleep()", Rate.sleep, lambda _arguments: True)),
+        (Client, "call", checked("Client.call()", Client.call, _has_no_limit)),
+        (Clock, "sleep_until", checked("Clock.sleep_until()", Clock.sleep_until, _sleeps_long)),
+        (_rclpy.WaitSet, "wait", wait),
+    ]
+    before = [(owner, name, getattr(owner, name)) for owner, name, _ in replaced]
+    for owner, name, value in replaced:
+        setattr(owner, name, value)
     try:
         yield
     finally:
-        for name, spin in before.items():
-            setattr(rclpy, name, spin)
+        for owner, name, value in before:
+            setattr(owner, name, value)
+
+
+def _waits_for_ever(wait: str) -> StudentError:
+    where = interruption.place(sys._getframe(1))
+    return StudentError(
+        f"{wait} in a constructor or callback waits for ever, since only the test lets messages come and time"
+        f" pass{where}\n  {INSTEAD}"
+    )
+
+
+def _has_no_limit(arguments: Mapping[str, Any]) -> bool:
+    return arguments.get("timeout_sec") is None
+
+
+def _sleeps_long(arguments: Mapping[str, Any]) -> bool:
+    """Whether `Clock.sleep_until` waits for simulated time, or longer than `WAIT_LIMIT_S`."""
+    clock, until = arguments["self"], arguments["until"]
+    if until.clock_type != clock.clock_type:
+        return False  # rclpy reports it
+    rest_ns = until.nanoseconds - clock.now().nanoseconds
+    limit_s = 0.0 if getattr(clock, "ros_time_is_active", False) else WAIT_LIMIT_S
+    return bool(rest_ns > limit_s * SECOND_NS)
 
 
 def _nothing(*_args: Any, **_kwargs: Any) -> contextlib.AbstractContextManager[None]:
