@@ -107,7 +107,7 @@ def test_a_frame_that_is_not_the_robot_s_is_refused(ros, simulation):
     ros.publisher(PoseWithCovarianceStamped, "/initialpose").publish(message)
     ros.until(lambda: log)
     assert "found frame 'anna/base_link', expected map or odom or base_link" in log[0].msg
-    assert sim.simulator._counters.rejected == 1
+    assert sim.simulator._messages.rejected == 1
 
 
 def test_odometry_starts_again_on_request(ros, simulation):

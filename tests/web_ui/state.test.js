@@ -139,12 +139,12 @@ test("the simulator and its playgrounds are reported as JSON", () => {
     ),
     message("/simulator/_playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
   ]);
-  assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null, worldNames: {}, fallen: [], movables: [], unconnected: [] });
+  assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null, worldNames: {}, fallen: [], movables: [], faults: [] });
   assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
 });
 
 test("a ROS node that is not connected is reported once, and no longer than it is there", () => {
-  const report = (/** @type {string[]} */ ...unconnected) => message("/simulator/_state", json({ unconnected }));
+  const report = (/** @type {string[]} */ ...faults) => message("/simulator/_state", json({ faults }));
   const first = after([report("a", "b")]);
   assert.deepEqual(first.notices.map(({ level, technical }) => [level, technical]), [["warning", "a"], ["warning", "b"]]);
   const [{ id }] = first.notices;

@@ -33,7 +33,7 @@ import { applyTransforms } from "./transforms.js";
  * @property {Readonly<Record<string, string>>} worldNames  names of the robots in the world, by their names in topics
  * @property {string[]} fallen    robots that fell off an edge, by their names in topics
  * @property {string[]} movables  names of movable objects
- * @property {string[]} unconnected  why endpoints of ROS nodes are not connected, in English
+ * @property {string[]} faults  what is wrong with endpoints and messages of ROS nodes, in English
  */
 /** @typedef {Readonly<Record<string, string>>} Label   texts by language */
 /**
@@ -278,9 +278,9 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs:
       ),
       fallen: (reported.robots ?? []).filter((/** @type {any} */ robot) => robot.fallen).map((/** @type {any} */ { name }) => name),
       movables: reported.movables ?? [],
-      unconnected: reported.unconnected ?? [],
+      faults: reported.faults ?? [],
     };
-    return withChannels(withUnconnected({ ...state, simulator }, state.simulator?.unconnected ?? []), state);
+    return withChannels(withFaults({ ...state, simulator }, state.simulator?.faults ?? []), state);
   },
   "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviors: JSON.parse(value.data) }),
   "/simulator/_sensors": (state, value) => ({ ...state, sensors: JSON.parse(value.data) }),
@@ -321,24 +321,24 @@ function withoutNotices(state, causes) {
 }
 
 /**
- * Show what is new among the ROS nodes that are not connected, and hide what is no longer true.
+ * Show what is new among the faults of ROS nodes, and hide what is no longer true.
  *
  * @param {State} state @param {readonly string[]} before @returns {State}
  */
-function withUnconnected(state, before) {
-  const now = state.simulator?.unconnected ?? [];
-  const gone = before.filter((line) => !now.includes(line)).map(unconnectedCause);
+function withFaults(state, before) {
+  const now = state.simulator?.faults ?? [];
+  const gone = before.filter((line) => !now.includes(line)).map(faultCause);
   return now
     .filter((line) => !before.includes(line))
     .reduce(
-      (shown, line) => withNotice(shown, { level: "warning", text: "", technical: line, cause: unconnectedCause(line) }),
+      (shown, line) => withNotice(shown, { level: "warning", text: "", technical: line, cause: faultCause(line) }),
       withoutNotices(state, gone),
     );
 }
 
-/** Cause of notices about ROS nodes that are not connected. @param {string} line */
-function unconnectedCause(line) {
-  return `unconnected ${line}`;
+/** Cause of notices about a fault of a ROS node. @param {string} line */
+function faultCause(line) {
+  return `fault ${line}`;
 }
 
 /** Cause of notices about a rejected file. @param {UploadKind} what */

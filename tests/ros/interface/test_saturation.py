@@ -221,4 +221,4 @@ def test_a_command_beyond_a_limit_is_clamped_logged_once_and_counted(ros, simula
     assert sim.thymio.speed == pytest.approx(MAX_SPEED_M_S, rel=0.1)
     sim.simulator._publish_heartbeat(0)
     ros.until(lambda: diagnostics)
-    assert {pair.key: pair.value for pair in diagnostics[-1].status[0].values}["messages limited"] == "3"
+    assert {pair.key: pair.value for pair in diagnostics[-1].status[1].values}["clamped"] == "3"

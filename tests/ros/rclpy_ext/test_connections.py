@@ -239,7 +239,7 @@ def test_viewers_get_what_is_not_connected(ros, simulation, stranger):
     sim = simulation()
     stranger(String, "/_alarm")
     said = sentences(ros, sim, "/_alarm")
-    assert json.loads(sim.simulator.runner.state().as_json())["unconnected"] == said
+    assert json.loads(sim.simulator.runner.state().as_json())["faults"] == said
 
 
 def test_every_input_of_every_robot_is_checked(ros, simulation, stranger):

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Twist, Vector3
 from rcl_interfaces.msg import Log
 from std_msgs.msg import Float64MultiArray
+
+from thymio_sim_ros.ros.simulator import diagnostics
 
 NEAR_ZERO = 5e-324
 """What rclpy sends for the int 1 in a float field."""
@@ -69,3 +72,32 @@ def test_an_int_in_a_float_field_is_named(ros, simulation, warnings_of, topic, m
         f"{topic} has a value near zero in {field}: an int in a float field, such as linear.x = 1 in place of 1.0?"
         " ROS_PYTHON_CHECK_FIELDS=1 (thymio-sim env) shows the line (reported once per topic)"
     ]
+
+
+def test_diagnostics_and_viewers_get_the_present_reasons(ros, simulation, monkeypatch):
+    sim = simulation()
+    received = ros.collect(DiagnosticArray, "/diagnostics")
+    publisher = ros.publisher(Twist, "/cmd_vel")
+    for speed in (math.nan, 9.0):
+        publisher.publish(Twist(linear=Vector3(x=speed)))
+        sim.step(0.02)
+
+    def status():
+        received.clear()
+        sim.simulator._publish_heartbeat(0)
+        ros.until(lambda: received)
+        (found,) = (one for one in received[-1].status if one.name == "simulator: messages")
+        return found
+
+    rejected = "/cmd_vel rejected: linear.x is nan, expected a finite number"
+    present = status()
+    assert (present.level, present.message) == (DiagnosticStatus.WARN, rejected)
+    counts, texts = present.values[:2], [pair.value for pair in present.values[2:]]
+    assert [(pair.key, pair.value) for pair in counts] == [("rejected", "1"), ("clamped", "1")]
+    assert texts[0] == rejected
+    assert texts[1].startswith("/cmd_vel clamped: a wheel would need 9 m/s")
+    assert sim.simulator.runner.state().faults == (rejected,)
+    monkeypatch.setattr(diagnostics, "RECENT_S", -1.0)
+    past = status()
+    assert (past.level, [pair.value for pair in past.values]) == (DiagnosticStatus.OK, ["1", "1"])
+    assert sim.simulator.runner.state().faults == ()

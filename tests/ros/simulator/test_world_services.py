@@ -164,5 +164,5 @@ def test_a_dragged_robot_moves(ros, simulation, name, child):
 def test_a_drag_to_nowhere_is_refused_and_counted(ros, simulation, refused):
     sim = simulation(playground=ROOM)
     ros.publisher(TransformStamped, "/simulator/_place").publish(refused)
-    ros.until(lambda: sim.simulator._counters.rejected == 1)
+    ros.until(lambda: sim.simulator._messages.rejected == 1)
     assert poses(ros, "thymio") == [[0.0, 0.0, 0.0]]

@@ -118,11 +118,14 @@ class RealRobot:
             raise CommandError(str(error)) from error
         self.flush()
 
-    def count_rejected(self) -> None:
-        """Do nothing: rejected messages are logged."""
+    def report_rejected(self, topic: str, text: str) -> None:
+        """Do nothing: it is logged."""
 
-    def count_clamped(self) -> None:
-        """Do nothing: clamped messages are logged."""
+    def report_suspect(self, topic: str, text: str) -> None:
+        """Do nothing: it is logged."""
+
+    def report_clamped(self, topic: str, text: str) -> None:
+        """Do nothing: it is logged."""
 
     def flush(self) -> None:
         """Send what waits to be sent."""

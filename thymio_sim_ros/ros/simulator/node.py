@@ -30,7 +30,7 @@ from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
-from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics, MessageCounters
+from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics, MessageReports
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.local_commands import LocalCommands
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
@@ -90,7 +90,7 @@ class Simulator:
             self.node.destroy_node()
             raise StartError(str(error)) from error
         self._last_heartbeat_ns = 0
-        self._counters = MessageCounters()
+        self._messages = MessageReports()
         self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot)
         self.local_commands = LocalCommands(self.node, self.endpoints.robots.receive)
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
@@ -101,13 +101,21 @@ class Simulator:
             world = logged.new_world(prepared.ground)
         self._connections = Connections(self.node, values.switched_off)
         self.runner = WorldRunner(
-            self.node, self.params, self.endpoints, self._connections, self._recording, prepared, world, logged
+            self.node,
+            self.params,
+            self.endpoints,
+            self._connections,
+            self._messages,
+            self._recording,
+            prepared,
+            world,
+            logged,
         )
         self.runner.start()
         if logged is not None:
             self.runner.step(logged.tick_at(values.replay_from))
-        self._services = WorldServices(self.control, self.runner, self.endpoints.robots, self._counters)
-        self._diagnostics = Diagnostics(self.node, self._counters, self._connections, self.endpoints.clock.conflict)
+        self._services = WorldServices(self.control, self.runner, self.endpoints.robots, self._messages)
+        self._diagnostics = Diagnostics(self.node, self._messages, self._connections, self.endpoints.clock.conflict)
         self.parameter_callbacks = ParameterCallbacks(self.node, self.params, self._loader, self.runner)
         self._interfaces: services.SimInterfaces | None = None
         if isinstance(self.control, LocalNode):
@@ -147,7 +155,7 @@ class Simulator:
         self.node.destroy_node()
 
     def _new_robot(self, robot: str, names: RobotNames) -> RobotEndpoints:
-        owner = RobotAccess(robot, names, self.runner, self.params, self._counters)
+        owner = RobotAccess(robot, names, self.runner, self.params, self._messages)
         options, demand = self._robot_options, self.endpoints.demand
         return RobotEndpoints(self.node, names, owner, options=options, demand=demand, control=self.control)
 

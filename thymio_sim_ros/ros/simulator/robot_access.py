@@ -8,7 +8,7 @@ from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext
-from thymio_sim_ros.ros.simulator.diagnostics import MessageCounters
+from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.visualization.transforms import frames_of
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
@@ -22,11 +22,11 @@ class RobotAccess:
     """Implements `RobotOwner` for one robot. The robot may be removed while messages for it are still queued."""
 
     def __init__(
-        self, robot: str, names: RobotNames, runner: WorldRunner, params: CurrentParams, counters: MessageCounters
+        self, robot: str, names: RobotNames, runner: WorldRunner, params: CurrentParams, messages: MessageReports
     ) -> None:
         """`robot`: name in the world."""
         self._robot, self._names = robot, names
-        self._runner, self._params, self._counters = runner, params, counters
+        self._runner, self._params, self._messages = runner, params, messages
 
     @property
     def convert_options(self) -> ConvertOptions:
@@ -46,13 +46,17 @@ class RobotAccess:
         if self._robot in world.robots:
             world.post(self._robot, command)
 
-    def count_rejected(self) -> None:
-        """Count a rejected message."""
-        self._counters.rejected += 1
+    def report_rejected(self, topic: str, text: str) -> None:
+        """Show in the diagnostics why a message was rejected."""
+        self._messages.add_rejected(topic, text)
 
-    def count_clamped(self) -> None:
-        """Count a clamped message."""
-        self._counters.clamped += 1
+    def report_suspect(self, topic: str, text: str) -> None:
+        """Show in the diagnostics why a message cannot be meant."""
+        self._messages.add_suspect(topic, text)
+
+    def report_clamped(self, topic: str, text: str) -> None:
+        """Show in the diagnostics why a message was clamped."""
+        self._messages.add_clamped(topic, text)
 
     def _frames(self) -> Mapping[str, Pose]:
         robot = self._runner.world.robots.get(self._robot)

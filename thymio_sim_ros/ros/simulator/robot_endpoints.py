@@ -61,7 +61,7 @@ _SUM_OF_RANGES = (
 )
 _INT_IN_FLOAT = (
     "an int in a float field, such as linear.x = 1 in place of 1.0? ROS_PYTHON_CHECK_FIELDS=1 (thymio-sim env) shows"
-    " the line (reported once per topic)"
+    " the line"
 )
 
 
@@ -121,11 +121,14 @@ class RobotOwner(Protocol):
     def post(self, command: Command) -> None:
         """Post a command to the robot. Raises PlacementError for a place that is not free."""
 
-    def count_rejected(self) -> None:
-        """Count a rejected message."""
+    def report_rejected(self, topic: str, text: str) -> None:
+        """Take note of a rejected message; `text` is the reason."""
 
-    def count_clamped(self) -> None:
-        """Count a clamped message."""
+    def report_suspect(self, topic: str, text: str) -> None:
+        """Take note of a message that was executed, but that nobody can have meant."""
+
+    def report_clamped(self, topic: str, text: str) -> None:
+        """Take note of a clamped message."""
 
 
 class RobotEndpoints:
@@ -155,9 +158,8 @@ class RobotEndpoints:
         self._node = node
         self._control = node if control is None else control
         self._owner = owner
-        self._limited: set[str] = set()
-        self._tiny: set[str] = set()
-        """Topics on which an int in a float field was reported."""
+        self._reported: set[tuple[str, str]] = set()
+        """Topics and first words of what is reported once."""
         self._is_cause_named = False
         self._warn = ThrottledLog(node)
         self._demand = demand
@@ -297,11 +299,12 @@ class RobotEndpoints:
                 limit_check = one.limit_check(message)
                 if limit_check:
                     self._report_limit(one, limit_check)
-                if one.topic not in self._tiny and (field := tiny_field(message)):
-                    self._tiny.add(one.topic)
-                    self._report(one, f"has a value near zero in {field}: {_INT_IN_FLOAT}")
+                if field := tiny_field(message):
+                    text = f"has a value near zero in {field}: {_INT_IN_FLOAT}"
+                    self._owner.report_suspect(self._full_name(one), text)
+                    self._warn_once(one, text)
             except (CommandError, PlacementError) as error:
-                self._owner.count_rejected()
+                self._owner.report_rejected(self._full_name(one), f"rejected: {error}")
                 self._warn(self._full_name(one), f"rejected: {error}")
                 if isinstance(error, NotFiniteError) and not self._is_cause_named:
                     self._is_cause_named = not self._owner.convert_options.driver_ranges
@@ -312,10 +315,14 @@ class RobotEndpoints:
 
     def _report_limit(self, one: RobotInput, limit_check: str) -> None:
         """Log a clamped message once per topic: programs use large numbers for full speed on purpose."""
-        self._owner.count_clamped()
-        if one.topic not in self._limited:
-            self._limited.add(one.topic)
-            self._report(one, f"clamped: {limit_check} (reported once per topic)")
+        self._owner.report_clamped(self._full_name(one), f"clamped: {limit_check}")
+        self._warn_once(one, f"clamped: {limit_check}")
+
+    def _warn_once(self, one: RobotInput, text: str) -> None:
+        reason = one.topic, text.partition(":")[0]
+        if reason not in self._reported:
+            self._reported.add(reason)
+            self._report(one, f"{text} (reported once per topic)")
 
     def _report(self, one: RobotInput, text: str) -> None:
         self._node.get_logger().warning(f"{self._full_name(one)} {text}")

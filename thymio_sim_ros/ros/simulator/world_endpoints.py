@@ -60,8 +60,8 @@ class WorldState:
     """Topic with the integer readings of all robots."""
     fallen: frozenset[str] = frozenset()
     """Names (in the world) of the robots that fell off an edge."""
-    unconnected: tuple[str, ...] = ()
-    """What is wrong with endpoints of other nodes that are not connected to the simulator, a sentence each."""
+    faults: tuple[str, ...] = ()
+    """What is wrong with endpoints and messages of other nodes, a sentence each."""
 
     def as_json(self) -> str:
         """Return the message text of `~/_state`."""

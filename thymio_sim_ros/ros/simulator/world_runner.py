@@ -17,6 +17,7 @@ from rclpy.node import Node
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, deliver
+from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.prepared_playground import PreparedPlayground
@@ -31,7 +32,7 @@ from thymio_sim_ros.sim.world import World
 __all__ = ["WorldRunner"]
 
 MAX_NOTES = 20
-"""Number of notes, and of endpoints that are not connected, in the state; the log has all of them."""
+"""Number of notes, and of faults of other nodes, in the state; the log has all of them."""
 
 
 class WorldRunner:
@@ -43,6 +44,7 @@ class WorldRunner:
         params: CurrentParams,
         endpoints: SimulatorEndpoints,
         connections: Connections,
+        messages: MessageReports,
         recording: Recording,
         prepared: PreparedPlayground,
         world: World,
@@ -50,7 +52,7 @@ class WorldRunner:
     ) -> None:
         """`start` publishes the world; endpoints may use this object only then. `logged`: what happens in the world."""
         self._node, self._params, self._endpoints, self._recording = node, params, endpoints, recording
-        self._connections = connections
+        self._connections, self._messages = connections, messages
         self.prepared = prepared
         """The playground of the world."""
         self.world = world
@@ -154,7 +156,7 @@ class WorldRunner:
             robots=self._endpoints.robots.names,
             raw=self._endpoints.world.raw.topic_name,
             fallen=self._fallen(),
-            unconnected=tuple(map(str, self._connections.unconnected[:MAX_NOTES])),
+            faults=(*self._messages.faults, *map(str, self._connections.unconnected))[:MAX_NOTES],
         )
 
     def publish_state(self) -> None:

@@ -21,7 +21,7 @@ from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
-from thymio_sim_ros.ros.simulator.diagnostics import MessageCounters
+from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
@@ -79,9 +79,9 @@ class WorldServices:
     """The world services on the node of the simulator."""
 
     def __init__(
-        self, node: Node | LocalNode, runner: WorldRunner, robots: RobotEndpointSet, counters: MessageCounters
+        self, node: Node | LocalNode, runner: WorldRunner, robots: RobotEndpointSet, messages: MessageReports
     ) -> None:
-        self._runner, self._robots, self._counters = runner, robots, counters
+        self._runner, self._robots, self._messages = runner, robots, messages
         self._warn = ThrottledLog(node)
         handlers: dict[str, Handler] = {
             "~/pause": self._pause,
@@ -182,7 +182,7 @@ class WorldServices:
         try:
             self._place_frame(message)
         except ValueError as error:
-            self._counters.rejected += 1
+            self._messages.add_rejected(PLACE_TOPIC, f"rejected: {error}")
             self._warn(PLACE_TOPIC, f"rejected: {error}")
 
     def _place_frame(self, message: TransformStamped) -> None:

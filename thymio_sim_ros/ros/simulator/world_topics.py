@@ -34,7 +34,7 @@ TOPICS: Mapping[str, WorldTopic] = {
         String,
         "1, change",
         "JSON: playground, paused, factors, seed, ns, robots and which of them fell, movable objects, the "
-        "topic `~/_raw`, why endpoints of other nodes are not connected",
+        "topic `~/_raw`, what is wrong with endpoints and messages of other nodes",
         qos.TRANSIENT_LOCAL,
     ),
     "~/_raw": WorldTopic(
@@ -66,8 +66,9 @@ TOPICS: Mapping[str, WorldTopic] = {
     "/diagnostics": WorldTopic(
         DiagnosticArray,
         "1",
-        "real-time factor requested and achieved, late and dropped ticks, rejected and clamped messages, robots; "
-        "endpoints of other nodes that are not connected; another simulator on the same clock",
+        "real-time factor requested and achieved, late and dropped ticks, robots; rejected and clamped messages, "
+        "with the reasons of the last 10 s; endpoints of other nodes that are not connected; another simulator on "
+        "the same clock",
         qos.SENSOR,
     ),
 }
