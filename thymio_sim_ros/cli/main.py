@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal
-from thymio_sim_ros.cli import classroom, convert, env, foxglove_layout, grade, replay, runner, suite, sweep
+from thymio_sim_ros.cli import classroom, convert, doctor, env, foxglove_layout, grade, replay, runner, suite, sweep
 from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
@@ -19,6 +19,7 @@ COMMANDS: Mapping[str, Callable[[Sequence[str]], int]] = {
     "runner": runner.run,
     "class": classroom.run,
     "convert": convert.run,
+    "doctor": doctor.run,
     "env": env.run,
     "foxglove-layout": foxglove_layout.run,
     "grade": grade.run,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 import pytest
 import rclpy
@@ -323,3 +324,19 @@ def test_looking_takes_its_share_of_time_only(ros, simulation, monkeypatch):
         known.poll()
         now[0] += 1.0
     assert len(calls) == pytest.approx(100.0 * connections.SHARE / 0.05, abs=1)
+
+
+def test_a_new_node_is_looked_at_although_the_next_poll_is_far(ros, simulation, stranger):
+    sim = simulation()
+    known = Connections(sim.simulator.node)
+    known.poll()
+    known._next_s = math.inf
+    stranger(TwistStamped, "/cmd_vel")
+
+    def found():
+        known._next_look_s = 0.0
+        known.poll()
+        return known.unconnected
+
+    (only,) = ros.until(found)
+    assert only.topic == "/cmd_vel"

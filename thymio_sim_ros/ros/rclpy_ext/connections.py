@@ -4,7 +4,8 @@ Such an endpoint has another type than ours, an incompatible QoS, or another nam
 have, a misspelled name, or a topic that is switched off. The usual cases are a TwistStamped on `cmd_vel`, as published
 by newer teleoperation nodes and Nav2, and a node in a namespace.
 
-The graph is queried per node, because there are fewer nodes than topics; the period depends on the cost of the query.
+The graph is queried per node, because there are fewer nodes than topics: at once when a node comes or goes, else in a
+period that depends on the cost of the query.
 """
 
 from __future__ import annotations
@@ -154,21 +155,30 @@ class Connections:
         self._misfits: dict[_Endpoint, Unconnected | None] = {}
         """Endpoints with name and type of ours, with what is wrong with their QoS."""
         self._suspects: frozenset[_Endpoint] = frozenset()
-        self._next_s = 0.0
+        self._nodes: frozenset[tuple[str, str]] = frozenset()
+        self._next_s = self._next_look_s = 0.0
         self.unconnected: tuple[Unconnected, ...] = ()
         """Result of the last poll."""
 
     def poll(self) -> None:
         """Query the graph if it is time, and warn about new endpoints that are not connected."""
-        if time.monotonic() < self._next_s:
+        now_s = time.monotonic()
+        if now_s >= self._next_look_s:
+            self._next_look_s = now_s + POLL_PERIOD_S
+            nodes = frozenset(self._node.get_node_names_and_namespaces())
+            if nodes != self._nodes:
+                self._nodes, self._next_s = nodes, now_s
+        if now_s < self._next_s:
             return
+        suspects = self._suspects
         began_s = time.thread_time()
         before, self.unconnected = self.unconnected, self.find()
         for one in self.unconnected:
             if one not in before:
                 self._node.get_logger().warning(str(one))
         cost_s = time.thread_time() - began_s
-        self._next_s = time.monotonic() + max(POLL_PERIOD_S, cost_s / SHARE)
+        is_open = not self._suspects <= suspects
+        self._next_s = time.monotonic() + (POLL_PERIOD_S if is_open else max(POLL_PERIOD_S, cost_s / SHARE))
 
     def status(self) -> DiagnosticStatus:
         """Return the entry for `/diagnostics`: WARN while an endpoint is not connected."""

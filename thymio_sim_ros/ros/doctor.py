@@ -1,0 +1,249 @@
+"""Examines a running suite as another node sees it: who is connected to whom, what arrives, and what is wrong.
+
+The simulator finds the faults (`rclpy_ext/connections.py`, `simulator/diagnostics.py`) and the Aseba runtime those of
+its programs; both publish them. This module collects them, with the topics that other nodes use.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String
+
+from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
+from thymio_sim_ros.ros.interface import qos
+
+__all__ = ["Examination", "NothingFoundError", "TopicUse", "examine"]
+
+NAME = "thymio_doctor"
+SUITE = ("simulator", "aseba_runtime", "_aseba_runtime", "foxglove_bridge", "web_ui")
+"""Names of the nodes of a suite."""
+FIND_S = 8.0
+"""Longest wait for a simulator: discovery, and the next `/diagnostics`."""
+LOOK_S = 2.0
+"""How long messages are collected."""
+
+_STATE, _DIAGNOSTICS = "_state", "/diagnostics"
+_OF_EVERY_NODE = frozenset({"/rosout", "/parameter_events", "/clock", _DIAGNOSTICS})
+_SUMMARIES = (": messages", ": connections")
+"""Ends of names of statuses whose sentences are in the state, too."""
+_MAX_VALUES = 6
+"""Largest number of values of a message that are shown."""
+
+
+class NothingFoundError(ThymioSimError):
+    """No running simulator was found, or not this robot; the text says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class TopicUse:
+    """A topic that nodes outside the suite use, with the nodes on both sides and the last message as text."""
+
+    name: str
+    type: str
+    publishers: tuple[str, ...]
+    subscribers: tuple[str, ...]
+    last: str = ""
+    age_s: float | None = None
+    """Time since the last message in s; None if none arrived within `LOOK_S`."""
+
+
+@dataclass(slots=True)
+class Examination:
+    """The result. `faults` are sentences with the cure each; `notes` explain what is no fault."""
+
+    where: str
+    playground: str = ""
+    robots: tuple[str, ...] = ()
+    paused: bool = False
+    topics: list[TopicUse] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def examine(environment: Mapping[str, str], robot: str = "") -> Examination:
+    """Examine the suite of this domain, or one of its robots, for some seconds.
+
+    Raises NothingFoundError if there is no simulator in the domain, or no such robot.
+    """
+    context = Context()
+    rclpy.init(context=context)
+    try:
+        node = Node(NAME, context=context, enable_rosout=False, start_parameter_services=False)
+        executor = SingleThreadedExecutor(context=context)
+        executor.add_node(node)
+        return _Doctor(node, executor, describe_domain(environment, context.get_domain_id()), robot).examine()
+    finally:
+        rclpy.shutdown(context=context)
+
+
+class _Doctor:
+    """One examination by one node."""
+
+    def __init__(self, node: Node, executor: SingleThreadedExecutor, where: str, robot: str) -> None:
+        self._node, self._executor, self._robot = node, executor, robot
+        self._found = Examination(where)
+        self._statuses: dict[str, DiagnosticStatus] = {}
+        self._states: dict[str, dict[str, Any]] = {}
+        self._last: dict[tuple[str, str], tuple[str, float]] = {}
+        node.create_subscription(DiagnosticArray, _DIAGNOSTICS, self._on_diagnostics, qos.SENSOR)
+
+    def examine(self) -> Examination:
+        """Find the simulators, collect, and describe what is found."""
+        followed: set[str] = set()
+        self._spin(FIND_S, lambda: self._follow_simulators(followed) and bool(self._statuses) and bool(self._states))
+        if not self._states:
+            raise NothingFoundError(
+                f"no simulator found in {self._found.where}: start `thymio-sim`, and run this command in a terminal"
+                ' with the same ROS_DOMAIN_ID (`eval "$(thymio-sim env)"`)'
+            )
+        uses = list(self._uses())
+        for use in uses:
+            self._listen(use)
+        self._spin(LOOK_S, lambda: False)
+        now_s = time.monotonic()
+        self._found.topics = [self._with_last(use, now_s) for use in uses]
+        for state in self._states.values():
+            self._describe(state)
+        self._found.faults = list(dict.fromkeys([*self._found.faults, *self._other_faults()]))
+        self._found.notes = list(dict.fromkeys([*self._found.notes, *self._clamped(), *self._unused()]))
+        return self._found
+
+    def _spin(self, seconds: float, is_done: Callable[[], bool]) -> None:
+        end_s = time.monotonic() + seconds
+        while not is_done() and time.monotonic() < end_s:
+            self._executor.spin_once(timeout_sec=0.1)
+
+    def _follow_simulators(self, followed: set[str]) -> bool:
+        """Subscribe to the state of each simulator that is found."""
+        for name, namespace in self._node.get_node_names_and_namespaces():
+            topic = f"{namespace.rstrip('/')}/{name}/{_STATE}"
+            if name == SUITE[0] and topic not in followed:
+                followed.add(topic)
+                self._node.create_subscription(String, topic, self._on_state(topic), qos.TRANSIENT_LOCAL)
+        return bool(followed)
+
+    def _on_state(self, topic: str) -> Callable[[String], None]:
+        def receive(message: String) -> None:
+            self._states[topic] = json.loads(message.data)
+
+        return receive
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        self._statuses |= {status.name: status for status in message.status}
+
+    # --- topics ---
+
+    def _uses(self) -> Iterator[TopicUse]:
+        """Yield the topics of the suite that other nodes publish or subscribe to; one of two types is two of them."""
+        for topic, kinds in self._node.get_topic_names_and_types():
+            if topic in _OF_EVERY_NODE or not self._is_of_robot(topic):
+                continue
+            published = self._node.get_publishers_info_by_topic(topic)
+            subscribed = [one for one in self._node.get_subscriptions_info_by_topic(topic) if one.node_name != NAME]
+            names = {one.node_name for one in (*published, *subscribed)}
+            if names.intersection(SUITE) and names.difference(SUITE):
+                yield from (TopicUse(topic, kind, _nodes(published, kind), _nodes(subscribed, kind)) for kind in kinds)
+
+    def _is_of_robot(self, topic: str) -> bool:
+        return not self._robot or topic.startswith(f"/{self._robot.strip('/')}/")
+
+    def _listen(self, use: TopicUse) -> None:
+        """Subscribe to a topic of the suite's type; one process cannot use another one on the same topic."""
+        nodes = (node.rpartition("/")[2] for node in (*use.publishers, *use.subscribers))
+        if not use.publishers or not set(nodes).intersection(SUITE):
+            return
+
+        def receive(message: Any) -> None:
+            self._last[use.name, use.type] = _text(message), time.monotonic()
+
+        try:
+            profile = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+            self._node.create_subscription(load_type(use.type), use.name, receive, profile)
+        except MissingTypeError as error:
+            self._found.notes.append(f"{use.name}: {error}")
+
+    def _with_last(self, use: TopicUse, now_s: float) -> TopicUse:
+        if (use.name, use.type) not in self._last:
+            return use
+        text, when_s = self._last[use.name, use.type]
+        return TopicUse(use.name, use.type, use.publishers, use.subscribers, text, now_s - when_s)
+
+    # --- what is wrong ---
+
+    def _describe(self, state: Mapping[str, Any]) -> None:
+        """Take over what a simulator says about itself."""
+        names = tuple(one["name"] for one in state["robots"])
+        if self._robot and self._robot.strip("/") not in names:
+            listed = ", ".join(filter(None, names)) or "one without a name (its topics have no prefix)"
+            raise NothingFoundError(f"no robot '{self._robot}': the robots are {listed}")
+        found = self._found
+        found.playground, found.robots, found.paused = state["playground"], names, state["paused"]
+        if state["paused"]:
+            found.faults.append(
+                "The simulation is paused: press Play on the page, or call /simulator/pause with data false"
+            )
+        fallen = [one["name"] or one["robot"] for one in state["robots"] if one["fallen"]]
+        found.faults += [f"Robot {one} fell off an edge: put it back on the page, or reset" for one in fallen]
+        found.faults += state["faults"]
+
+    def _other_faults(self) -> Iterable[str]:
+        """Statuses with a fault that the state does not have: pace, clock, programs."""
+        for name, status in self._statuses.items():
+            if status.level != DiagnosticStatus.OK and not name.endswith(_SUMMARIES):
+                yield f"{name}: {status.message}"
+            elif status.level != DiagnosticStatus.OK and name.endswith(_SUMMARIES[1]):
+                yield from (pair.value for pair in status.values)
+
+    def _clamped(self) -> Iterable[str]:
+        values = (pair.value for status in self._statuses.values() for pair in status.values)
+        return [text for text in values if " clamped: " in text]
+
+    def _unused(self) -> Iterable[str]:
+        """Speed topics on which nobody publishes."""
+        for name in self._found.robots:
+            topic = f"/{name}/cmd_vel" if name else "/cmd_vel"
+            if self._is_of_robot(topic) and not self._node.count_publishers(topic):
+                yield f"{topic} has no publisher: the robot moves by its program and from the page only"
+
+
+def _nodes(infos: Iterable[Any], kind: str) -> tuple[str, ...]:
+    """The nodes of the endpoints of a type."""
+    return tuple(
+        sorted({f"{one.node_namespace.rstrip('/')}/{one.node_name}" for one in infos if one.topic_type == kind})
+    )
+
+
+def _text(message: Any) -> str:
+    """The values of a message that are not zero or empty, on one line."""
+    values = list(_values(message, ""))
+    shown = ", ".join(f"{name} {value}" for name, value in values[:_MAX_VALUES])
+    return (shown or "all values are zero") + (", …" if len(values) > _MAX_VALUES else "")
+
+
+def _values(message: Any, prefix: str) -> Iterator[tuple[str, str]]:
+    for name in message.get_fields_and_field_types():
+        value = getattr(message, name)
+        full = f"{prefix}{name}"
+        if name == "header":
+            continue
+        if hasattr(value, "get_fields_and_field_types"):
+            yield from _values(value, f"{full}.")
+        elif isinstance(value, bool | int | float):
+            if value or math.isnan(value):
+                yield full, f"{value:g}" if isinstance(value, float) else str(value)
+        elif len(value):
+            yield full, str(value) if isinstance(value, str) else f"[{len(value)} values]"
