@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from thymio_sim_ros import field_checks
+
 if TYPE_CHECKING:
     from thymio_sim_ros.ros.aseba.node import AsebaRuntime
     from thymio_sim_ros.testing import Classroom, Thymio
@@ -47,6 +49,11 @@ class Graded:
 
 
 GRADED = pytest.StashKey[Graded]()
+
+
+def pytest_load_initial_conftests() -> None:
+    """Let messages check the types of their fields; files of tests import them later."""
+    field_checks.switch_on()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -110,7 +110,7 @@ def test_odometry_and_truth_have_their_frames_and_covariances():
 @pytest.mark.parametrize("tilt", [Tilt(0.0, 0.8), Tilt(0.8, 0.0), Tilt(-0.3, 0.4), Tilt(0.0, 0.0)])
 def test_the_true_pose_has_the_tilt(tilt):
     rest = BodyMotion(0.0, 0.0)
-    reading = readings.PoseReading(0, (), Pose(0, 0, 0), rest, Pose(0, 0, math.pi / 2), rest, tilt)
+    reading = readings.PoseReading(0, (), Pose(0.0, 0.0, 0.0), rest, Pose(0.0, 0.0, math.pi / 2), rest, tilt)
     q = encode("_ground_truth/odom", reading).pose.pose.orientation
     forward_up, left_up = 2 * (q.x * q.z - q.w * q.y), 2 * (q.y * q.z + q.w * q.x)
     assert (forward_up, left_up) == pytest.approx(

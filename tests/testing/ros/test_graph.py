@@ -203,6 +203,16 @@ def test_an_endpoint_of_the_wrong_type_is_refused_with_the_cure(ros, simulation)
         ros.start(Asking)
 
 
+def test_a_test_that_uses_the_wrong_type_is_told_the_right_one(ros, simulation):
+    simulation()
+    with pytest.raises(StudentError, match="expected geometry_msgs/msg/Twist: .* Publish on /cmd_vel_stamped"):
+        ros.publisher(TwistStamped, "/cmd_vel")
+    with pytest.raises(StudentError, match="expected nav_msgs/msg/Odometry: it gets no message"):
+        ros.collect(Range, "/odom")
+    with pytest.raises(StudentError, match="expected std_srvs/srv/Trigger: its calls are never answered"):
+        ros.call(Empty, "/reset_odometry")
+
+
 def test_a_node_in_a_namespace_that_there_is_not_is_reported(ros, simulation):
     sim = simulation()
     ros.start(Wanderer, namespace="thymio0")

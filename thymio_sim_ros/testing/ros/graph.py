@@ -23,7 +23,7 @@ from thymio_sim_ros import course_packages
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
-from thymio_sim_ros.ros.rclpy_ext.connections import Connections
+from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
 from thymio_sim_ros.testing.awaited import Awaited
@@ -373,7 +373,8 @@ class Ros:
         if qos is None:
             self.until(lambda: self.node.count_publishers(name), what=f"a publisher of {name}")
             qos = discovery.as_published(self.node, name, DEPTH, transient_local=transient_local)
-        subscription = self.node.create_subscription(kind, name, recorder.add, qos)
+        with student.types_explained(self.node, SUBSCRIBER, kind, name):
+            subscription = self.node.create_subscription(kind, name, recorder.add, qos)
         self._recorders.append(recorder)
         self.until(lambda: is_matched(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
@@ -384,7 +385,8 @@ class Ros:
         __tracebackhide__ = True
         if (local := self._local_topic(self.node.resolve_topic_name(topic))) is not None:
             return local
-        publisher = self.node.create_publisher(kind, topic, depth)
+        with student.types_explained(self.node, PUBLISHER, kind, topic):
+            publisher = self.node.create_publisher(kind, topic, depth)
         self.until(publisher.get_subscription_count, what=f"a subscriber of {publisher.topic_name}")
         self.settle()
         return publisher
@@ -395,7 +397,8 @@ class Ros:
         full = self.node.resolve_service_name(name)
         if (answer := next(filter(None, (one.service(full) for one in self._local_nodes())), None)) is not None:
             return answer(kind.Request() if request is None else request)
-        client = self.node.create_client(kind, name)
+        with student.types_explained(self.node, CLIENT, kind, name):
+            client = self.node.create_client(kind, name)
         self.until(client.service_is_ready, what=f"service {name}")
         future = client.call_async(kind.Request() if request is None else request)
         self.until(future.done, what=f"answer of {name}")

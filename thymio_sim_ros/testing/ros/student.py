@@ -44,6 +44,7 @@ __all__ = [
     "place",
     "remap_arguments",
     "start",
+    "types_explained",
     "waiting_forbidden",
 ]
 
@@ -132,19 +133,19 @@ def start(
             super().__init__(*args, **kwargs)
 
         def create_publisher(self, msg_type: Any, topic: str, *args: Any, **kwargs: Any) -> Any:
-            with _types_explained(self, PUBLISHER, msg_type, topic):
+            with types_explained(self, PUBLISHER, msg_type, topic):
                 return super().create_publisher(msg_type, topic, *args, **kwargs)
 
         def create_subscription(self, msg_type: Any, topic: str, *args: Any, **kwargs: Any) -> Any:
-            with _types_explained(self, SUBSCRIBER, msg_type, topic):
+            with types_explained(self, SUBSCRIBER, msg_type, topic):
                 return super().create_subscription(msg_type, topic, *args, **kwargs)
 
         def create_client(self, srv_type: Any, srv_name: str, *args: Any, **kwargs: Any) -> Any:
-            with _types_explained(self, CLIENT, srv_type, srv_name):
+            with types_explained(self, CLIENT, srv_type, srv_name):
                 return super().create_client(srv_type, srv_name, *args, **kwargs)
 
         def create_service(self, srv_type: Any, srv_name: str, *args: Any, **kwargs: Any) -> Any:
-            with _types_explained(self, SERVER, srv_type, srv_name):
+            with types_explained(self, SERVER, srv_type, srv_name):
                 return super().create_service(srv_type, srv_name, *args, **kwargs)
 
     derived = type(kind.__name__, (kind, WithTestContext), {"__module__": kind.__module__, "__doc__": kind.__doc__})
@@ -156,7 +157,7 @@ def start(
 
 
 @contextlib.contextmanager
-def _types_explained(node: Node, side: Side, kind: Any, name: str) -> Iterator[None]:
+def types_explained(node: Node, side: Side, kind: Any, name: str) -> Iterator[None]:
     """Raise StudentError for an endpoint of another type than the topic or service has.
 
     One participant refuses it; in processes of their own both would exist without a connection.
@@ -167,10 +168,11 @@ def _types_explained(node: Node, side: Side, kind: Any, name: str) -> Iterator[N
         is_topic = side in (PUBLISHER, SUBSCRIBER)
         full = node.resolve_topic_name(name) if is_topic else node.resolve_service_name(name)
         listed = node.get_topic_names_and_types() if is_topic else node.get_service_names_and_types()
-        types = {topic: kinds[0] for topic, kinds in listed}
         found = type_name(kind)
-        if types.get(full, found) == found:
+        others = [other for topic, kinds in listed if topic == full for other in kinds if other != found]
+        if not others:
             raise
+        types = {topic: kinds[0] for topic, kinds in listed} | {full: others[0]}
         raise StudentError(str(wrong_type(side, full, node.get_fully_qualified_name(), found, types))) from error
 
 
