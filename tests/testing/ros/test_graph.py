@@ -205,7 +205,7 @@ def test_an_endpoint_of_the_wrong_type_is_refused_with_the_cure(ros, simulation)
 
 def test_a_test_that_uses_the_wrong_type_is_told_the_right_one(ros, simulation):
     simulation()
-    with pytest.raises(StudentError, match="expected geometry_msgs/msg/Twist: .* Publish on /cmd_vel_stamped"):
+    with pytest.raises(StudentError, match=r"expected geometry_msgs/msg/Twist: .* Publish on /cmd_vel_stamped"):
         ros.publisher(TwistStamped, "/cmd_vel")
     with pytest.raises(StudentError, match="expected nav_msgs/msg/Odometry: it gets no message"):
         ros.collect(Range, "/odom")
