@@ -175,10 +175,10 @@ class BridgeServer:
         self._lock.acquire()
         try:
             routes = self._routed.get(channel_id)
-            if routes is None:
-                return  # without subscribers the message is not retained: it would be outdated for the next one
             if channel_id in self._retained.by_channel:
                 self._retained.add(Data(channel_id, time_ns, payload))
+            if routes is None:
+                return
             known, senders = self._senders.get(channel_id, _NO_SENDERS)
             if known is not routes:  # routes are immutable: another object means other subscriptions
                 senders = tuple(self._queues[client].sender(subscription_id) for client, subscription_id in routes)

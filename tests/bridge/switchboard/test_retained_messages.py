@@ -43,13 +43,15 @@ def test_messages_of_other_channels_are_not_retained() -> None:
     assert board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).deliveries == []
 
 
-def test_retained_messages_are_dropped_with_the_last_subscriber() -> None:
+def test_retained_messages_outlive_the_last_subscriber() -> None:
+    """The data source decides how long they are up to date."""
     board = switchboard(A)
     subscribe(board, A, 1, 10)
     board.apply(ev.RetainLast(10, 1))
     board.subscriptions.retained.add(ev.Data(10, 5, b"x"))
     board.receive(A, ms.Unsubscribe((1,)))
-    assert board.receive(A, ms.Subscribe((ms.Subscription(1, 10),))).deliveries == []
+    outcome = board.receive(A, ms.Subscribe((ms.Subscription(2, 10),)))
+    assert [delivery.message for delivery in outcome.deliveries] == [ms.MessageData(2, 5, b"x")]
 
 
 def test_depth_zero_drops_retained_messages() -> None:

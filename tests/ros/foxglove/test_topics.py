@@ -12,6 +12,7 @@ from tests.bridge.studio import Studio
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.ros.compat import tf2_messages
+from thymio_sim_ros.ros.foxglove import topics as topics_module
 from thymio_sim_ros.ros.foxglove.topics import Topics
 
 TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -40,7 +41,13 @@ def test_a_topic_with_subscribers_only_is_a_channel_too(ros, studio):
     assert studio.channel("/cmd_vel").schema_name == "geometry_msgs/msg/Twist"
 
 
-def test_ros_is_subscribed_only_while_a_client_subscribes(ros, studio):
+@pytest.fixture
+def ending_at_once(monkeypatch):
+    """Subscriptions end with their last client."""
+    monkeypatch.setattr(topics_module, "KEEP_S", 0.0)
+
+
+def test_ros_is_subscribed_only_while_a_client_subscribes(ros, studio, ending_at_once):
     publisher = ros.node.create_publisher(String, "/chat", 10)
     studio.subscribe(1, "/chat")
     ros.until(lambda: publisher.get_subscription_count() == 1)
@@ -48,12 +55,36 @@ def test_ros_is_subscribed_only_while_a_client_subscribes(ros, studio):
     ros.until(lambda: publisher.get_subscription_count() == 0)
 
 
-def test_a_client_that_leaves_ends_its_subscriptions(ros, bridge):
+def test_a_client_that_leaves_ends_its_subscriptions(ros, bridge, ending_at_once):
     publisher = ros.node.create_publisher(String, "/chat", 10)
     with Studio(bridge().port, ros.until) as studio:
         studio.subscribe(1, "/chat")
         ros.until(lambda: publisher.get_subscription_count() == 1)
     ros.until(lambda: publisher.get_subscription_count() == 0)
+
+
+def test_a_client_that_comes_back_gets_the_same_subscription_and_the_latest_message(ros, bridge, monkeypatch):
+    """A new subscription leaves memory behind in the middleware."""
+    publisher = ros.node.create_publisher(String, "/description", TRANSIENT_LOCAL)
+    publisher.publish(String(data="old"))
+    made = bridge()
+    created = []
+    create = made.node.create_subscription
+    monkeypatch.setattr(made.node, "create_subscription", lambda *a, **kw: created.append(a) or create(*a, **kw))
+    with Studio(made.port, ros.until) as studio:
+        studio.subscribe(1, "/description")
+        assert deserialize_message(studio.next(ms.MessageData).payload, String).data == "old"
+    ros.until(lambda: made._server.client_count == 0)
+    publisher.publish(String(data="new"))
+
+    def found():
+        with Studio(made.port, ros.until) as studio:
+            studio.subscribe(1, "/description")
+            return deserialize_message(studio.next(ms.MessageData).payload, String).data
+
+    ros.until(lambda: found() == "new")
+    assert len(created) == 1
+    assert publisher.get_subscription_count() == 1
 
 
 def test_messages_of_a_best_effort_publisher_are_received(ros, studio):
@@ -141,7 +172,7 @@ def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_el
     topics.close()
 
 
-def test_a_flood_of_changing_wishes_costs_a_share_of_time_and_the_last_wish_counts(ros):
+def test_a_flood_of_changing_wishes_costs_a_share_of_time_and_the_last_wish_counts(ros, ending_at_once):
     for number in range(20):
         ros.node.create_publisher(Bool, f"/flood{number}", 1)
     commands, woken = [], []
@@ -159,6 +190,7 @@ def test_a_flood_of_changing_wishes_costs_a_share_of_time_and_the_last_wish_coun
     assert len(subscribed) < 200 * 20 / 4
     while topics.poll():
         pass
+    assert topics.refresh()
     assert topics.subscribed == ("/flood3",)
     topics.close()
 

@@ -96,8 +96,8 @@ class Subscriptions:
             self._remove_route(client, channel_id, outcome)
 
     def retain_last(self, channel_id: int, depth: int) -> None:
-        """Retain the last `depth` messages of a channel; none if it has no subscriber, as they would be outdated."""
-        self.retained.set_depth(channel_id, depth if channel_id in self.routed else 0)
+        """Retain the last `depth` messages of a channel from now on; 0 drops them, before they become outdated."""
+        self.retained.set_depth(channel_id, depth)
 
     def resend_retained(self, time_ns: int) -> list[Delivery]:
         """Deliveries of all retained messages to all their subscribers, with a new time."""
@@ -122,5 +122,4 @@ class Subscriptions:
                 outcome.events.append(ChannelSubscribed(channel_id))
         elif was_subscribed:
             del self.routed[channel_id]
-            self.retained.drop(channel_id)
             outcome.events.append(ChannelUnsubscribed(channel_id))
