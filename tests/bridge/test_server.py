@@ -18,6 +18,8 @@ from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerSettings, Toke
 from thymio_sim_ros.bridge.handshake import WRONG_TOKEN
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
+from thymio_sim_ros.bridge.protocol.wire import encode_client
+from thymio_sim_ros.bridge.server import REFUSED_FACTOR
 from thymio_sim_ros.bridge.switchboard import events as ev
 
 pytestmark = pytest.mark.process
@@ -152,11 +154,30 @@ def test_a_bad_frame_is_answered_and_the_connection_kept() -> None:
     run(scenario())
 
 
-def test_a_too_long_frame_ends_that_connection_only() -> None:
+def test_a_too_long_frame_is_answered_and_the_connection_kept() -> None:
+    async def scenario() -> None:
+        settings = ServerSettings(max_message_size=1000)
+        async with bridge(settings) as server, server.client() as client:
+            for frame in ("x" * 1001, bytes([1]) * 1001, encode_client(ms.ServiceRequest(7, 8, "cdr", bytes(1000)))):
+                await client.connection.send(frame)
+                if isinstance(frame, bytes) and frame[0] == 2:
+                    failure = await client.next(ms.ServiceCallFailure)
+                    assert (failure.service_id, failure.call_id) == (7, 8)
+                    assert failure.message.startswith("frame: expected at most 1000 bytes (max_message_size), found 10")
+                status = await client.next(ms.Status)
+                assert status.message.startswith("frame: expected at most 1000 bytes (max_message_size), found 10")
+            await client.subscribe(1)
+            server.publish(b"still here")
+            assert (await client.next(ms.MessageData)).payload == b"still here"
+
+    run(scenario())
+
+
+def test_an_excessive_frame_ends_that_connection_only() -> None:
     async def scenario() -> None:
         settings = ServerSettings(max_message_size=1000)
         async with bridge(settings) as server, server.client() as client, server.client() as other:
-            await client.connection.send(bytes(1001))
+            await client.connection.send(bytes(REFUSED_FACTOR * 1000 + 1))
             with pytest.raises(ConnectionClosed, match="1009"):
                 await client.next(ms.MessageData)
             await other.subscribe(1)

@@ -29,7 +29,15 @@ from thymio_sim_ros.bridge.framing import framed
 from thymio_sim_ros.bridge.handshake import HandshakeCheck, select_subprotocol
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.protocol.errors import FrameError
-from thymio_sim_ros.bridge.protocol.messages import ServerMessage, Status, Time, Unsubscribe
+from thymio_sim_ros.bridge.protocol.messages import (
+    ClientMessage,
+    ServerMessage,
+    ServiceCallFailure,
+    ServiceRequest,
+    Status,
+    Time,
+    Unsubscribe,
+)
 from thymio_sim_ros.bridge.protocol.wire import decode_client, encode_server
 from thymio_sim_ros.bridge.switchboard.events import Command, Data, Event, RemoveChannels
 from thymio_sim_ros.bridge.switchboard.outcome import Delivery
@@ -38,7 +46,10 @@ from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.bridge.transport import SLICE_S, ConnectionMaker, SharedConnection
 
-__all__ = ["BridgeServer", "EventSink", "ServerSettings"]
+__all__ = ["REFUSED_FACTOR", "BridgeServer", "EventSink", "ServerSettings"]
+
+REFUSED_FACTOR = 4
+"""Longest frame that is answered, in `max_message_size`: it has to be buffered."""
 
 _FLUSH_PERIOD_S = 0.01
 """Time between attempts to send kept data frames."""
@@ -74,7 +85,8 @@ class ServerSettings:
     buffer_limit: int = 1 << 20
     """Bytes that may be buffered for a client before data frames are dropped."""
     max_message_size: int = 4 << 20
-    """Size of the longest frame accepted from a client, bytes."""
+    """Size of the longest frame accepted from a client, bytes; one of up to `REFUSED_FACTOR` times that is answered with
+    the reason, a longer one ends the connection."""
     max_clients: int = 128
     """Maximum number of clients. The same number of connections may be in their handshake."""
     ping_interval_s: float = 10.0
@@ -133,7 +145,7 @@ class BridgeServer:
                 process_request=self._handshakes.check,
                 compression=None,
                 server_header=None,
-                max_size=settings.max_message_size,
+                max_size=REFUSED_FACTOR * settings.max_message_size,
                 ping_interval=settings.ping_interval_s,
                 ping_timeout=settings.ping_timeout_s,
                 close_timeout=_CLOSE_S,
@@ -272,10 +284,9 @@ class BridgeServer:
 
     def _receive(self, client: int, frame: str | bytes) -> None:
         try:
-            message = decode_client(frame)
+            message = self._decode(client, frame)
         except FrameError as error:
-            with self._lock:
-                self._queues[client].send_control(framed(encode_server(Status(StatusLevel.ERROR, str(error)))))
+            self._answer(client, Status(StatusLevel.ERROR, str(error)))
             return
         with self._lock:
             outcome = self._board.receive(client, message)
@@ -284,6 +295,23 @@ class BridgeServer:
                     self._queues[client].discard(subscription_id)
             self._deliver(outcome.deliveries)
         self._post_events(outcome.events)
+
+    def _decode(self, client: int, frame: str | bytes) -> ClientMessage:
+        """Decode a frame. Raises FrameError, also for one that is too long; a service call gets its failure as well."""
+        if len(frame) <= self._settings.max_message_size:
+            return decode_client(frame)
+        error = FrameError(
+            "frame", f"at most {self._settings.max_message_size} bytes (max_message_size)", str(len(frame))
+        )
+        if isinstance(frame, bytes):  # decoding copies no more than the payload
+            request = decode_client(frame)
+            if isinstance(request, ServiceRequest):
+                self._answer(client, ServiceCallFailure(request.service_id, request.call_id, str(error)))
+        raise error
+
+    def _answer(self, client: int, message: ServerMessage) -> None:
+        with self._lock:
+            self._queues[client].send_control(framed(encode_server(message)))
 
     def _post_events(self, events: Iterable[Event]) -> None:
         for event in events:

@@ -78,10 +78,12 @@ def test_a_request_without_its_capability_is_rejected(ros, bridge):
         assert studio.next(ms.Status).message == "this server does not offer clientPublish"
 
 
-def test_a_frame_longer_than_the_user_allows_ends_its_connection(ros, bridge):
+def test_a_frame_longer_than_the_user_allows_is_refused(ros, bridge):
     port = bridge(max_message_size=1024).port
     with Studio(port, ros.until) as studio:
         studio.send(ms.GetParameters(("x" * 1024,), "long"))
+        assert "expected at most 1024 bytes" in studio.next(ms.Status).message
+        studio.send(ms.GetParameters(("x" * 4096,), "longer"))
         with pytest.raises(ConnectionClosed, match="1009"):
             studio.next(ms.ParameterValues)
     with Studio(port, ros.until) as studio:

@@ -123,6 +123,15 @@ def test_calls_end_by_their_deadline_whether_they_were_sent_or_not(node):
     assert len(reasons) == 10
 
 
+def test_a_call_may_have_a_time_out_of_its_own(node):
+    calls = ServiceCalls(node, timeout_s=1000.0)
+    reasons = []
+    calls.call(str, "/patient", 1, lambda _, reason: reasons.append(reason))
+    calls.call(str, "/hasty", 2, lambda _, reason: reasons.append(reason), timeout_s=0.0)
+    assert calls.poll()
+    assert reasons == ["no answer from /hasty within 0 s"]
+
+
 def test_calls_of_a_vanished_service_fail(node, calls):
     reasons = []
     for number in range(3):

@@ -82,7 +82,7 @@ class FoxgloveParams:
         False, "Publish the number of connected clients on ~/client_count (std_msgs/UInt32)", fixed=True
     )
     max_message_size: int = param(
-        4 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 30, fixed=True
+        4 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 28, fixed=True
     )
 
 

@@ -35,7 +35,7 @@ from thymio_sim_ros.bridge.switchboard.outcome import MAX_REFUSALS
 from thymio_sim_ros.bridge.switchboard.parameters import MAX_WATCHED
 from thymio_sim_ros.ros.foxglove.file_access import parameter_refusal
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
-from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
+from thymio_sim_ros.ros.foxglove.service_calls import SET_TIMEOUT_S, ServiceCalls
 
 __all__ = ["Parameters"]
 
@@ -236,7 +236,10 @@ class Parameters:
                 self._answer(change)
 
         request = SetParameters.Request(parameters=parameters)
-        self._calls.call(SetParameters, f"{node}/set_parameters", request, was_set, sender=change.request.client)
+        sender = change.request.client
+        self._calls.call(
+            SetParameters, f"{node}/set_parameters", request, was_set, sender=sender, timeout_s=SET_TIMEOUT_S
+        )
 
     def _answer(self, change: _Change) -> None:
         request = change.request

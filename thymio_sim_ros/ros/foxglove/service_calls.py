@@ -7,9 +7,11 @@ they make calls themselves.
 
 from __future__ import annotations
 
+import heapq
+import itertools
 import time
 import traceback
-from collections import OrderedDict, deque
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -20,9 +22,13 @@ from rclpy.task import Future
 
 from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
 
-__all__ = ["CALL_TIMEOUT_S", "ServiceCalls"]
+__all__ = ["CALL_TIMEOUT_S", "SET_TIMEOUT_S", "ServiceCalls"]
 
 CALL_TIMEOUT_S = 5.0
+
+SET_TIMEOUT_S = 60.0
+"""Time-out of calls that set parameters: a node may have to load a file, behind those of others, before it answers."""
+
 _IN_FLIGHT = 5
 """Calls of one service at a time: the middleware of a server keeps ten requests and silently drops more."""
 
@@ -53,7 +59,8 @@ class _Call:
     sender: int
     request: Any
     done: Done
-    deadline_s: float
+    timeout_s: float
+    deadline_s: float = 0.0
 
 
 class ServiceCalls:
@@ -66,19 +73,35 @@ class ServiceCalls:
         self._wake = wake
         self._timeout_s = timeout_s
         self._queues: dict[tuple[str, Any], _Queue] = {}
-        self._open: OrderedDict[_Call, None] = OrderedDict()
-        """Calls without an answer, in the order of their deadlines."""
+        self._open: set[_Call] = set()
+        """Calls without an answer."""
+        self._deadlines: list[tuple[float, int, _Call]] = []
+        """Heap of deadlines; an entry of a call that has another deadline by now, or is not open, means nothing."""
+        self._numbers = itertools.count()
         self._finished: deque[tuple[_Call, Any, str]] = deque()
         self._is_finishing = False
 
-    def call(self, service_type: Any, name: str, request: Any, done: Done, *, sender: int = 0) -> None:
-        """Call a service; the request is sent as soon as the service is found and it is the sender's turn."""
+    def call(
+        self,
+        service_type: Any,
+        name: str,
+        request: Any,
+        done: Done,
+        *,
+        sender: int = 0,
+        timeout_s: float | None = None,
+    ) -> None:
+        """Call a service; the request is sent as soon as the service is found and it is the sender's turn.
+
+        `timeout_s`: longest wait for the service, and then for its answer; default: that of this object.
+        """
         key = (name, service_type)
         queue = self._queues.get(key)
         if queue is None:
             queue = self._queues[key] = _Queue(name, self._node.create_client(service_type, name))
-        call = _Call(queue, sender, request, done, time.monotonic() + self._timeout_s)
-        self._open[call] = None
+        call = _Call(queue, sender, request, done, self._timeout_s if timeout_s is None else timeout_s)
+        self._open.add(call)
+        self._set_deadline(call)
         queue.waiting.put(sender, call)
         self._send(queue)
         self._finish_all()
@@ -88,8 +111,10 @@ class ServiceCalls:
     def poll(self) -> bool:
         """Send waiting calls and end those that timed out; return whether calls are open."""
         now_s = time.monotonic()
-        while self._open and (call := next(iter(self._open))).deadline_s <= now_s:
-            self._time_out(call)
+        while self._deadlines and self._deadlines[0][0] <= now_s:
+            deadline_s, _, call = heapq.heappop(self._deadlines)
+            if call in self._open and call.deadline_s == deadline_s:
+                self._time_out(call)
         for queue in list(self._queues.values()):
             self._send(queue)
         self._finish_all()
@@ -119,8 +144,7 @@ class ServiceCalls:
                 self._finish(call, None, f"{queue.name}: cannot send the request: {error}")
                 continue
             queue.in_flight[call] = future
-            call.deadline_s = time.monotonic() + self._timeout_s
-            self._open.move_to_end(call)
+            self._set_deadline(call)
             future.add_done_callback(lambda future, call=call: self._answered(call, future))
 
     def _answered(self, call: _Call, future: Future) -> None:
@@ -136,11 +160,17 @@ class ServiceCalls:
         future = call.queue.in_flight.get(call)
         if future is not None:
             call.queue.client.remove_pending_request(future)
-        self._finish(call, None, f"no answer from {call.queue.name} within {self._timeout_s:g} s")
+        self._finish(call, None, f"no answer from {call.queue.name} within {call.timeout_s:g} s")
+
+    def _set_deadline(self, call: _Call) -> None:
+        call.deadline_s = time.monotonic() + call.timeout_s
+        heapq.heappush(self._deadlines, (call.deadline_s, next(self._numbers), call))
 
     def _finish(self, call: _Call, response: Any, reason: str) -> None:
         """Remove an open call; `_finish_all` calls its callback."""
-        del self._open[call]
+        self._open.remove(call)
+        if not self._open:
+            self._deadlines.clear()
         if call.queue.in_flight.pop(call, None) is None:
             call.queue.waiting.remove(call.sender, call)
         self._finished.append((call, response, "" if response is not None else reason))
