@@ -85,8 +85,8 @@ class ServerSettings:
     buffer_limit: int = 1 << 20
     """Bytes that may be buffered for a client before data frames are dropped."""
     max_message_size: int = 4 << 20
-    """Size of the longest frame accepted from a client, bytes; one of up to `REFUSED_FACTOR` times that is answered with
-    the reason, a longer one ends the connection."""
+    """Size of the longest frame accepted from a client, bytes. One of up to `REFUSED_FACTOR` times that is answered
+    with the reason, a longer one ends the connection."""
     max_clients: int = 128
     """Maximum number of clients. The same number of connections may be in their handshake."""
     ping_interval_s: float = 10.0
