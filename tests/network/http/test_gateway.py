@@ -218,6 +218,28 @@ def test_a_file_is_loaded_on_the_robots_that_it_names(two):
     assert two.ask("GET", "/nodes/bert/own").body == b"[2]"
 
 
+def test_the_programs_of_a_file_go_to_robots_as_everywhere_else():
+    """By name, then by number, then in order; a robot without one runs nothing, and the reply says so."""
+    bench = Bench("anna", "bert", "carl", ids=(1, 2, 3))
+    nodes = [("Thymio on LAPTOP", 0, 1), ("thymio-II", 2, 2)]
+    file = "".join(f'<node name="{name}" nodeId="{number}">var own = {value}</node>' for name, number, value in nodes)
+    bench.ask("PUT", "/nodes/carl", b"var own = 9")
+    reply = bench.ask("PUT", "/nodes", f"<network>{file}</network>".encode())
+    assert reply.status == 200
+    assert "carl: the file has no program left for this robot: it runs nothing\n" in reply.body.decode()
+    assert [bench.ask("GET", f"/nodes/{name}/own").body for name in ("anna", "bert")] == [b"[1]", b"[2]"]
+    assert bench.ask("GET", "/nodes/carl/own").status == 404
+
+
+def test_a_program_that_no_robot_runs_is_a_note_of_the_reply(two):
+    nodes = "".join(f'<node name="{name}">var own = 1</node>' for name in ("anna", "bert", "emma", "e-puck"))
+    reply = two.ask("PUT", "/nodes", f"<network>{nodes}</network>".encode())
+    assert (reply.status, reply.media_type) == (200, "text/plain; charset=utf-8")
+    lines = reply.body.decode().splitlines()
+    assert "anna, bert: no robot is left for node 'emma'" in lines
+    assert "anna, bert: not for a Thymio, left out: node 'e-puck'" in lines
+
+
 def test_bare_text_is_a_program(one):
     assert one.ask("PUT", N, b"var a = 7").status == 204
     assert one.ask("GET", f"{N}/a").body == b"[7]"

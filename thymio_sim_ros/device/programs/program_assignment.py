@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from aseba_vm import aesl
+from aseba_vm.aesl.network import select
 from aseba_vm.messages import format_message
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.programs.program import ThymioFile, ThymioProgram, node_label
 
-__all__ = ["Assignment", "RobotId", "assign_programs"]
+__all__ = ["Assignment", "RobotId", "assign_nodes", "assign_programs"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,52 +32,93 @@ class Assignment:
 
 def assign_programs(file: ThymioFile, robots: Sequence[RobotId]) -> dict[str, Assignment]:
     """Return the assignment of each robot by name. A single program is for all robots, unless it is named after one."""
-    common = [*file.notes, *(f"not for a Thymio, left out: node '{other}'" for other in file.others)]
+    common = [*file.notes, *map(_not_run, file.others)]
+    shares = _assigned([program.node for program in file.programs], robots, target().name, common)
+    programs = [None if index is None else file.programs[index] for index, _ in shares]
+    return {
+        robot.name: Assignment(program, notes)
+        for robot, program, (_, notes) in zip(robots, programs, shares, strict=True)
+    }
+
+
+def assign_nodes(
+    network: aesl.Network, devices: Sequence[tuple[str, RobotId]]
+) -> list[tuple[aesl.Node | None, tuple[str, ...]]]:
+    """Return the node of a file for each device, and notes, as `assign_programs` does for robots.
+
+    Devices are given by the name of their type and their own; those of one type share the nodes for this type.
+    """
+    found: dict[int, tuple[aesl.Node | None, tuple[str, ...]]] = {}
+    types = dict.fromkeys(type_name for type_name, _ in devices)
+    for type_name in types:
+        members = [(at, robot) for at, (other, robot) in enumerate(devices) if other == type_name]
+        robots = [robot for _, robot in members]
+        selection = select(network, {"", type_name, *(robot.name for robot in robots)})
+        nodes = [node for node in selection.nodes if node.name == type_name or node.name not in types]
+        if not nodes:
+            found |= {at: (None, (_NOTHING_LEFT,)) for at, _ in members}
+            continue
+        common = [_not_run(node.name) for node in selection.others if node.name not in types]
+        for (at, _), (index, notes) in zip(
+            members, _assigned(nodes, robots, type_name, list(dict.fromkeys(common))), strict=True
+        ):
+            found[at] = (None if index is None else nodes[index], notes)
+    return [found[at] for at in range(len(devices))]
+
+
+_NOTHING_LEFT = "the file has no program left for this robot: it runs nothing"
+
+
+def _not_run(node: str) -> str:
+    return f"not for a Thymio, left out: node '{node}'"
+
+
+def _assigned(
+    nodes: Sequence[aesl.Node], robots: Sequence[RobotId], general: str, common: Sequence[str]
+) -> list[tuple[int | None, tuple[str, ...]]]:
+    """Return the index of each robot's node, and its notes. Nodes without a name, or named `general`, are for any."""
     names = {robot.name for robot in robots}
-    only = file.programs[0]
-    if len(file.programs) == 1 and (only.node.name not in names or _is_general(only)):
-        if not _is_general(only):
-            common.insert(0, format_message("note-only-node", (only.node.name,)))
-        return {robot.name: Assignment(only, tuple(common)) for robot in robots}
-    assigned, left = _match(file.programs, robots)
-    common += [f"no robot is left for {node_label(program.node)}" for program in left]
-    return {robot.name: _assignment(robot, assigned.get(robot.name), common) for robot in robots}
+    general_names = ("", general)
+    only = nodes[0]
+    if len(nodes) == 1 and (only.name not in names or only.name in general_names):
+        first = [] if only.name in general_names else [format_message("note-only-node", (only.name,))]
+        return [(0, (*first, *common)) for _ in robots]
+    matched, left = _match(nodes, robots)
+    all_notes = [*common, *(f"no robot is left for {node_label(nodes[index])}" for index in left)]
+    result = []
+    for robot, index in zip(robots, matched, strict=True):
+        notes = _notes(robot, None if index is None else nodes[index], general_names, all_notes)
+        result.append((index, notes))
+    return result
 
 
-def _is_general(program: ThymioProgram) -> bool:
-    """Whether the node of the program has no name, or that of the kind of robot."""
-    return program.node.name in ("", target().name)
-
-
-def _match(
-    programs: Sequence[ThymioProgram], robots: Sequence[RobotId]
-) -> tuple[dict[str, ThymioProgram], list[ThymioProgram]]:
-    left = list(programs)
-    assigned: dict[str, ThymioProgram] = {}
+def _match(nodes: Sequence[aesl.Node], robots: Sequence[RobotId]) -> tuple[list[int | None], list[int]]:
+    """Return the index of the node of each robot, and the nodes that are left."""
+    left = list(range(len(nodes)))
+    matched: list[int | None] = [None] * len(robots)
     names = {robot.name for robot in robots}
 
-    def assign(robot: RobotId, fits: list[ThymioProgram]) -> None:
-        if robot.name not in assigned and fits:
-            assigned[robot.name] = fits[0]
+    def assign(at: int, fits: list[int]) -> None:
+        if matched[at] is None and fits:
+            matched[at] = fits[0]
             left.remove(fits[0])
 
-    for robot in robots:
-        assign(robot, [program for program in left if program.node.name == robot.name])
-    for robot in robots:
-        assign(robot, [program for program in left if program.node.node_id == robot.number])
-    for robot in robots:
-        assign(robot, [program for program in left if program.node.name not in names])
-    return assigned, left
+    for at, robot in enumerate(robots):
+        assign(at, [index for index in left if nodes[index].name == robot.name])
+    for at, robot in enumerate(robots):
+        assign(at, [index for index in left if nodes[index].node_id == robot.number])
+    for at in range(len(robots)):
+        assign(at, [index for index in left if nodes[index].name not in names])
+    return matched, left
 
 
-def _assignment(robot: RobotId, program: ThymioProgram | None, common: Sequence[str]) -> Assignment:
-    if program is None:
-        return Assignment(None, (*common, "the file has no program left for this robot: it runs nothing"))
-    node = program.node
-    if node.name != robot.name and not _is_general(program):
-        return Assignment(program, (format_message("note-next-node", (node.name,)), *common))
+def _notes(
+    robot: RobotId, node: aesl.Node | None, general_names: Sequence[str], common: Sequence[str]
+) -> tuple[str, ...]:
+    if node is None:
+        return (*common, _NOTHING_LEFT)
+    if node.name != robot.name and node.name not in general_names:
+        return (format_message("note-next-node", (node.name,)), *common)
     if node.name != robot.name and node.node_id not in (0, robot.number):
-        return Assignment(
-            program, (*common, f"{node_label(node)} runs here, on number {robot.number}, as it was next in order")
-        )
-    return Assignment(program, tuple(common))
+        return (*common, f"{node_label(node)} runs here, on number {robot.number}, as it was next in order")
+    return tuple(common)

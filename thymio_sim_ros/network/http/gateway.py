@@ -68,6 +68,7 @@ class _Load:
     missing: set[Key]
     deadline_ns: int
     reply: ReplyTo
+    notes: tuple[str, ...]
 
 
 class Gateway:
@@ -197,7 +198,7 @@ class Gateway:
             self._nodes.client(node.key).load(node.key[1], program.program)
             self._nodes.define(node.key, compiled.definitions)
         keys = {node.key for node, _ in compiled.programs}
-        self._loads.append(_Load(keys, self._now_ns + TIMEOUT_NS, reply))
+        self._loads.append(_Load(keys, self._now_ns + TIMEOUT_NS, reply, compiled.notes))
 
     def subscribe(self, action: StreamEvents, send: Callable[[bytes | None], None]) -> Subscription:
         """Open a stream, until `unsubscribe`. Raises RequestError."""
@@ -274,7 +275,7 @@ class Gateway:
             load.missing.discard(key)
             if not load.missing:
                 self._loads.remove(load)
-                load.reply(done())
+                load.reply(done(load.notes))
 
     def _fail(self, key: Key, reason: str) -> None:
         reads = [read for read in self._reads if read.key == key]

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from aseba_vm import AeslError, CompileError, aesl, compile
-from aseba_vm.aesl.network import select, with_vpl_events
+from aseba_vm.aesl.network import with_vpl_events
 from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 from aseba_vm.target import TargetDescription
 from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
+from thymio_sim_ros.device.programs.program_assignment import RobotId, assign_nodes
 from thymio_sim_ros.network.http.replies import Definitions
 from thymio_sim_ros.network.http.requests import RequestError
 
@@ -36,21 +37,31 @@ class Compiled:
 
     programs: tuple[tuple[NodeToLoad, ThymioProgram], ...]
     definitions: Definitions
+    notes: tuple[str, ...] = ()
+    """Messages for the user about programs and robots that do not match."""
 
 
 def compile_file(text: bytes, nodes: Sequence[NodeToLoad]) -> Compiled:
     """Compile an .aesl file, or bare Aseba text, for each node. Raises RequestError with line and column.
 
-    A node gets the program of the file that is named after its robot, else that with its type and number, else the
-    first for its type, else the first that another kind of device does not claim.
+    The programs of the file go to nodes as everywhere else (`assign_nodes`). A node without one gets the empty program.
     """
     try:
         file = decode(text).text
         network = _parse(file)
-        programs = tuple((node, _compile(file, network, node)) for node in nodes)
+        shares = assign_nodes(network, [(node.target.name, RobotId(node.robot, node.number)) for node in nodes])
+        programs = tuple(
+            (node, _compile(file, network, found or aesl.Node(""), node.target))
+            for node, (found, _) in zip(nodes, shares, strict=True)
+        )
     except (AeslError, TextError) as error:
         raise RequestError(400, f"line {error.line}, column {error.column}: {error}") from error
-    return Compiled(programs, Definitions(network.events, network.constants))
+    said: dict[str, list[str]] = {}
+    for node, (_, notes) in zip(nodes, shares, strict=True):
+        for note in notes:
+            said.setdefault(note, []).append(node.robot or node.target.name)
+    remarks = tuple(f"{', '.join(names)}: {note}" for note, names in said.items())
+    return Compiled(programs, Definitions(network.events, network.constants), remarks)
 
 
 def _parse(text: str) -> aesl.Network:
@@ -59,20 +70,12 @@ def _parse(text: str) -> aesl.Network:
     return with_vpl_events(aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, ""))
 
 
-def _compile(text: str, network: aesl.Network, wanted: NodeToLoad) -> ThymioProgram:
-    node = _node_for(network, wanted)
+def _compile(text: str, network: aesl.Network, node: aesl.Node, target: TargetDescription) -> ThymioProgram:
     try:
-        program = compile(node.code, wanted.target, events=network.events, constants=network.constants)
+        program = compile(node.code, target, events=network.events, constants=network.constants)
     except CompileError as error:
         if error.pos is None:
             raise RequestError(400, str(error)) from error
         row, col = node.place(error.pos.offset)
         raise RequestError(400, f"line {row + 1}, column {col + 1}: {error}") from error
     return of_node(program, node, network, NAME, text)
-
-
-def _node_for(network: aesl.Network, wanted: NodeToLoad) -> aesl.Node:
-    type_name = wanted.target.name
-    found = network.node(wanted.robot) if wanted.robot else None
-    found = found or network.node(type_name, wanted.number)
-    return found or select(network, {type_name, wanted.robot}).nodes[0]

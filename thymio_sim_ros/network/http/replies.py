@@ -60,9 +60,9 @@ class NodeView:
     definitions: Definitions = field(default=Definitions())
 
 
-def done() -> Reply:
-    """The reply to a request that was carried out."""
-    return Reply(204)
+def done(notes: Sequence[str] = ()) -> Reply:
+    """The reply to a request that was carried out: empty, or a line for each note."""
+    return Reply(200, "".join(f"{note}\n" for note in notes).encode(), TEXT_TYPE) if notes else Reply(204)
 
 
 def refusal(error: RequestError) -> Reply:

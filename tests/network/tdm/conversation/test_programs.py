@@ -253,15 +253,25 @@ def test_a_file_for_several_nodes_is_answered_once() -> None:
     assert all(node.vm.bytecode[0] > 1 for node in talk.networks[0])
 
 
+def test_the_programs_of_a_file_go_to_robots_as_everywhere_else() -> None:
+    """An editor names a node after the device that it was connected to, with a number of that device."""
+    talk = Talk()
+    talk.add_network([MachineNode(1), MachineNode(2)])
+    talk.join(1)
+    for node in talk.take(1, m.NodesChanged)[0].nodes:
+        talk.ask(1, m.LockNode, node.node_id)
+    nodes = (aesl.Node("Thymio_4 on LAPTOP", 77, "var a = 1"), aesl.Node("thymio-II", 2, "var a[5]"))
+    answer = talk.ask(1, m.CompileAndLoadCodeOnVM, GROUP, 2, aesl.dumps(aesl.Network(nodes=nodes)), 2)
+    assert isinstance(answer, m.CompilationResultSuccess)
+    words = [compile(node.code, targets.THYMIO_II).words for node in nodes]
+    assert [node.vm.bytecode[: len(each)] for node, each in zip(talk.networks[0], words, strict=True)] == words
+
+
 @pytest.mark.parametrize(
     ("text", "place"),
     [
         ("<network>", (0, 9)),
         (aesl.dumps(aesl.Network(nodes=(aesl.Node("thymio-II", 1, "var a\nb = 1"),))), None),
-        (
-            aesl.dumps(aesl.Network(nodes=(aesl.Node("e-puck", 1, "var a"), aesl.Node("marxbot", 2, "var b")))),
-            (0, 0),
-        ),
     ],
 )
 def test_a_wrong_file_is_an_error_with_its_place(talk: Talk, text: str, place: tuple[int, int] | None) -> None:

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from aseba_vm.protocol import messages as aseba
+from thymio_sim_ros.device.programs.program_assignment import RobotId
 from thymio_sim_ros.network.tdm.conversation.breakpoints import clear_breakpoints, set_breakpoints
 from thymio_sim_ros.network.tdm.conversation.clients import Client
 from thymio_sim_ros.network.tdm.conversation.directory import Directory
@@ -50,7 +51,7 @@ def _compile(directory: Directory, client: Client, message: m.CompileAndLoadCode
         message.request_id,
         message.program,
         message.language,
-        tuple((node.id, node.number, node.remote.description) for node in nodes),
+        tuple((node.id, RobotId(node.name, node.number), node.remote.description) for node in nodes),
         group.events,
         group.constants,
         is_loaded=bool(message.options & CompileOption.LOAD_ON_TARGET),

@@ -14,6 +14,7 @@ from aseba_vm import AeslError, CompileError, Program, TargetDescription, aesl, 
 from aseba_vm.aesl.network import with_vpl_events
 from thymio_sim_ros.device.programs.foreign import FOREIGN
 from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
+from thymio_sim_ros.device.programs.program_assignment import RobotId, assign_nodes
 from thymio_sim_ros.network.tdm.protocol.constants import Language
 from thymio_sim_ros.network.tdm.protocol.messages import CompilationResultFailure
 
@@ -62,13 +63,13 @@ class Compiled:
 
 @dataclass(frozen=True, slots=True)
 class Compilation:
-    """A text to be compiled for nodes: their ids, numbers on the network, and descriptions."""
+    """A text to be compiled for nodes: their ids, names and numbers on the network, and descriptions."""
 
     client: int
     request_id: int
     text: str
     language: int
-    nodes: tuple[tuple[UUID, int, TargetDescription], ...]
+    nodes: tuple[tuple[UUID, RobotId, TargetDescription], ...]
     events: tuple[tuple[str, int], ...]
     constants: tuple[tuple[str, int], ...]
     is_loaded: bool
@@ -78,11 +79,11 @@ class Compilation:
         """Compile; thread-safe."""
         if self.language != Language.AESL:
             programs = []
-            for key, number, target in self.nodes:
+            for key, robot, target in self.nodes:
                 found = self._compiled(self.text, target, self.events, self.constants)
                 if isinstance(found, CompilationResultFailure):
                     return found
-                programs.append((key, self._loadable(found, target.name, number)))
+                programs.append((key, self._loadable(found, target.name, robot.number)))
             return Compiled(tuple(programs))
         return self._run_file()
 
@@ -101,22 +102,21 @@ class Compilation:
             network = with_vpl_events(aesl.loads(self.text, strict=True))
         except AeslError as error:
             return CompilationResultFailure(self.request_id, str(error), 0, error.line - 1, error.column - 1)
+        shares = assign_nodes(network, [(target.name, robot) for _, robot, target in self.nodes])
+        if all(node is None for node, _ in shares):
+            names = ", ".join(sorted({node.name for node in network.nodes}))
+            wanted = ", ".join(sorted({target.name for _, _, target in self.nodes}))
+            text = f"the file has programs for {names}, expected one for {wanted}"
+            return CompilationResultFailure(self.request_id, text)
         programs = []
-        for key, number, target in self.nodes:
-            node = network.node(target.name, number) or (network.nodes[0] if len(network.nodes) == 1 else None)
-            if node is None:
-                continue
+        for (key, _, target), (assigned, _) in zip(self.nodes, shares, strict=True):
+            node = assigned or aesl.Node(target.name)
             found = self._compiled(node.code, target, network.events, network.constants)
             if isinstance(found, CompilationResultFailure):
                 row, column = node.place(found.character)
                 return CompilationResultFailure(self.request_id, found.message, found.character, row, column)
             lines = tuple(row + 1 for row in node.rows_in_file())
             programs.append((key, LoadableProgram(found, lines, of_node(found, node, network, FOREIGN, self.text))))
-        if not programs:
-            names = ", ".join(sorted({node.name for node in network.nodes}))
-            wanted = ", ".join(sorted({target.name for _, _, target in self.nodes}))
-            text = f"the file has programs for {names}, expected one for {wanted}"
-            return CompilationResultFailure(self.request_id, text)
         return Compiled(tuple(programs), network.events, network.constants)
 
     def _compiled(
