@@ -48,6 +48,15 @@ def test_options_describe_a_sweep(loop: Loop, capsys: pytest.CaptureFixture[str]
     assert {row["variable.acc[2]"] for row in rows} <= {"20", "21", "22", "23", "24"}
 
 
+def test_a_program_that_no_robot_runs_is_a_note(loop: Loop, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    nodes = "".join(f'<node name="{name}">const C = 1\nvar n = C</node>' for name in ("thymio-II", "emma"))
+    (tmp_path / "pair.aesl").write_text(f"<network>{nodes}</network>")
+    options = ("--program", "pair.aesl", "--seeds", "3", "--parameter", "n=1,2", "--seconds", "0.1")
+    assert main(["sweep", *options]) == 0
+    lines = [line for line in capsys.readouterr().err.splitlines() if "emma" in line]
+    assert lines == ["thymio-sim: pair.aesl: thymio: no robot is left for node 'emma'"]
+
+
 def test_options_replace_what_the_file_says(loop: Loop, tmp_path: Path) -> None:
     lines = ['programs = "none"', 'playgrounds = "base"', "seeds = 4", "seconds = 0.1", "[parameters]", "noise = true"]
     (tmp_path / "small.toml").write_text("\n".join(lines))

@@ -22,7 +22,7 @@ from thymio_sim_ros.cli.options import (
 from thymio_sim_ros.cli.output import print_json
 from thymio_sim_ros.cli.runner_sound import SOUND_SENSOR, run_with_sound
 from thymio_sim_ros.cli.signal_handling import StopSignal
-from thymio_sim_ros.device.programs.program_assignment import Assignment
+from thymio_sim_ros.device.programs.program_assignment import Assignment, note_lines
 from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.runner_faults import RunnerFaults
@@ -91,9 +91,8 @@ def _result(runner: Runner, faults: RunnerFaults, elapsed_s: float) -> Mapping[s
 
 def _print_assignment_notes(assignments: Mapping[str, Assignment]) -> None:
     """Print each note once, with the robots that it concerns."""
-    for note in dict.fromkeys(note for assignment in assignments.values() for note in assignment.notes):
-        robots = ", ".join(name for name, assignment in assignments.items() if note in assignment.notes)
-        _print_error(f"{robots}: {note}")
+    for line in note_lines((name, assignment.notes) for name, assignment in assignments.items()):
+        _print_error(line)
 
 
 def _print_error(text: str) -> None:

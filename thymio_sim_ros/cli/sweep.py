@@ -21,7 +21,7 @@ from thymio_sim_ros.cli.options import path_argument
 from thymio_sim_ros.cli.output import print_json
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.sweep import table
-from thymio_sim_ros.sweep.description import Description, described, read_description
+from thymio_sim_ros.sweep.description import Description, described, notes_of, read_description
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Sweep
 from thymio_sim_ros.sweep.measures import MEASURES
@@ -57,6 +57,8 @@ def run(argv: Sequence[str]) -> int:
         sweep = _description(options).sweep()
         path = options.output or _default_output(options.file)
         table.check_suffix(path)
+        for note in notes_of(sweep):
+            print(f"thymio-sim: {note}", file=sys.stderr)
         finished = table.read_table(path, sweep)
         if options.repeat_errors:
             finished = {number: rows for number, rows in finished.items() if not _has_error(rows)}

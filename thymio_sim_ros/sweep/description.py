@@ -18,9 +18,9 @@ from thymio_sim_ros.sim.playground.writer import dumps
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Source, Sweep, Value
 from thymio_sim_ros.sweep.measures import MEASURES, check_measure, measure_of
-from thymio_sim_ros.sweep.parameters import check
+from thymio_sim_ros.sweep.parameters import check, notes
 
-__all__ = ["Description", "described", "read_description"]
+__all__ = ["Description", "described", "notes_of", "read_description"]
 
 MAX_RUNS = 1_000_000
 MAX_SECONDS = 1e6
@@ -184,9 +184,20 @@ def _is_number(value: object) -> bool:
         return False
 
 
+def notes_of(sweep: Sweep) -> list[str]:
+    """Return what does not match between the files of the programs and the robots, each once."""
+    first = _first(sweep)
+    return list(dict.fromkeys(note for number in range(len(first)) for note in notes(first.run(number))))
+
+
+def _first(sweep: Sweep) -> Sweep:
+    """Return a run for each program and playground, with the first value of each parameter."""
+    return replace(sweep, seeds=sweep.seeds[:1], parameters=tuple((name, some[:1]) for name, some in sweep.parameters))
+
+
 def _check(sweep: Sweep) -> None:
     """Check a run for each program, playground and value; not for each combination, of which there may be many."""
-    first = replace(sweep, seeds=sweep.seeds[:1], parameters=tuple((name, some[:1]) for name, some in sweep.parameters))
+    first = _first(sweep)
     programs = [program for number in range(len(first)) for program in check(first.run(number))]
     for measure in sweep.measures:
         check_measure(measure, programs)

@@ -17,6 +17,7 @@ from typing import Any
 
 from aseba_vm import AeslError
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, parse
+from thymio_sim_ros.device.programs.program_assignment import Assignment, note_lines
 from thymio_sim_ros.loading import assignments_of
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
@@ -27,7 +28,7 @@ from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Run, Source, Value
 
-__all__ = ["MODELS", "check", "start"]
+__all__ = ["MODELS", "check", "notes", "start"]
 
 MODELS: Mapping[str, tuple[Value, ...]] = {
     "motors": MOTOR_MODELS,
@@ -48,6 +49,14 @@ def check(run: Run) -> list[ThymioProgram]:
     Raises SweepError if a parameter does not fit program or playground.
     """
     return [*_prepared(run)[1].values()]
+
+
+def notes(run: Run) -> list[str]:
+    """Return what does not match between the program's file and the robots. Raises SweepError as `check` does."""
+    robots = tuple(robot.name for robot in _playground(run.playground, _fields(run)).robots)
+    words = tuple((name, value) for name, value in run.values if isinstance(value, int))
+    lines = note_lines((name, share.notes) for name, share in _assigned(run.program, robots, words).items())
+    return [f"{run.program.name}: {line}" for line in lines]
 
 
 def start(run: Run) -> Runner:
@@ -132,15 +141,26 @@ def _set_field(data: Any, name: str, value: Value, playground: str) -> None:
     here[path[-1]] = value
 
 
+def _constants(source: Source) -> dict[str, int]:
+    try:
+        return dict(parse(source.text).constants)
+    except AeslError as error:
+        raise SweepError(str(error)) from error
+
+
+def _assigned(source: Source, robots: tuple[str, ...], words: Words) -> dict[str, Assignment]:
+    known = _constants(source)
+    constants = {name: word for name, word in words if name in known}
+    try:
+        return assignments_of(source.text, source.name, robots, constants=constants)
+    except ProgramError as error:
+        raise SweepError(str(error)) from error
+
+
 @lru_cache(maxsize=64)
 def _programs(source: Source, robots: tuple[str, ...], words: Words) -> tuple[dict[str, ThymioProgram], Words]:
     """Return the programs by robot, and the variables to set; the other parameters are constants."""
-    try:
-        known = dict(parse(source.text).constants)
-        constants = {name: word for name, word in words if name in known}
-        assigned = assignments_of(source.text, source.name, robots, constants=constants)
-    except (AeslError, ProgramError) as error:
-        raise SweepError(str(error)) from error
+    assigned, known = _assigned(source, robots, words), _constants(source)
     programs = {robot: found.program for robot, found in assigned.items() if found.program is not None}
     variables = tuple((name, word) for name, word in words if name not in known)
     for name, _ in variables:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from thymio_sim_ros import loading, resources
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
-from thymio_sim_ros.device.programs.program_assignment import RobotId
+from thymio_sim_ros.device.programs.program_assignment import RobotId, note_lines
 from thymio_sim_ros.sim.playground.reader import Playground
 
 __all__ = ["beside", "is_name", "playground_of", "playground_source", "program_source", "programs_of"]
@@ -64,9 +64,8 @@ def programs_of(
     found = program_source(value, folder)
     text, name = loading.read_text(found) if isinstance(value, Path) or is_name(found) else (found, "program")
     assigned = loading.assigned_to(text, name, robots)
-    for note in dict.fromkeys(note for assignment in assigned.values() for note in assignment.notes):
-        named = ", ".join(robot for robot, assignment in assigned.items() if note in assignment.notes)
-        logging.getLogger(__name__).warning("%s: %s: %s", name, named, note)
+    for line in note_lines((robot, assignment.notes) for robot, assignment in assigned.items()):
+        logging.getLogger(__name__).warning("%s: %s", name, line)
     return {robot: assignment.program or load_program("", "none") for robot, assignment in assigned.items()}
 
 

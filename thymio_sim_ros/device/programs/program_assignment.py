@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from aseba_vm import aesl
@@ -11,7 +11,7 @@ from aseba_vm.messages import format_message
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.programs.program import ThymioFile, ThymioProgram, node_label
 
-__all__ = ["Assignment", "RobotId", "assign_nodes", "assign_programs"]
+__all__ = ["Assignment", "RobotId", "assign_nodes", "assign_programs", "note_lines"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +64,15 @@ def assign_nodes(
         ):
             found[at] = (None if index is None else nodes[index], notes)
     return [found[at] for at in range(len(devices))]
+
+
+def note_lines(notes: Iterable[tuple[str, Sequence[str]]]) -> list[str]:
+    """Return each note once, with the robots that it concerns, given the notes of each robot."""
+    robots: dict[str, list[str]] = {}
+    for robot, texts in notes:
+        for text in texts:
+            robots.setdefault(text, []).append(robot)
+    return [f"{', '.join(names)}: {text}" for text, names in robots.items()]
 
 
 _NOTHING_LEFT = "the file has no program left for this robot: it runs nothing"

@@ -11,7 +11,7 @@ from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 from aseba_vm.target import TargetDescription
 from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
-from thymio_sim_ros.device.programs.program_assignment import RobotId, assign_nodes
+from thymio_sim_ros.device.programs.program_assignment import RobotId, assign_nodes, note_lines
 from thymio_sim_ros.network.http.replies import Definitions
 from thymio_sim_ros.network.http.requests import RequestError
 
@@ -56,12 +56,8 @@ def compile_file(text: bytes, nodes: Sequence[NodeToLoad]) -> Compiled:
         )
     except (AeslError, TextError) as error:
         raise RequestError(400, f"line {error.line}, column {error.column}: {error}") from error
-    said: dict[str, list[str]] = {}
-    for node, (_, notes) in zip(nodes, shares, strict=True):
-        for note in notes:
-            said.setdefault(note, []).append(node.robot or node.target.name)
-    remarks = tuple(f"{', '.join(names)}: {note}" for note, names in said.items())
-    return Compiled(programs, Definitions(network.events, network.constants), remarks)
+    notes = note_lines((node.robot or node.target.name, notes) for node, (_, notes) in zip(nodes, shares, strict=True))
+    return Compiled(programs, Definitions(network.events, network.constants), tuple(notes))
 
 
 def _parse(text: str) -> aesl.Network:
