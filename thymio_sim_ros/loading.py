@@ -13,11 +13,18 @@ from pathlib import Path
 
 from aseba_vm import AeslError
 from aseba_vm.aesl.foreign_files import looks_like_network, refuse_foreign
-from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 from thymio_sim_ros import resources
+from thymio_sim_ros.block_files import BlocksError, Opened, open_program
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.device.programs.program import NO_CONSTANTS, ThymioProgram, load_file, load_program, parse
+from thymio_sim_ros.device.programs.program import (
+    NO_CONSTANTS,
+    ProgramError,
+    ThymioProgram,
+    load_file,
+    load_program,
+    parse,
+)
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId, assign_programs
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.format_detection import MAX_BYTES, is_recognized
@@ -158,10 +165,12 @@ def read_text(path: str) -> tuple[str, str]:
         return "", NO_PROGRAM
     found = resources.find_program(path)
     try:
-        text = decode(found.read_bytes()).text
-        if not _is_program(found.name, text):
-            refuse_foreign(text)
+        opened = open_program(found.read_bytes())
+        if not _is_program(found.name, opened.text):
+            refuse_foreign(opened.text)
             raise resources.ResourceError(f"{found}: expected a file whose name ends in {', '.join(_PROGRAMS)}")
+    except BlocksError as error:
+        raise resources.ResourceError(f"{found}: {error}") from error
     except TextError as error:
         place = "" if error.kind.startswith("foreign-") else f" line {error.line}, column {error.column}:"
         if not place or _PROGRAM_NAME.search(found.name):
@@ -169,7 +178,24 @@ def read_text(path: str) -> tuple[str, str]:
         raise resources.ResourceError(f"{found}: expected a file whose name ends in {', '.join(_PROGRAMS)}") from error
     except OSError as error:
         raise resources.ResourceError(f"{found}: {error.strerror}; expected a file that can be read") from error
-    return text, found.name
+    return _noted(opened, found.name), found.name
+
+
+def text_of(source: str, name: str) -> str:
+    """Return the text of a program that is given as text; a workspace of Blockly becomes an .aesl file.
+
+    Raises ProgramError for blocks that cannot be converted.
+    """
+    try:
+        return _noted(open_program(source.encode()), name)
+    except (BlocksError, TextError, UnicodeEncodeError) as error:
+        raise ProgramError(name, None, None, str(error)) from error
+
+
+def _noted(opened: Opened, name: str) -> str:
+    for note in opened.notes:
+        logging.getLogger(__name__).warning("%s: %s", name, note)
+    return opened.text
 
 
 def _is_program(name: str, text: str) -> bool:

@@ -46,7 +46,20 @@ function here(file) {
   return fileURLToPath(new URL(file, import.meta.url));
 }
 
-export default defineConfig({
+/** The command that converts blocks outside of a browser: one file for Node (`vite build --ssr`). @type {import("vite").UserConfig} */
+const command = {
+  plugins: [evaluatedTexts],
+  publicDir: false,
+  ssr: { noExternal: true },
+  build: {
+    outDir: "dist/node",
+    target: "node20",
+    rolldownOptions: { input: here("blockly/convert.js"), output: { entryFileNames: "[name].mjs" } },
+  },
+};
+
+/** @type {import("vite").UserConfig} */
+const page = {
   base: "./",
   plugins: [evaluatedTexts, shippedDocumentation, blocklyMedia],
   build: {
@@ -68,4 +81,6 @@ export default defineConfig({
       },
     },
   },
-});
+};
+
+export default defineConfig(({ isSsrBuild }) => (isSsrBuild ? command : page));

@@ -252,3 +252,64 @@ def test_expected_files_are_found_under_other_names(
 ) -> None:
     result = prepared(Submission("anna", files=files), expected)
     assert (set(result.files), result.problem) == (names, problem)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "follower.aesl.txt",
+        "follower (1).aesl",
+        "follower(2).aesl",
+        "follower (1) (1).aesl",
+        "follower - Copy.aesl",
+        "follower - Kopie (2).aesl",
+        "follower - Copie.aesl",
+        "follower copia 2.aesl",
+        "Kopie von follower.aesl",
+        "Copy of follower.aesl",
+        "Copie de follower.aesl",
+        "Copia di Kopie von follower.aesl",
+        "follower.aesl.download",
+        "follower (1).aesl.txt",
+        "Follower.AESL",
+        "follower.aesl (1)",
+        "follower-1.aesl",
+        "follower.aesl.aesl",
+        "folder/follower (1).aesl",
+    ],
+)
+def test_the_name_of_a_copy_is_found_with_a_remark(name: str) -> None:
+    """Beside another program, so that the name decides and not the suffix."""
+    result = prepared(Submission("anna", files={name: b"a", "wall.aesl": b"b"}), ["follower.aesl"])
+    assert (result.problem, result.files.get("follower.aesl")) == ("", b"a")
+    assert result.notes == (f"{name} was graded as follower.aesl",)
+
+
+def test_a_copy_beside_the_expected_file_is_remarked() -> None:
+    files = {"follower.aesl": b"old", "follower (1).aesl": b"new"}
+    result = prepared(Submission("anna", files=files), ["follower.aesl"])
+    assert result.notes == ("follower (1).aesl was not graded, but follower.aesl",)
+
+
+def test_copies_that_differ_are_not_chosen_from() -> None:
+    files = {"follower (1).aesl": b"1", "follower (2).aesl": b"2"}
+    problem = prepared(Submission("anna", files=files), ["follower.aesl"]).problem
+    assert problem == "no file follower.aesl; found follower (1).aesl, follower (2).aesl"
+
+
+@pytest.mark.parametrize("name", ["level 2.aesl", "level2.aesl", "task (a).aesl"])
+def test_an_expected_name_may_look_like_a_copy(name: str) -> None:
+    files = {name: b"right", "other.aesl": b""}
+    assert prepared(Submission("anna", files=files), [name]).files[name] == b"right"
+
+
+@pytest.mark.process
+def test_blocks_are_converted(scratch_project: bytes) -> None:
+    files = {"follower (1).sb3": scratch_project, "readme.txt": b""}
+    result = prepared(Submission("anna", files=files), ["follower.aesl"])
+    assert result.problem == ""
+    assert b"motor.left.target = 0" in result.files["follower.aesl"]
+    assert result.notes == (
+        "the blocks of follower (1).sb3 were graded as follower.aesl",
+        "follower (1).sb3: left out: looks_sayforsecs (1 times)",
+    )

@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 
+from thymio_sim_ros.block_files import BlocksError, is_of_blocks, open_program
 from thymio_sim_ros.grading import gradescope
 from thymio_sim_ros.grading.archives import (
     Content,
@@ -25,6 +26,7 @@ from thymio_sim_ros.grading.archives import (
     unpack,
 )
 from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.other_names import original_name
 
 __all__ = ["Submission", "find", "prepared", "read_one"]
 
@@ -83,8 +85,9 @@ def prepared(submission: Submission, expected: Iterable[str]) -> Submission:
     """Return the submission with the files that an assignment expects under their names.
 
     A folder around all files is removed. An expected file that is missing is replaced by the only one with its name in
-    another folder, or the only one with its suffix, as pupils rename files; zips beside other files are opened for it.
-    Otherwise the submission gets a `problem`.
+    another folder, the only copy of it (`other_names.py`), the only one with its suffix, as pupils rename files, or the
+    only program of blocks, which is converted; zips beside other files are opened for it. Otherwise the submission
+    gets a `problem`.
     """
     if submission.problem:
         return submission
@@ -106,21 +109,39 @@ def _with_expected(submission: Submission, files: Content, expected: Collection[
     while not set(expected) & files.keys() and (folder := _common_folder(files)):
         files = {name.removeprefix(folder): content for name, content in files.items()}
     for wanted in expected:
+        copies = [name for name in files if name not in expected and _is_copy(name, wanted)]
         if wanted in files:
+            notes += [f"{name} was not graded, but {wanted}" for name in copies if files[name] != files[wanted]]
             continue
+        suffix = _suffix(wanted)
         named = [name for name in files if name.endswith(f"/{wanted}")]
-        same = [name for name in files if _suffix(name) == _suffix(wanted) and name not in expected]
-        if len(named) == 1:  # with what it imports or reads beside it
-            folder = named[0].removesuffix(wanted)
+        same = [name for name in files if _suffix(name) == suffix and name not in expected]
+        blocks = [name for name in files if suffix == ".aesl" and is_of_blocks(files[name])]
+        copied_blocks = [name for name in blocks if _is_copy(PurePosixPath(name).stem + suffix, wanted)]
+        found = next((some[0] for some in (named, copies, copied_blocks, same, blocks) if len(some) == 1), None)
+        if found is None:
+            listed = ", ".join(sorted(files)[:5])
+            return replace(submission, problem=f"no file {wanted}; found {listed}")
+        if found in named:  # with what it imports or reads beside it
+            folder = found.removesuffix(wanted)
             beside = {name.removeprefix(folder): data for name, data in files.items() if name.startswith(folder)}
             files = {**beside, **files}
-        elif len(same) == 1:
-            files[wanted] = files.pop(same[0])
+            notes.append(f"{found} was graded as {wanted}")
+        elif found in blocks:
+            try:
+                opened = open_program(files[found])
+            except BlocksError as error:
+                return replace(submission, problem=f"{found}: {error}")
+            files[wanted] = opened.text.encode()
+            notes += [f"the blocks of {found} were graded as {wanted}", *(f"{found}: {note}" for note in opened.notes)]
         else:
-            found = ", ".join(sorted(files)[:5])
-            return replace(submission, problem=f"no file {wanted}; found {found}")
-        notes.append(f"{(named if len(named) == 1 else same)[0]} was graded as {wanted}")
+            files[wanted] = files.pop(found)
+            notes.append(f"{found} was graded as {wanted}")
     return replace(submission, files=files, notes=tuple(notes))
+
+
+def _is_copy(name: str, wanted: str) -> bool:
+    return original_name(name, _suffix(wanted)) == original_name(wanted, _suffix(wanted))
 
 
 def _with_zips_opened(files: Content) -> Content:

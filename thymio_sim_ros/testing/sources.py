@@ -62,7 +62,8 @@ def programs_of(
     if isinstance(value, ThymioProgram):
         return dict.fromkeys(robots, value)
     found = program_source(value, folder)
-    text, name = loading.read_text(found) if isinstance(value, Path) or is_name(found) else (found, "program")
+    is_file = isinstance(value, Path) or is_name(found)
+    text, name = loading.read_text(found) if is_file else (loading.text_of(found, "program"), "program")
     assigned = loading.assigned_to(text, name, robots)
     for line in note_lines((robot, assignment.notes) for robot, assignment in assigned.items()):
         logging.getLogger(__name__).warning("%s: %s", name, line)

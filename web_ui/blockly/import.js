@@ -4,7 +4,7 @@ import { decoded } from "../browser/text_file.js";
 import { importSb3 } from "../scratch/import_sb3.js";
 import { readFile, newFile } from "./file.js";
 import { generate } from "./generator.js";
-import { fileProblemText, scratchText } from "./messages.js";
+import { fileProblemText, problemText, scratchText } from "./messages.js";
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 /** @typedef {import("./state.js").WorkspaceState} WorkspaceState */
@@ -13,6 +13,7 @@ import { fileProblemText, scratchText } from "./messages.js";
  * @property {string} text      an .aesl file; empty if nothing could be imported
  * @property {string} problem   why nothing could be imported; empty: it could
  * @property {string[]} leftOut   what the file has and the robot cannot do
+ * @property {string[]} mistakes  of the blocks, with which the program does not run
  */
 
 /** The first bytes of a ZIP archive. */
@@ -28,7 +29,7 @@ export async function importFile(bytes, t) {
     const { state, error, leftOut } = await importSb3(bytes);
     if (error !== null) return refused(scratchText(error, t));
     const texts = leftOut.map((each) => scratchText(each, t));
-    return imported(state, texts);
+    return imported(state, texts, t);
   }
   const file = readFile(textOf(bytes));
   const [problem] = file.problems;
@@ -36,7 +37,7 @@ export async function importFile(bytes, t) {
     const { line, column } = problem;
     return refused(t("view.at", { line, column, text: fileProblemText(problem, t) }));
   }
-  return file.hasWorkspace ? imported(file.state, []) : refused(t("file.noWorkspace"));
+  return file.hasWorkspace ? imported(file.state, [], t) : refused(t("file.noWorkspace"));
 }
 
 /** @param {Uint8Array} bytes */
@@ -48,8 +49,12 @@ function textOf(bytes) {
   }
 }
 
-/** @param {WorkspaceState} state @param {string[]} leftOut @returns {Imported} */
-const imported = (state, leftOut) => ({ text: newFile(state, generate(state).code), problem: "", leftOut });
+/** @param {WorkspaceState} state @param {string[]} leftOut @param {Translate} t @returns {Imported} */
+function imported(state, leftOut, t) {
+  const { code, problems } = generate(state);
+  const mistakes = problems.filter(({ severity }) => severity === "error").map((each) => problemText(each, t));
+  return { text: newFile(state, code), problem: "", leftOut, mistakes };
+}
 
 /** @param {string} problem @returns {Imported} */
-const refused = (problem) => ({ text: "", problem, leftOut: [] });
+const refused = (problem) => ({ text: "", problem, leftOut: [], mistakes: [] });

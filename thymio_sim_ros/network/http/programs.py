@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from aseba_vm import AeslError, CompileError, aesl, compile
 from aseba_vm.aesl.network import with_vpl_events
-from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 from aseba_vm.target import TargetDescription
+from thymio_sim_ros.block_files import BlocksError, open_program
 from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
 from thymio_sim_ros.device.programs.program_assignment import RobotId, assign_nodes, note_lines
 from thymio_sim_ros.network.http.replies import Definitions
@@ -47,17 +47,20 @@ def compile_file(text: bytes, nodes: Sequence[NodeToLoad]) -> Compiled:
     The programs of the file go to nodes as everywhere else (`assign_nodes`). A node without one gets the empty program.
     """
     try:
-        file = decode(text).text
+        opened = open_program(text)
+        file = opened.text
         network = _parse(file)
         shares = assign_nodes(network, [(node.target.name, RobotId(node.robot, node.number)) for node in nodes])
         programs = tuple(
             (node, _compile(file, network, found or aesl.Node(""), node.target))
             for node, (found, _) in zip(nodes, shares, strict=True)
         )
+    except BlocksError as error:
+        raise RequestError(400, str(error)) from error
     except (AeslError, TextError) as error:
         raise RequestError(400, f"line {error.line}, column {error.column}: {error}") from error
     notes = note_lines((node.robot or node.target.name, notes) for node, (_, notes) in zip(nodes, shares, strict=True))
-    return Compiled(programs, Definitions(network.events, network.constants), tuple(notes))
+    return Compiled(programs, Definitions(network.events, network.constants), (*opened.notes, *notes))
 
 
 def _parse(text: str) -> aesl.Network:

@@ -8,7 +8,7 @@ from typing import Any
 
 from thymio_sim_ros.device.programs.program import load_file
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId, assign_programs
-from thymio_sim_ros.loading import read_text
+from thymio_sim_ros.loading import read_text, text_of
 
 __all__ = ["Script", "named", "named_robots", "script_of", "shares"]
 
@@ -96,7 +96,8 @@ def _constants(values: Mapping[str, Any], prefix: str) -> dict[str, int]:
 
 
 def _load(script: Script, robots: Sequence[RobotId], layout: str) -> dict[str, Assignment]:
-    text, name = (script.source, script.name or "program") if script.source else read_text(script.path)
+    name = script.name or "program"
+    text, name = (text_of(script.source, name), name) if script.source else read_text(script.path)
     file = load_file(
         text, name, layout, constants=dict(script.constants), robots=[robot.name for robot in robots if robot.name]
     )
