@@ -242,6 +242,7 @@ def test_the_page_offers_a_language_whose_folder_was_added(tmp_path: Path) -> No
     shutil.copytree(PAGE, tmp_path / "web_ui", ignore=ignored)
     (tmp_path / "web_ui" / "node_modules").symlink_to((PAGE / "node_modules").resolve())
     shutil.copytree(FOLDER, tmp_path / "aseba_vm" / "languages")
+    shutil.copytree(ROOT / "aseba_vm" / "aesl", tmp_path / "aseba_vm" / "aesl")
     without = build.digest(tmp_path / "web_ui")
     add_test_language(tmp_path / "aseba_vm" / "languages")
     assert build.digest(tmp_path / "web_ui") != without

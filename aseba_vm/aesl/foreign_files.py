@@ -6,57 +6,34 @@ program in Aseba contains, outside of comments.
 
 from __future__ import annotations
 
+import json
 import re
+from pathlib import Path
 
 from aseba_vm.errors import AeslError, TextError
 
 _HEAD = 20_000
 """Characters or bytes at each end of a file that are searched."""
 
-_BYTES = (
-    ("scratch", rb"PK\x03\x04.*project\.json|ScratchV0\d"),
-    ("document", rb"PK\x03\x04.*(?:word/|xl/|ppt/|vnd\.oasis\.opendocument|\.iwa)|\xd0\xcf\x11\xe0|\{\\rtf"),
-    ("archive", rb"PK[\x03\x05]|\x1f\x8b|7z\xbc\xaf|Rar!|\xfd7zXZ"),
-    ("pdf", rb"%PDF-"),
-    (
-        "picture",
-        rb"\x89PNG|\xff\xd8\xff|GIF8|BM.{4}\x00{4}|RIFF.{4}WEBP|II\*\x00|MM\x00\*|\x00\x00\x01\x00[\x01-\x10]\x00",
-    ),
-    ("picture", rb".{4}ftyp(?:heic|heif|mif1|avif)"),
-)
+_KINDS = json.loads(Path(__file__).with_name("foreign_kinds.json").read_text(encoding="utf-8"))
+"""What each kind begins with or contains, as regular expressions, which the page reads, too (browser/foreign_files.js).
+
+`bytes` are matched with letters for bytes, `xml` from the root element on. Those of `code` are searched in each line.
+"""
+_BYTES = [(kind, re.compile(pattern.encode("latin-1"), re.DOTALL)) for kind, pattern in _KINDS["bytes"]]
 _PROLOGUE = re.compile(r"(?:\s++|<\?[^>]*>|<!--(?:(?!-->).)*-->)*+", re.DOTALL)
-_NETWORK = re.compile(r"<!DOCTYPE\s+aesl-source\b|<network\b")
-_XML = (
-    ("web-page", r"<!doctype\s+html|<(?:html|head|body)\b"),
-    ("playground", r"<(?:!DOCTYPE\s+)?aseba-playground\b"),
-    ("blocks", r"<(?:\w+:)?xml[\s>/]"),
-    ("picture", r"(?:<!DOCTYPE\s+svg[^>]*>\s*)?<svg\b"),
-)
-_JSON = (
-    ("vpl3", (r'"(?:basicBlocks|advancedBlocks|disabledUI|basicMultiEvent|advancedMultiEvent)"\s*:',)),
-    ("vpl3", (r'"program"\s*:\s*\[', r'"blocks"\s*:')),
-    ("notebook", (r'"cells"\s*:', r'"cell_type"\s*:')),
-    ("playground", (r'"(?:format"\s*:\s*\d|shapes"\s*:|robots"\s*:|planes"\s*:|thymios"\s*:)',)),
-    ("json", (r'^\s*(?:\{\s*(?:"[^"\n]*"\s*:|\}\s*$)|\[\s*[\{\["])',)),
-)
-_IMPORT = re.compile(r"^(?:from\s+[\w.]+\s+import\b|import\s+[A-Za-z_][\w.]*)", re.MULTILINE)
-_PYTHON = re.compile(
-    r"^(?:@[\w.]+\s*(?:\(|$)|(?:async\s+)?def\s+\w+\s*\(|class\s+\w+.*:)"
-    r"|^[ \t]*(?:if|elif|else|while|for|try|with)\b[^#\n]*:[ \t]*$"
-    r"|^[ \t]*(?:print|await)\b[ (]",
-    re.MULTILINE,
-)
-_ASEBA = re.compile(r"^[ \t]*(?:onevent|var|sub|call|callsub|emit|end|when)\b", re.MULTILINE)
-_ROS = re.compile(r"\brclpy\b|\brospy\b|#include\s*<rclcpp/")
-_TDMCLIENT = re.compile(r"\btdmclient\b|^@onevent\b|\b(?:motor|timer|prox|button|leds)_[a-z]+", re.MULTILINE)
-_COMMENTS = re.compile(r"#\*.*?\*#", re.DOTALL)
+_NETWORK = re.compile(_KINDS["network"])
+_XML = [(kind, re.compile(pattern, re.IGNORECASE)) for kind, pattern in _KINDS["xml"]]
+_JSON = [(kind, [re.compile(each) for each in patterns]) for kind, patterns in _KINDS["json"]]
+_CODE = {name: re.compile(pattern, re.MULTILINE) for name, pattern in _KINDS["code"].items()}
+_COMMENTS = re.compile(_KINDS["code"]["comments"], re.DOTALL)
 
 
 def refuse_foreign_bytes(data: bytes) -> None:
     """Raise TextError for the bytes of a file of another program that is no text."""
     ends = data if len(data) <= 2 * _HEAD else data[:_HEAD] + data[-_HEAD:]
     for kind, pattern in _BYTES:
-        if re.match(pattern, ends, re.DOTALL):
+        if pattern.match(ends):
             raise TextError(f"foreign-{kind}", (), 1, 1)
 
 
@@ -76,14 +53,14 @@ def _kind_of(text: str) -> str:
     begin = text.lstrip()[:1]
     if begin == "<":
         root = _without_prologue(text)
-        return next((kind for kind, pattern in _XML if re.match(pattern, root, re.IGNORECASE)), "")
+        return next((kind for kind, pattern in _XML if pattern.match(root)), "")
     if begin in ("{", "["):
-        return next((kind for kind, patterns in _JSON if all(re.search(each, text) for each in patterns)), "")
+        return next((kind for kind, patterns in _JSON if all(each.search(text) for each in patterns)), "")
     code = _COMMENTS.sub("", text)
-    if _ROS.search(code) and (_IMPORT.search(code) or "#include" in code):
+    if _CODE["ros"].search(code) and (_CODE["imports"].search(code) or "#include" in code):
         return "ros"
-    if _IMPORT.search(code) or (_PYTHON.search(code) and not _ASEBA.search(code)):
-        return "tdmclient" if _TDMCLIENT.search(code) else "python"
+    if _CODE["imports"].search(code) or (_CODE["python"].search(code) and not _CODE["aseba"].search(code)):
+        return "tdmclient" if _CODE["tdmclient"].search(code) else "python"
     return ""
 
 

@@ -10,8 +10,8 @@ from aseba_vm.aesl.foreign_files import refuse_foreign_bytes
 from aseba_vm.errors import TextError
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
-_UNMARKED = ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
-"""First bytes of XML in UTF-16 without a byte order mark."""
+_UNMARKED = ((rb"[^\0]\0[^\0]\0", "utf-16-le"), (rb"\0[^\0]\0[^\0]", "utf-16-be"))
+"""First bytes of a text in UTF-16 without a byte order mark, if it begins with two letters of ASCII."""
 _DECLARED = re.compile(rb"\s*<\?xml\s[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']")
 
 _NOT_OF_FILES = frozenset({"idna", "punycode", "raw-unicode-escape", "undefined", "unicode-escape"})
@@ -36,7 +36,8 @@ def decode(data: bytes) -> TextFile:
     Raises TextError with the position of the first invalid byte, or for a file of another program that is no text.
     """
     refuse_foreign_bytes(data)
-    encoding = next((name for mark, name in (*_MARKS, *_UNMARKED) if data.startswith(mark)), None)
+    encoding = next((name for mark, name in _MARKS if data.startswith(mark)), None)
+    encoding = encoding or next((name for pattern, name in _UNMARKED if re.match(pattern, data)), None)
     if encoding is None:
         declared = _DECLARED.match(data)
         encoding = declared[1].decode("ascii") if declared else "utf-8"

@@ -228,6 +228,18 @@ def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
     expect(editor, ".cm-content").to_have_text("var a # größer")
 
 
+FOREIGN = (
+    ("lesson.vpl3", b'{"advanced": false, "program": [{"blocks": []}]}', "this is a program of VPL 3"),
+    ("robot.py", b"import rclpy\n", "this is a ROS node"),
+    ("homework.docx", b"PK\x03\x04\x14\0 word/document.xml", "this is a document of an office program"),
+    ("photo.txt", b"\x89PNG\r\n\x1a\n", "this is a picture"),
+    ("old.sb2", b"PK\x03\x04\x14\0 project.json", "this is a Scratch project"),
+    ("map.aesl", b"<aseba-playground/>", "this is a playground"),
+    ("mine.playground", b"<network></network>", "this is a program, not a playground"),
+)
+"""Files of other programs: name, content, what the page says."""
+
+
 @pytest.mark.slow
 def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path):
     write(editor, "var mine = 1")
@@ -235,6 +247,12 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path)
     playground.write_text('{"format": 1}')
     drop_file(editor, playground, ".cm-content")
     expect(editor, ".message-at .headline").to_contain_text("mine.json")
+    for name, content, sentence in FOREIGN:
+        foreign = tmp_path / name
+        foreign.write_bytes(content)
+        drop_file(editor, foreign, ".cm-content")
+        expect(editor, "body").to_contain_text(f"{name}: {sentence}")
+        expect(editor, ".cm-content").to_have_text("var mine = 1")
     program = tmp_path / "dropped.aesl"
     program.write_text('<network><node nodeId="1" name="thymio-II">var other = 1</node></network>')
     drop_file(editor, program, ".cm-content")

@@ -3,8 +3,11 @@
 const MARKS = /** @type {const} */ ([
   ["utf-16le", 0xff, 0xfe],
   ["utf-16be", 0xfe, 0xff],
-  ["utf-16le", 0x3c, 0], // "<" of XML without a byte order mark
-  ["utf-16be", 0, 0x3c],
+]);
+/** First bytes of a text in UTF-16 without a byte order mark, if it begins with two letters of ASCII. */
+const UNMARKED = /** @type {const} */ ([
+  ["utf-16le", /^[^\0]\0[^\0]\0/],
+  ["utf-16be", /^\0[^\0]\0[^\0]/],
 ]);
 const DECLARED = /^(\s*<\?xml\s[^>]*?encoding\s*=\s*["'])([A-Za-z0-9._-]+)/;
 const HEAD = 200; // bytes that are searched for an XML declaration
@@ -26,7 +29,10 @@ export async function textOf(file) {
  */
 export function decoded(bytes) {
   const head = new TextDecoder("iso-8859-1").decode(bytes.subarray(0, HEAD));
-  const [marked] = MARKS.find(([, first, second]) => bytes[0] === first && bytes[1] === second) ?? [];
+  const [marked] =
+    MARKS.find(([, first, second]) => bytes[0] === first && bytes[1] === second) ??
+    UNMARKED.find(([, pattern]) => pattern.test(head)) ??
+    [];
   const declared = DECLARED.exec(head)?.[2] ?? "utf-8";
   const encoding = marked ?? (/^utf-?16/i.test(declared) ? "utf-8" : declared); // a readable declaration cannot be in UTF-16
   const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);

@@ -4,6 +4,7 @@ import { startOf } from "../move/start.js";
 import { timeDisabledReason } from "../state/disabled_reason.js";
 import { FILE, targets } from "../state/index.js";
 import { PARAMETERS, robotTopic } from "../state/names.js";
+import { kindOf, sentenceOf } from "../browser/foreign_files.js";
 import { textOf } from "../browser/text_file.js";
 import { RuntimeClient } from "./runtime_client.js";
 
@@ -31,6 +32,10 @@ const OCCUPIED = /: occupied by '(.*)'$/s;
 
 /** File kinds by file name extension. */
 const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
+
+/** What `kindOf` says of files that are loaded as a program, and as a playground. */
+const PROGRAMS = ["", "program"];
+const PLAYGROUNDS = ["", "playground", "archive", "json"];
 
 /** @param {{ name: string }} file */
 export function isProgram({ name }) {
@@ -262,15 +267,20 @@ export class Actions {
    */
   async loadFile(file, refuse = (text) => this.#refuse(text)) {
     const { name } = file;
-    const most = isProgram(file) ? LARGEST_PROGRAM : LARGEST_PLAYGROUND;
+    const kind = file.size > LARGEST_PLAYGROUND ? "" : kindOf(new Uint8Array(await file.arrayBuffer()));
+    const isPlayground = KINDS.playground.test(name);
+    const isText = isProgram(file) || (kind === "program" && !isPlayground);
+    const fits = isText ? PROGRAMS : PLAYGROUNDS;
+    if (!fits.includes(kind)) return refuse(`${name}: ${sentenceOf(kind, this.language())}`);
+    const most = isText ? LARGEST_PROGRAM : LARGEST_PLAYGROUND;
     const isTooLarge = file.size > most;
     const tooLarge = this.t("file.tooLarge", { name, size: most / MB });
-    if (isProgram(file)) {
+    if (isText) {
       if (isTooLarge) return refuse(tooLarge);
       const text = await textOf(file);
       if (text === null) return refuse(this.t("file.notText", { name }));
       await this.loadProgram(file.name, text);
-    } else if (KINDS.playground.test(file.name)) {
+    } else if (isPlayground) {
       if (isTooLarge) return refuse(tooLarge);
       await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));
     } else refuse(this.t("file.unknown", { name }));

@@ -1,5 +1,6 @@
 // What the user does with programs and robots: begin, open, save, load, run and control. All languages share it.
 
+import { kindOf, sentenceOf } from "../browser/foreign_files.js";
 import { textOf } from "../browser/text_file.js";
 import { readAesl } from "../editor/aesl.js";
 import { download } from "../editor/download.js";
@@ -10,6 +11,9 @@ import { importerOf } from "./language_choice.js";
 import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "./toolbox_file.js";
 
 const THYMIO = "thymio-II";
+/** Kinds of files that become programs of blocks, whatever their name is, and a name with their ending. */
+const BLOCKS = ["scratch", "blocks"];
+const IMPORTED = "blocks.sb3";
 /** Projects of other programs hold pictures and sounds, too. */
 const LARGEST_IMPORT = 20_000_000;
 
@@ -131,12 +135,18 @@ export class ProgramCommands {
 
   /** @param {File} chosen */
   async open(chosen) {
-    const importer = importerOf(chosen, this.languages);
-    if (importer !== null) return this.#import(chosen, importer);
-    if (chosen.size > LARGEST_PROGRAM) return this.report(this.t("editor.tooLarge", { name: chosen.name }), "error");
+    const { name, size } = chosen;
+    const kind = size > LARGEST_IMPORT ? "" : kindOf(new Uint8Array(await chosen.arrayBuffer()));
+    const importer = importerOf(BLOCKS.includes(kind) ? { name: IMPORTED } : chosen, this.languages);
+    if (importer !== null && ["", ...BLOCKS].includes(kind)) return this.#import(chosen, importer);
+    if (!["", "program", "json"].includes(kind)) {
+      return this.report(`${name}: ${sentenceOf(kind, this.language)}`, "error");
+    }
+    if (size > LARGEST_PROGRAM) return this.report(this.t("editor.tooLarge", { name }), "error");
     const content = await textOf(chosen);
     if (content === null) return this.report(this.pageText("file.notText", { name: chosen.name }), "error");
     if (looksLikeToolbox(content)) return this.openToolbox(chosen.name, content);
+    if (kind === "json") return this.report(`${name}: ${sentenceOf(kind, this.language)}`, "error");
     this.openText(chosen.name, content);
   }
 

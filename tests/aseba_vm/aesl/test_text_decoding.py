@@ -34,3 +34,9 @@ def test_a_file_that_is_no_text_is_refused_in_place(data, kind, place):
     with pytest.raises(TextError) as caught:
         decode(data)
     assert (caught.value.kind, (caught.value.line, caught.value.column)) == (kind, place)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_utf_16_without_a_mark_is_read(encoding):
+    for text in ("var größe = 1", "<network>ö</network>"):
+        assert decode(text.encode(encoding)).text == text
