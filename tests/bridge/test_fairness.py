@@ -181,6 +181,24 @@ def test_more_clients_than_the_limit_are_rejected_until_one_disconnects() -> Non
     run(scenario())
 
 
+@pytest.mark.parametrize("begin", [b"", b"GET / HTTP/1.1\r\nHost: localhost\r\n"])
+def test_connections_without_a_handshake_make_room_for_clients(begin: bytes) -> None:
+    async def scenario() -> None:
+        async with bridge(ServerSettings(max_clients=2)) as server, server.client() as first:
+            silent = []
+            for _ in range(20):
+                silent.append(socket.create_connection(("127.0.0.1", server.port)))
+                silent[-1].sendall(begin)
+            await server.until(lambda: server.server._connections.connections.is_full)
+            async with server.client() as second:
+                await first.settle()
+                await second.settle()
+            for one in silent:
+                one.close()
+
+    run(scenario())
+
+
 def test_silent_connections_are_limited_and_free_their_slots_when_they_close() -> None:
     async def scenario() -> None:
         async with bridge(ServerSettings(max_clients=2)) as server:
@@ -190,10 +208,10 @@ def test_silent_connections_are_limited_and_free_their_slots_when_they_close() -
                 one.setblocking(False)
             async with asyncio.timeout(PATIENCE_S):
                 with suppress(ConnectionError):
-                    assert await loop.sock_recv(silent[-1], 1) == b""
+                    assert await loop.sock_recv(silent[0], 1) == b""
             for one in silent:
                 one.close()
-            await server.until(lambda: not server.server._connections.count)
+            await server.until(lambda: not server.server._connections.connections)
             async with server.client() as client:
                 await client.settle()
 

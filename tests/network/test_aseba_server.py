@@ -195,6 +195,23 @@ def test_more_clients_than_the_limit_are_refused(make, monkeypatch):
     assert kept[0].ask(ListNodes(0, 5), NodePresent)
 
 
+@pytest.mark.parametrize("begin", [b"", b"\x04\x00\x05"])
+def test_connections_without_a_message_make_room_for_clients_and_the_oldest_goes_first(make, monkeypatch, begin):
+    monkeypatch.setattr(aseba_server, "MAX_CLIENTS", 3)
+    bench = make()
+    kept = bench.client()
+    kept.ask(ListNodes(0, 5), NodePresent)
+    silent = []
+    for _ in range(20):
+        silent.append(bench.client())
+        silent[-1].stream.sendall(begin)
+    assert silent[0].is_closed_by_server
+    other = bench.client()
+    for client in (kept, other):
+        assert client.ask(ListNodes(0, 5), NodePresent)
+    assert silent[-2].is_closed_by_server
+
+
 def test_a_client_that_does_not_read_is_disconnected_and_others_are_served(make, monkeypatch):
     monkeypatch.setattr(aseba_server, "MAX_UNSENT", 1 << 16)
     bench = make()

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from math import inf
 
-__all__ = ["MIN_WAIT_S", "TIME_LIMIT_S", "ConnectionSlot", "Connections", "Phase"]
+__all__ = ["EVICTED_AT_ONCE", "MIN_WAIT_S", "TIME_LIMIT_S", "ConnectionSlot", "Connections", "Phase"]
 
 
 class Phase(IntEnum):
@@ -47,6 +47,10 @@ TIME_LIMIT_S = {
 MIN_WAIT_S = {Phase.SILENT: 1.5, Phase.IDLE: 0.2, Phase.READING: 1.5, Phase.STALLED: 2.0}
 """Time after which a connection in this phase may be evicted."""
 
+EVICTED_AT_ONCE = {Phase.SILENT: 0.0, Phase.READING: 0.0}
+"""`MIN_WAIT_S` of servers whose connections begin with a handshake: until it is complete, which takes milliseconds, a
+connection may be evicted."""
+
 
 @dataclass(slots=True, eq=False)
 class ConnectionSlot:
@@ -56,7 +60,7 @@ class ConnectionSlot:
     address: str
     since_s: float
     phase: Phase = Phase.SILENT
-    close: Callable[[], None] = lambda: None
+    close: Callable[[], object] = lambda: None
     has_pending_io: Callable[[], bool] = lambda: False
 
 
@@ -119,6 +123,13 @@ class Connections:
         ]
         waiting.sort(key=lambda slot: (-self._by_address[slot.address], slot.phase, slot.since_s))
         return next((slot for slot in waiting if not slot.has_pending_io()), None)
+
+    def make_room(self, min_wait_s: Mapping[Phase, float] = EVICTED_AT_ONCE) -> bool:
+        """Free a slot at once if all are in use; return whether there is a free slot now."""
+        if self.is_full and (slot := self.eviction_candidate(min_wait_s)) is not None:
+            self.remove(slot)
+            slot.close()
+        return not self.is_full
 
     def evict(self, slot: ConnectionSlot, since_s: float) -> None:
         """Close a connection if it has done nothing since then."""

@@ -16,7 +16,9 @@ from collections.abc import Callable, Iterable
 from typing import Any, cast
 
 from websockets.asyncio.server import ServerConnection
+from websockets.protocol import State
 
+from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
 from thymio_sim_ros.bridge.protocol.constants import Role
 
 __all__ = ["SLICE_S", "ConnectionMaker", "SharedConnection", "SharedTransport"]
@@ -222,10 +224,10 @@ class SharedConnection(ServerConnection):
     """
 
     transport: SharedTransport
-    is_refused = False
-    """Whether the connection is closed immediately, without reading, because there are too many."""
-    on_lost: Callable[[], None] = staticmethod(lambda: None)
-    """Called when the connection is lost or closed."""
+    maker: ConnectionMaker
+    """The connections of its server."""
+    slot: ConnectionSlot | None = None
+    """None: the connection is closed immediately, without reading, because there are too many."""
     role: Role | None = None
     """Role of its client; None: the client gave no valid token, and the connection has to be closed."""
 
@@ -233,34 +235,44 @@ class SharedConnection(ServerConnection):
         """Wrap the transport of a new connection."""
         self._unread = bytearray()
         self._feeding: asyncio.TimerHandle | None = None
-        if self.is_refused:
-            cast(asyncio.Transport, transport).abort()
+        plain = cast(asyncio.Transport, transport)
+        self.slot = self.maker.admit(plain)
+        if self.slot is None:
+            plain.abort()
             return
-        super().connection_made(SharedTransport(cast(asyncio.Transport, transport), asyncio.get_running_loop()))
+        super().connection_made(SharedTransport(plain, asyncio.get_running_loop()))
         self.transport.on_resume = self._feed_later
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Release the transport."""
         self._unread.clear()
         self._cancel_feeding()
-        self.on_lost()
-        if self.is_refused:
+        if self.slot is None:
             return
+        self.maker.connections.remove(self.slot)
         super().connection_lost(exc)
         self.transport.release()
 
     def data_received(self, data: bytes) -> None:
         """Receive bytes of the client."""
-        if self.is_refused:
+        if self.slot is None:
             return
+        if self.slot.phase is Phase.SILENT:
+            self.maker.connections.set_phase(self.slot, Phase.READING)
         self._unread += data
         if self._feeding is None:
             self._feed()
 
     def eof_received(self) -> None:
         """Note that the client sends no more bytes."""
-        if not self.is_refused:
+        if self.slot is not None:
             super().eof_received()
+
+    async def handshake(self, *arguments: Any, **options: Any) -> None:
+        """Perform the opening handshake; from its success on, the connection is not evicted for another one."""
+        await super().handshake(*arguments, **options)
+        if self.slot is not None and self.state is State.OPEN:
+            self.maker.connections.set_phase(self.slot, Phase.STREAMING)
 
     def _feed(self) -> None:
         """Pass unread bytes to the protocol until `SLICE_S` is spent or the protocol pauses reading.
@@ -290,25 +302,30 @@ class SharedConnection(ServerConnection):
 
 
 class ConnectionMaker:
-    """Makes the connections of one server, up to a limit; further ones are refused."""
+    """Makes the connections of one server, up to a limit.
+
+    At the limit, a new connection gets the slot of one whose handshake is not complete (`connections`), and is refused
+    if there is none.
+    """
 
     def __init__(self, limit: int, on_refused: Callable[[], None]) -> None:
         """`limit`: connections, including those in their handshake; `on_refused` is called for each further one."""
-        self._limit, self._on_refused = limit, on_refused
-        self._connections: set[SharedConnection] = set()
-
-    @property
-    def count(self) -> int:
-        """Connections that are open."""
-        return len(self._connections)
+        self.connections = Connections(limit, time.monotonic)
+        """Those that are open."""
+        self._on_refused = on_refused
 
     def __call__(self, *arguments: Any, **options: Any) -> SharedConnection:
         """Make a connection, as `websockets` calls its class."""
         connection = SharedConnection(*arguments, **options)
-        if len(self._connections) < self._limit:
-            self._connections.add(connection)
-            connection.on_lost = lambda: self._connections.discard(connection)
-        else:
-            connection.is_refused = True
-            self._on_refused()
+        connection.maker = self
         return connection
+
+    def admit(self, transport: asyncio.Transport) -> ConnectionSlot | None:
+        """The slot of a new connection, or None if it is refused."""
+        if not self.connections.make_room():
+            self._on_refused()
+            return None
+        peer = transport.get_extra_info("peername")
+        slot = self.connections.add(str(peer[0]) if peer else "")
+        slot.close = transport.abort
+        return slot

@@ -11,9 +11,11 @@ import asyncio
 import contextlib
 import errno
 import socket
+import time
 from collections.abc import Callable, Sequence
 
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode, encode
+from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.acceptor import Acceptor
@@ -23,7 +25,7 @@ from thymio_sim_ros.network.settings import LAST_PORT, OFF, NetworkSettings
 __all__ = ["MAX_CLIENTS", "MAX_UNSENT", "AsebaServer"]
 
 MAX_CLIENTS = 32
-"""Clients of one port."""
+"""Clients of one port. At this number, a new one gets the slot of one that has not sent a message yet."""
 MAX_PAYLOAD = 4096
 """Longest accepted payload in bytes; tools send 516 at most. Other protocols are recognized by longer ones."""
 MAX_UNSENT = 1 << 20
@@ -100,6 +102,7 @@ class _Port:
         self.number = OFF
         self.networks: list[Network] = []
         self.clients: set[_Client] = set()
+        self.slots = Connections(MAX_CLIENTS, time.monotonic)
         self._acceptor: Acceptor | None = None
 
     def open(self, address: str, number: int) -> None:
@@ -130,16 +133,24 @@ class _Port:
             self._acceptor.close()
 
     async def _serve(self, accepted: socket.socket, address: str) -> None:
-        assert self._acceptor is not None
-        if self._acceptor.count > MAX_CLIENTS:
+        if not self.slots.make_room():
             self.report("full", f"Aseba port {self.number}: found a client, expected at most {MAX_CLIENTS}")
             return
+        slot, task = self.slots.add(address), asyncio.current_task()
+        assert task is not None
+        slot.close = task.cancel
+        try:
+            await self._serve_client(accepted, slot)
+        finally:
+            self.slots.remove(slot)
+
+    async def _serve_client(self, accepted: socket.socket, slot: ConnectionSlot) -> None:
         try:
             accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             reader, writer = await asyncio.open_connection(sock=accepted, limit=_READ_BYTES)
         except OSError:  # the client has disconnected
             return
-        client = _Client(self, address, writer)
+        client = _Client(self, slot, writer)
         self.clients.add(client)
         try:
             for network in self.networks:
@@ -157,8 +168,8 @@ class _Port:
 class _Client:
     """One connection."""
 
-    def __init__(self, port: _Port, address: str, writer: asyncio.StreamWriter) -> None:
-        self._port, self._address, self._transport = port, address, writer.transport
+    def __init__(self, port: _Port, slot: ConnectionSlot, writer: asyncio.StreamWriter) -> None:
+        self._port, self._slot, self._transport = port, slot, writer.transport
         self._frames = FrameReader(MAX_PAYLOAD)
         self._connections: dict[Network, Connection] = {}
         self.spent = port.throttle.client()
@@ -208,6 +219,8 @@ class _Client:
                 messages.append(decode(frame))
             except ProtocolError as error:  # the frame is complete, so the next ones can be read
                 self._warn(str(error))
+        if messages:
+            self._port.slots.set_phase(self._slot, Phase.STREAMING)
         for connection in list(self._connections.values()):
             connection.send(*messages)
 
@@ -226,4 +239,5 @@ class _Client:
                     self._warn(f"internal error (please report): {error}")
 
     def _warn(self, text: str) -> None:
-        self._port.report(f"client {self._address}", f"Aseba port {self._port.number}, client {self._address}: {text}")
+        address = self._slot.address
+        self._port.report(f"client {address}", f"Aseba port {self._port.number}, client {address}: {text}")

@@ -46,8 +46,6 @@ MAX_CLIENTS = 32
 MAX_UNSENT = 4 << 20
 """Bytes that wait for a client that does not read; it is disconnected beyond them."""
 
-_EVICTED = {Phase.SILENT: 0.0}
-"""Only clients without a handshake are evicted for a new one, at once: a handshake takes milliseconds."""
 _PERIOD_S, _IDLE_PERIOD_S = 0.05, 0.5
 """Time between two looks at what is due, with clients and without."""
 _SLICE_S = 0.002
@@ -216,10 +214,7 @@ class TdmServer:
 
     async def _serve(self, peer: Peer) -> None:
         """Process messages of a client until it disconnects."""
-        if self._slots.is_full and (silent := self._slots.eviction_candidate(_EVICTED)) is not None:
-            self._slots.remove(silent)
-            silent.close()
-        if self._slots.is_full:
+        if not self._slots.make_room():
             self._report("tdm clients", f"{len(self._peers)} clients of the device manager: more are rejected")
             peer.abort()
             return
