@@ -9,7 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from tests.patience import PATIENCE_S, until
@@ -88,6 +88,26 @@ class Process:
         except subprocess.TimeoutExpired:
             self.signal(signal.SIGKILL)
             self._popen.wait()
+
+
+@contextlib.contextmanager
+def x_display() -> Iterator[str]:
+    """The name of a new X display of 1280 x 900 pixels, for programs with windows; needs Xvfb."""
+    names, number = os.pipe()
+    with os.fdopen(names) as answer:
+        server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(number), "-screen", "0", "1280x900x24"],
+            pass_fds=[number],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(number)
+        name = f":{answer.readline().strip()}"
+    try:
+        yield name
+    finally:
+        server.terminate()
+        server.wait()
 
 
 def wait_for_port(port: int) -> None:

@@ -31,7 +31,7 @@ from aseba_vm.protocol import (
 from tests.network import virtual_display
 from tests.network.aseba_client import AsebaClient
 from tests.patience import PATIENCE_S, until
-from tests.processes import free_port
+from tests.processes import free_port, x_display
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.testing.ros.domain import reserved
 
@@ -228,17 +228,7 @@ CLICKS = 12
 @pytest.mark.skipif(not virtual_display.is_available(), reason="libX11 or libXtst is not installed")
 def test_aseba_studio(port, client, start, locales, tmp_path):
     """Studio shows variables, loads a typed program, runs and pauses it."""
-    names, number = os.pipe()
-    with os.fdopen(names) as answer:
-        server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(number), "-screen", "0", "1280x900x24"],
-            pass_fds=[number],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        os.close(number)
-        name = f":{answer.readline().strip()}"
-    try:
+    with x_display() as name:
         home = str(tmp_path)
         start("asebastudio", f"tcp:127.0.0.1;{port}", DISPLAY=name, LOCPATH=locales, HOME=home, XDG_RUNTIME_DIR=home)
         display = virtual_display.VirtualDisplay(name)
@@ -269,6 +259,3 @@ def test_aseba_studio(port, client, start, locales, tmp_path):
 
         wait_for(is_paused, "Studio has paused the robot")
         display.close()
-    finally:
-        server.terminate()
-        server.wait()
