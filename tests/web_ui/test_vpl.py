@@ -181,6 +181,19 @@ def test_an_obstacle_avoider_is_built_by_mouse_runs_and_becomes_text(world, page
         page.locator(".vpl-row").first.wait_for()
         assert page.evaluate(FINDINGS) == []
 
+    # as blocks, which avoid as well; the rows stay among the last programs
+    name = page.locator("#file-menu .name").inner_text()
+    choose_in_file_menu(page, "blocks")
+    page.locator(".blocks .blocklySvg").first.wait_for()
+    expect(page, ".blocks-verdict").to_have_text("No mistakes")
+    expect(page, ".blocklyBlockCanvas .thymio_when").to_have_count(3)
+    page.get_by_role("button", name="Run program").click()
+    watch_it_avoid(page, world)
+    choose_in_file_menu(page, "new")
+    page.locator(f"[data-recent='{name}']").first.click()
+    page.locator(".vpl-rows").wait_for()
+    assert blocks(page, 1) == ["prox", "move"]
+
 
 @pytest.mark.slow
 def test_a_program_is_built_by_keyboard_alone(world, page):

@@ -98,6 +98,15 @@ export class ProgramCommands {
     this.back();
   }
 
+  /** Begin with a program that was made from the open one, which is kept among the last programs. @param {string} text */
+  beginFromThis(text) {
+    const { name } = this.workspace.current;
+    this.workspace.keep();
+    this.choice.forget();
+    this.workspace.begin(name, text);
+    this.back();
+  }
+
   /** Make the document a text: its picture or blocks leave the file. */
   async detach() {
     const language = this.languages.find(({ id }) => id === this.choice.made);

@@ -6,6 +6,7 @@ import { EVENTS } from "./events.js";
 import { LED_BLOCKS } from "./leds.js";
 import { LOGIC, LOOPS } from "./logic.js";
 import { MATH } from "./math.js";
+import { NATIVES } from "./natives.js";
 import { SENSORS } from "./sensors.js";
 import { SUBROUTINES, VARIABLES } from "./variables.js";
 
@@ -20,6 +21,7 @@ export const THYMIO = [
   ...LOGIC,
   ...LOOPS,
   ...MATH,
+  ...NATIVES,
   ...VARIABLES,
   ...SUBROUTINES,
 ];

@@ -12,6 +12,8 @@ import { translator } from "../../i18n/index.js";
 import TEXTS from "../../i18n/vpl.texts.js";
 import { textPane } from "../../program_tab/text_pane.js";
 import { h, setText } from "../../ui/dom.js";
+import { icon } from "../../ui/icons.js";
+import { asBlocks } from "../as_blocks.js";
 import { blockAt, changeBlock } from "../edits.js";
 import { withoutVpl } from "../file.js";
 import { reportedRow } from "../generator.js";
@@ -98,7 +100,14 @@ class VplView {
       toggleText: () => this.#toggleText(),
     });
     this.bar = this.controls.element;
-    this.entries = /** @type {HTMLElement[]} */ ([]);
+    this.entries = [
+      h(
+        "button",
+        { type: "button", class: "btn", "data-verb": "blocks", onclick: () => this.#showAsBlocks() },
+        icon("blocks", { small: true }),
+        h("span", { class: "grow" }, t("blocks.show")),
+      ),
+    ];
     this.element = h(
       "div",
       { class: "vpl" },
@@ -229,6 +238,19 @@ class VplView {
     if (!this.commands.chooseMode(mode)) return;
     this.redraw();
     this.notices.focus("loss");
+  }
+
+  /** The program as blocks, which is a new program: blocks cannot become rows again. */
+  #showAsBlocks() {
+    const { editing, t } = this;
+    /** @type {HTMLElement | null} */ (this.entries[0].closest("[popover]"))?.hidePopover();
+    if (editing.isBlocked) return this.showMistake();
+    const { text, unknown } = asBlocks(editing.shown.text);
+    if (text === null) return this.report(t("blocks.unknown", { ...unknown }), "error");
+    const { commands, session, context } = this.parts;
+    const { name } = session.workspace.current;
+    commands.beginFromThis(text);
+    context.announce(t("blocks.shown", { name }));
   }
 
   #toggleText() {
