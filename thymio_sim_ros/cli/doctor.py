@@ -63,7 +63,7 @@ def _lines(found: Examination) -> Iterator[str]:
     yield from ("", "Topics that other nodes share with the robots:" if found.topics else "No other node uses a topic.")
     for use in found.topics:
         yield f"  {use.name}  {use.type}"
-        sides = (", ".join(side) or "nobody" for side in (use.publishers, use.subscribers))
+        sides = (", ".join(side) or "no node" for side in (use.publishers, use.subscribers))
         yield f"    from {' to '.join(sides)}{_last(use)}"
     if found.faults:
         yield from ("", "What is wrong:", *(f"  {number}. {text}" for number, text in enumerate(found.faults, 1)))

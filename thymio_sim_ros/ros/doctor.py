@@ -213,7 +213,7 @@ class _Doctor:
         return [text for text in values if " clamped: " in text]
 
     def _unused(self) -> Iterable[str]:
-        """Speed topics on which nobody publishes."""
+        """Speed topics without a publisher."""
         for name in self._found.robots:
             topic = f"/{name}/cmd_vel" if name else "/cmd_vel"
             if self._is_of_robot(topic) and not self._node.count_publishers(topic):

@@ -146,7 +146,7 @@ class Topics:
             self._subscribe(topic, self._subscription_qos(topic))
 
     def refresh(self, slice_s: float = float("inf")) -> bool:
-        """Subscribe again to topics whose publishers now need another QoS, and end what nobody wants any more.
+        """Subscribe again to topics whose publishers now need another QoS, and end those without a client.
 
         Return whether all topics have been checked.
 

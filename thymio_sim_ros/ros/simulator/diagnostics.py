@@ -41,7 +41,7 @@ class MessageReports:
         self.add_suspect(topic, text)
 
     def add_suspect(self, topic: str, text: str) -> None:
-        """Report a message that was executed, but that nobody can have meant."""
+        """Report a message that was executed, but is surely a mistake."""
         self._faults[topic] = f"{topic} {text}", time.monotonic()
 
     def add_clamped(self, topic: str, text: str) -> None:

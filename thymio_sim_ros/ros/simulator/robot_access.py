@@ -51,7 +51,7 @@ class RobotAccess:
         self._messages.add_rejected(topic, text)
 
     def report_suspect(self, topic: str, text: str) -> None:
-        """Show in the diagnostics why a message cannot be meant."""
+        """Show in the diagnostics why a message is surely a mistake."""
         self._messages.add_suspect(topic, text)
 
     def report_clamped(self, topic: str, text: str) -> None:

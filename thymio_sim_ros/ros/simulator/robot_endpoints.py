@@ -125,7 +125,7 @@ class RobotOwner(Protocol):
         """Take note of a rejected message; `text` is the reason."""
 
     def report_suspect(self, topic: str, text: str) -> None:
-        """Take note of a message that was executed, but that nobody can have meant."""
+        """Take note of a message that was executed, but is surely a mistake."""
 
     def report_clamped(self, topic: str, text: str) -> None:
         """Take note of a clamped message."""

@@ -117,7 +117,7 @@ class Containment:
         self._handlers[number] = (handler, signal.signal(number, handler))
 
     def _on_interrupt(self, number: int, frame: FrameType | None) -> None:
-        """Remember that somebody has pressed Ctrl-C: that KeyboardInterrupt is not raised by code under test."""
+        """Remember that Ctrl-C was pressed: that KeyboardInterrupt is not raised by code under test."""
         self._is_interrupted = True
         signal.default_int_handler(number, frame)
 
