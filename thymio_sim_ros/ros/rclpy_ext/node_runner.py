@@ -30,7 +30,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.ros.compat.shm_cleanup import remove_incomplete_ports
+from thymio_sim_ros.ros.compat.shm_cleanup import remove_abandoned
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.peers import HasPeers
 
@@ -289,7 +289,7 @@ def run_main(
     gc.set_threshold(GC_THRESHOLD, *gc.get_threshold()[1:])
     signal.signal(signal.SIGINT, end)
     signal.signal(signal.SIGTERM, end)
-    remove_incomplete_ports()
+    remove_abandoned()
     code = 1
     try:
         _init(words[1:], context)

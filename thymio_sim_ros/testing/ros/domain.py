@@ -9,7 +9,7 @@ import socket
 from collections.abc import Iterator
 
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.ros.compat.shm_cleanup import remove_incomplete_ports
+from thymio_sim_ros.ros.compat.shm_cleanup import remove_abandoned
 
 __all__ = ["NoDomainError", "reserved"]
 
@@ -57,7 +57,7 @@ def reserved() -> Iterator[int]:
                 continue
             if _has_participants(domain):
                 continue
-            remove_incomplete_ports()
+            remove_abandoned()
             with _environment(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST"):
                 yield domain
             return
