@@ -331,6 +331,16 @@ def test_entities_in_an_svg_are_refused() -> None:
     assert "entity 'a'" in refused(data_uri(text.encode(), "image/svg+xml")).found
 
 
+def test_an_svg_of_illustrator_with_entities_is_drawn() -> None:
+    start = '<!DOCTYPE svg [\n<!ENTITY ns_svg "http://www.w3.org/2000/svg">\n<!ENTITY black "#000000">\n]>'
+    text = f'{start}<svg xmlns="&ns_svg;" viewBox="0 0 1 1"><text/><rect width="1" height="1" fill="&black;"/></svg>'
+    plain = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"><rect width="1" height="1" fill="#000000"/></svg>'
+    )
+    both = [decode(data_uri(each.encode(), "image/svg+xml")) for each in (text, plain)]
+    assert color_at(both[0], 5, 5) == color_at(both[1], 5, 5) == BLACK
+
+
 @pytest.mark.parametrize(
     "uri",
     [

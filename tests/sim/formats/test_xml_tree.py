@@ -67,13 +67,30 @@ def test_broken_xml_is_refused_at_its_line() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        '<!DOCTYPE a [<!ENTITY x "y">]><a>&x;</a>',
+        '<!DOCTYPE a [<!ENTITY x "<b/>">]><a>&x;</a>',
+        '<!DOCTYPE a [<!ENTITY x "yyyy"><!ENTITY z "&x;&x;">]><a>&z;</a>',
+        f'<!DOCTYPE a [<!ENTITY x "{"y" * 1000}">]><a>{"&x;" * 101}</a>',
+        '<!DOCTYPE a [<!ENTITY x "y"><!ATTLIST a b CDATA "c">]><a/>',
         '<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/hostname">]><a>&x;</a>',
         '<!DOCTYPE a [<!ENTITY % x SYSTEM "http://127.0.0.1/x.dtd"> %x;]><a/>',
     ],
 )
 def test_entities_are_refused(text: str) -> None:
     assert "entity" in refused(text).found
+
+
+def test_entities_that_stand_for_plain_text_are_replaced() -> None:
+    """As Illustrator declares them for namespaces."""
+    text = """<?xml version="1.0"?>
+<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://127.0.0.1:9/svg11.dtd" [
+    <!ENTITY ns_svg "http://www.w3.org/2000/svg">
+    <!-- <!ENTITY side "9"> -->
+    <!ENTITY side '10'>
+]>
+<svg xmlns="&ns_svg;" width="&side;">&side;&amp;<rect/></svg>"""
+    for root in (parse(text), parse(text.encode())):
+        assert (root.tag, root.attributes, root.text, root.line) == ("svg", {"width": "10"}, "10&", 7)
+        assert root.children[0].tag == "rect"
 
 
 def test_a_document_type_elsewhere_is_not_fetched() -> None:

@@ -1,14 +1,16 @@
-"""XML text as a small tree with line numbers; entities and external references are rejected.
+"""XML text as a small tree with line numbers; external references and most entities are rejected.
 
 The encoding of a file is that of its byte order mark or its XML declaration, else UTF-8. A file that is not valid in it
 is read as Windows-1252, as older programs wrote their files.
 
-Used for `.playground` files and SVG images, which are untrusted: a document type that declares entities is an error,
-nothing is ever loaded from elsewhere, and depth and number of elements are limited.
+Used for `.playground` files and SVG images, which are untrusted: nothing is ever loaded from elsewhere, and depth and
+number of elements are limited. Entities that stand for plain text, as Illustrator declares them for namespaces, are
+replaced by it; a document type that declares others is an error.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
@@ -22,6 +24,17 @@ __all__ = ["Element", "XmlError", "parse", "text_of"]
 MAX_DEPTH = 200
 MAX_ELEMENTS = 100_000
 
+
+MAX_REPLACED = 100_000
+"""Largest number of characters that entities stand for in a file."""
+_PLAIN_ENTITY = r"<!ENTITY\s+(?P<name>[A-Za-z_][\w.-]*+)\s+(?P<value>\"[^\"'<&%]*+\"|'[^\"'<&%]*+')\s*>"
+"""An entity that stands for text without markup, quotes or references: it cannot be nested."""
+_DECLARATIONS = re.compile(
+    r"(?P<type><!DOCTYPE\s+[^\s\[>]+(?:\s+(?:SYSTEM|PUBLIC|\"[^\"]*+\"|'[^']*+'))*+)\s*"
+    r"\[(?P<subset>(?:\s|<!--(?:(?!-->).)*+-->|" + re.sub(r"\?P<\w+>", "?:", _PLAIN_ENTITY) + r")*+)\]\s*>",
+    re.DOTALL,
+)
+"""A document type that declares such entities only."""
 
 OTHER_ENCODING = "Windows-1252"
 """Of files that are not in the encoding that they should have."""
@@ -71,19 +84,38 @@ class Element:
 def text_of(data: bytes) -> tuple[str, str | None]:
     """Return the text of an XML file without byte order mark, and the encoding that it should have and has not.
 
+    Entities that stand for plain text are replaced; lines stay where they are.
+
     Raises XmlError for an unknown encoding.
     """
     try:
-        return decode(data).text, None
+        return _with_plain_entities(decode(data).text), None
     except TextError as error:
         if error.kind != "text-undecodable":
             raise XmlError(1, "an unknown encoding", "UTF-8") from error
-        return data.decode(OTHER_ENCODING, "replace"), str(error.arguments[1])
+        return _with_plain_entities(data.decode(OTHER_ENCODING, "replace")), str(error.arguments[1])
+
+
+def _with_plain_entities(text: str) -> str:
+    """Return the text without such entities and their declarations; others stay, and are rejected by `parse`."""
+    declared = _DECLARATIONS.search(text)
+    if declared is None:
+        return text
+    values: dict[str, str] = {}
+    for entity in re.finditer(_PLAIN_ENTITY, re.sub(r"<!--.*?-->", "", declared["subset"], flags=re.DOTALL)):
+        values.setdefault(entity["name"], entity["value"][1:-1])
+    reference = re.compile(r"&([A-Za-z_][\w.-]*+);")
+    behind = text[declared.end() :]
+    if sum(len(values.get(found[1], "")) for found in reference.finditer(behind)) > MAX_REPLACED:
+        return text
+    replaced = reference.sub(lambda found: values.get(found[1], found[0]), behind)
+    lines = "\n" * declared[0].count("\n", len(declared["type"]))
+    return f"{text[: declared.start()]}{declared['type']}{lines}>{replaced}"
 
 
 def parse(data: bytes | str) -> Element:
     """Return the root of a document. Raises XmlError for text that is not XML, declares entities, or is too large."""
-    return _Builder(data if isinstance(data, str) else text_of(data)[0]).build()
+    return _Builder(_with_plain_entities(data) if isinstance(data, str) else text_of(data)[0]).build()
 
 
 class _Builder:
