@@ -229,6 +229,20 @@ def test_a_program_is_built_by_keyboard_alone(world, page):
     assert page.evaluate(ROWS) == 2
 
 
+@pytest.mark.slow
+def test_a_row_in_which_nothing_is_chosen_has_a_warning(world, page, tmp_path):
+    text = (FILES / "current.aesl").read_text(encoding="utf-8")
+    text = text.replace('value2="1" value3="0"', 'value2="0" value3="0"')
+    (tmp_path / "open.aesl").write_text(text, encoding="utf-8")
+    open_page(page, world("base"))
+    open_tab(page, "program")
+    page.locator(".program[data-shown=start], .program[data-shown=program]").wait_for()
+    drop_file(page, tmp_path / "open.aesl", ".program")
+    expect(page, ".vpl-row .vpl-why").to_have_text("Row 2: no sensor is chosen, so this happens all the time.")
+    drop_file(page, FILES / "current.aesl", ".program")
+    expect(page, ".vpl-row .vpl-why").to_have_count(0)
+
+
 @pytest.fixture
 def phone(touch_page) -> Any:
     """A checked page on a phone in portrait."""

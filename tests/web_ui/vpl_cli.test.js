@@ -29,6 +29,14 @@ test("a program with an error has exit code 1, in the wanted language", () => {
   });
 });
 
+test("a block in which nothing is chosen is a warning, as on the page", () => {
+  const open = CURRENT.replace('name="prox" value0="0" value1="0" value2="1"', 'name="prox" value0="0" value1="0" value2="0"');
+  const { output, errors, exit } = answer(open);
+  assert.equal(errors, "a.aesl: Row 2: no sensor is chosen, so this happens all the time.\n");
+  assert.deepEqual([exit, output === ""], [0, false]);
+  assert.equal(answer(CURRENT).errors, "");
+});
+
 test("a file without VPL, a missing file and wrong usage have exit code 2", () => {
   assert.match(answer("<network/>").errors, /^a.aesl: This file has no VPL program/);
   assert.equal(answer("<network/>").exit, 2);

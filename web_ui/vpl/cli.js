@@ -6,6 +6,7 @@ import { decodedOrMarked } from "../browser/text_file.js";
 import { LANGUAGES, translator } from "../i18n/index.js";
 import texts from "../i18n/vpl.texts.js";
 import { parseArguments, runAsCommand } from "../program_tab/command_line.js";
+import { warningOf } from "./check.js";
 import { compareText } from "./compare.js";
 import { VplError } from "./errors.js";
 import { readVpl } from "./file.js";
@@ -48,7 +49,9 @@ export function run(command, read = readText) {
       return { output: about.map(line).join(""), errors: warnings, exit: 0 };
     }
     if (source === null) return { output: "", errors: warnings + line(refusal), exit: 1 };
-    return { output: source.text, errors: warnings, exit: 0 };
+    const open = file.program.rows.map((row, index) => ({ key: warningOf(row), values: { row: index + 1 } }));
+    const said = open.map(({ key, values }) => (key === null ? "" : line({ key, values })));
+    return { output: source.text, errors: warnings + said.join(""), exit: 0 };
   } catch (error) {
     if (error instanceof VplError) return { output: "", errors: line(error), exit: 2 };
     if (error instanceof Error && "code" in error)
