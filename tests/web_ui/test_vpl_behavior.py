@@ -21,3 +21,22 @@ def test_the_obstacle_avoider_avoids(thymio):
 @pytest.mark.thymio(playground="line", program=PROGRAMS / "line.aesl")
 def test_the_line_follower_follows_the_line(thymio):
     thymio.until(followed_line(thymio), seconds=240)
+
+
+@pytest.mark.thymio(playground="line", program=PROGRAMS / "events.aesl")
+def test_what_a_pupil_does_triggers_each_event_with_its_default_values(thymio):
+    """Rows in order: button, something near in front, white under both ground sensors, tap, clap, black."""
+    thymio.run(1)
+    assert emitted(thymio, "pair_run", [5])  # it starts on the line
+    actions = {
+        0: lambda: thymio.press("forward"),
+        1: lambda: thymio.place(0.68, 0.0),  # 4 cm in front of the wall
+        2: lambda: thymio.place(0.0, -0.1),
+        3: thymio.tap,
+        4: thymio.clap,
+    }
+    assert not any(emitted(thymio, "pair_run", [row]) for row in (0, 1, 3, 4))
+    for row, act in actions.items():
+        act()
+        thymio.run(1)
+        assert emitted(thymio, "pair_run", [row]), row
