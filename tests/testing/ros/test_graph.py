@@ -11,7 +11,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Range
 from std_msgs.msg import Bool, String
 from std_srvs.srv import Empty, Trigger
@@ -201,6 +201,15 @@ def test_an_endpoint_of_the_wrong_type_is_refused_with_the_cure(ros, simulation)
     )
     with pytest.raises(StudentError, match=r"/reset_odometry has a client of std_srvs/srv/Empty by node /asking;"):
         ros.start(Asking)
+
+
+def test_a_subscription_of_the_test_itself_with_another_qos_is_refused_with_the_cure(ros, simulation):
+    simulation()
+    retained = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    with pytest.raises(
+        pytest.fail.Exception, match="durability transient_local by node /test; expected durability volatile"
+    ):
+        ros.collect(Odometry, "/odom", qos=retained)
 
 
 def test_a_test_that_uses_the_wrong_type_is_told_the_right_one(ros, simulation):

@@ -23,7 +23,17 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from thymio_sim_ros.lockstep.matching import fit
 from thymio_sim_ros.type_names import type_name
 
-__all__ = ["CLIENT", "PUBLISHER", "SERVER", "SUBSCRIBER", "Connections", "Side", "Unconnected", "wrong_type"]
+__all__ = [
+    "CLIENT",
+    "PUBLISHER",
+    "SERVER",
+    "SUBSCRIBER",
+    "Connections",
+    "Side",
+    "Unconnected",
+    "wrong_qos",
+    "wrong_type",
+]
 
 SHARE = 0.002
 """Largest share of one core that polling may use."""
@@ -285,19 +295,26 @@ class Connections:
                 if (_node_of(info), _node_of(peer)) != (one.full_node, own):
                     continue
                 found, expected = info.qos_profile, peer.qos_profile
-                pair = (found, expected) if is_publisher else (expected, found)
-                if not fit(*pair):
-                    policy, what, need = _misfit(found, expected)
-                    return Unconnected(
-                        one.topic, one.full_node, one.query.side, f"{one.type} with {policy} {what}",
-                        f"{policy} {need}", f"Create it with the {policy} {need}",
-                    )  # fmt: skip
+                if wrong := wrong_qos(one.query.side, one.topic, one.full_node, one.type, found, expected):
+                    return wrong
         return None
 
 
 def wrong_type(side: Side, topic: str, node: str, found: str, types: Mapping[str, str]) -> Unconnected:
     """Describe an endpoint of type `found` on a topic of another one; `types`: those of all names of ours."""
     return Unconnected(topic, node, side, found, types[topic], cure(side, topic, found, types))
+
+
+def wrong_qos(
+    side: Side, topic: str, node: str, kind: str, found: QoSProfile, expected: QoSProfile
+) -> Unconnected | None:
+    """Describe an endpoint with the profile `found` that does not fit that of its peer, `expected`; None if it fits."""
+    if fit(found, expected) if side is PUBLISHER else fit(expected, found):
+        return None
+    policy, what, need = _misfit(found, expected)
+    return Unconnected(
+        topic, node, side, f"{kind} with {policy} {what}", f"{policy} {need}", f"Create it with the {policy} {need}"
+    )
 
 
 def cure(side: Side, topic: str, found: str, types: Mapping[str, str]) -> str:

@@ -23,7 +23,7 @@ from thymio_sim_ros import course_packages
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
-from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections
+from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections, wrong_qos
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
 from thymio_sim_ros.testing.awaited import Awaited
@@ -38,6 +38,7 @@ from thymio_sim_ros.testing.ros.program_files import find
 from thymio_sim_ros.testing.ros.programs import Programs
 from thymio_sim_ros.testing.ros.recorder import Recorder
 from thymio_sim_ros.testing.sources import beside
+from thymio_sim_ros.type_names import type_name
 
 __all__ = ["DEADLINE_S", "Ros"]
 
@@ -354,7 +355,7 @@ class Ros:
         *,
         transient_local: bool | None = None,
         where: Callable[[Any], Any] | None = None,
-        qos: QoSProfile | None = None,
+        qos: QoSProfile | int | None = None,
     ) -> Recorder:
         """Return a list that is filled with the messages of a topic, or with those that satisfy `where`.
 
@@ -376,9 +377,23 @@ class Ros:
         with student.types_explained(self.node, SUBSCRIBER, kind, name):
             subscription = self.node.create_subscription(kind, name, recorder.add, qos)
         self._recorders.append(recorder)
+        self._check_qos(kind, name, qos)
         self.until(lambda: is_matched(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
         return recorder
+
+    def _check_qos(self, kind: Any, topic: str, qos: QoSProfile | int) -> None:
+        """Fail the test if a subscription with this profile fits no publisher of its topic, although there are some."""
+        __tracebackhide__ = True
+        infos, node = self.node.get_publishers_info_by_topic(topic), self.node.get_fully_qualified_name()
+        profile = QoSProfile(depth=qos) if isinstance(qos, int) else qos
+        misfits = [
+            wrong_qos(SUBSCRIBER, topic, node, type_name(kind), profile, info.qos_profile)
+            for info in infos
+            if info.node_name != TEST_NODE
+        ]
+        if misfits and all(misfits):
+            self.fail(str(misfits[0]))
 
     def publisher(self, kind: Any, topic: str, *, depth: int = 10) -> Any:
         """Create a publisher, and wait until it has a subscriber."""
