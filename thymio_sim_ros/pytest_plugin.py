@@ -10,7 +10,7 @@ import importlib.util
 import os
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,6 +66,20 @@ def pytest_configure(config: pytest.Config) -> None:
     """Register the marks."""
     config.addinivalue_line("markers", f"{MARK}({', '.join(KEYWORDS)}): the simulated world of a test")
     config.addinivalue_line("markers", "points(number): points of a test function (thymio-sim grade)")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Add the state and the last printed lines of programs to the report of a test that fails."""
+    report = yield
+    ros = getattr(item, "funcargs", {}).get("ros")
+    if call.when == "call" and report.failed and ros is not None:
+        lines = ros.programs.lines()
+        if lines and lines[0] not in report.longreprtext:  # failures of `until` have them in their text
+            report.sections.append(("Programs under test", "\n".join(lines)))
+    return report
 
 
 def _run_log(request: pytest.FixtureRequest) -> Path | None:

@@ -10,6 +10,7 @@ import pytest
 from geometry_msgs.msg import Twist
 from rclpy.qos import QoSProfile
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 from thymio_sim_ros.testing.ros import Ros, Simulation
 from thymio_sim_ros.testing.ros.domain import reserved
@@ -331,3 +332,26 @@ def test_a_program_needs_a_simulation(folder: Path) -> None:
                 run("dance.py")
         finally:
             ros.close()
+
+
+def test_a_failing_assert_shows_the_last_printed_lines(pytester):
+    pytester.makepyfile(
+        chatty="import time\nfor number in range(9):\n    print('printed', number)\ntime.sleep(60)\n",
+        test_it="""
+            def test_chatty(ros, simulation):
+                simulation()
+                ros.run("chatty.py")
+                assert 1 == 2
+
+            def test_until(ros, simulation):
+                sim = simulation()
+                ros.run("chatty.py")
+                sim.until(lambda: False, 0.1)
+        """,
+    )
+    done = pytester.runpytest_subprocess("-p", "thymio_sim_ros.pytest_plugin", timeout=PATIENCE_S)
+    done.assert_outcomes(failed=2)
+    text = done.stdout.str()
+    shown = text.partition("test_until")[0]
+    assert shown.index("Programs under test") < shown.index("program chatty.py: runs") < shown.index("  | printed 8")
+    assert text.count("Programs under test") == 1
