@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -121,3 +123,76 @@ def test_the_startup_module_that_it_hides_runs_too(tmp_path):
     command = [sys.executable, "-c", "import sys, tf2_py; print(sys.answer)"]
     environment = {**os.environ, "PYTHONPATH": path}
     assert subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout == "42\n"
+
+
+IMPORTS_TYPES = """\
+import rclpy
+from example_interfaces.action import Fibonacci
+from example_interfaces.msg import Int64, String
+from example_interfaces.srv import AddTwoInts, Trigger
+from rclpy.action import ActionServer
+from rclpy.node import Node
+
+
+class Adder(Node):
+    def __init__(self):
+        super().__init__("adder")
+        {}
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Adder())
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+USES = {
+    "pass": "",
+    "self.create_service(AddTwoInts, 'add', print)": "example_interfaces.srv.AddTwoInts is not installed",
+    "self.create_client(Trigger, 'go')": "use std_srvs.srv.Trigger",
+    "AddTwoInts.Request()": "example_interfaces.srv.AddTwoInts is not installed",
+    "self.create_publisher(String, 'said', 10)": "use std_msgs.msg.String",
+    "self.create_subscription(Int64, 'n', print, 10)": "use std_msgs.msg.Int64",
+    "Int64(data=1)": "ros-<distribution>-example-interfaces",
+    "ActionServer(self, Fibonacci, 'count', print)": "example_interfaces.action.Fibonacci is not installed",
+}
+
+needs_absence = pytest.mark.skipif(
+    course_packages.is_installed("example_interfaces"), reason="this ROS has the package example_interfaces"
+)
+
+
+@needs_absence
+@pytest.mark.parametrize("use", USES)
+def test_example_interfaces_can_be_imported_and_says_what_to_do_when_it_is_used(ros, tmp_path, use):
+    path = tmp_path / "adder.py"
+    path.write_text(IMPORTS_TYPES.replace("{}", use))
+    if not USES[use]:
+        ros.start(path)
+        return
+    with pytest.raises(RuntimeError, match=re.escape(USES[use])):
+        ros.start(path)
+
+
+@needs_absence
+@pytest.mark.process
+def test_programs_and_a_prepared_terminal_have_it_too(ros, simulation, tmp_path):
+    simulation()
+    path = tmp_path / "adder.py"
+    path.write_text(IMPORTS_TYPES.replace("{}", "AddTwoInts.Request()"))
+    program = ros.run(path, check=False)
+    program.wait()
+    assert "example_interfaces.srv.AddTwoInts is not installed" in program.errors
+    head = IMPORTS_TYPES.partition("class")[0]
+    assert _prints(tmp_path, head + "print(AddTwoInts.__module__)") == "example_interfaces.srv"
+
+
+@needs_absence
+def test_its_messages_with_a_twin_name_one_that_exists(monkeypatch):
+    monkeypatch.syspath_prepend(Path(course_packages.__file__).parent / "packages")
+    messages = importlib.import_module("example_interfaces.msg")
+    std = importlib.import_module("std_msgs.msg")
+    assert [name for name in messages.__all__ if not hasattr(std, name)] == ["WString"]

@@ -91,7 +91,9 @@ RULES = {
         ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},
     ),
     # the packages of other names, which only programs of students import
-    f"{OURS}.course_packages": Rule(_names("course_packages", "ros.compat.tf2_messages", "tf"), ROS),
+    f"{OURS}.course_packages": Rule(
+        _names("course_packages", "ros.compat.absent_types", "ros.compat.tf2_messages", "tf"), ROS
+    ),
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
     # students copy them: rclpy, messages, and tf2 for those who have the wheels only
