@@ -64,6 +64,8 @@ AT_ONCE = [
     "rclpy.spin(self)",
     "SingleThreadedExecutor().spin()",
     "MultiThreadedExecutor().spin_once()",
+    "input()",
+    "input('Speed? ')",
 ]
 
 WAITS = [
@@ -137,6 +139,7 @@ def test_code_that_catches_everything_ends_too(ros, simulation, tmp_path, short,
     [
         ("raise KeyboardInterrupt", "KeyboardInterrupt"),
         ("exit(0)", "SystemExit: 0"),
+        ("os._exit(3)", "SystemExit: 3"),
         ("sys.exit('done')", "SystemExit: done"),
         ("raise GeneratorExit", "GeneratorExit"),
         ("raise asyncio.CancelledError", "CancelledError"),

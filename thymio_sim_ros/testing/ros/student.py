@@ -6,12 +6,14 @@ parameters, remappings and namespace: a class inserted between it and `Node` in 
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import functools
 import importlib
 import importlib.util
 import inspect
 import json
+import os
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -281,12 +283,13 @@ def _spinning_disabled() -> Iterator[None]:
 
 @contextlib.contextmanager
 def waiting_forbidden() -> Iterator[None]:
-    """Raise StudentError if this thread begins a wait of rclpy that cannot end.
+    """Raise StudentError if this thread begins a wait of rclpy that cannot end, or `input()`.
 
     Messages come and simulated time passes only when the callback has returned. Waits of the middleware and of clocks
-    ignore signals, so that they must not begin; the others are those that students use most.
+    ignore signals, so that they must not begin; the others are those that students use most. `os._exit` raises
+    SystemExit in this thread: it would end pytest without a trace.
     """
-    here = threading.get_ident()
+    here, process = threading.get_ident(), os.getpid()
 
     def checked(name: str, wait: Callable[..., Any], is_endless: Callable[[Mapping[str, Any]], bool]) -> Any:
         signature = _signature(wait)
@@ -306,6 +309,12 @@ def waiting_forbidden() -> Iterator[None]:
             raise _waits_for_ever("a wait for messages")
         real_wait(wait_set, timeout_nsec)
 
+    def leave(status: int) -> None:
+        if threading.get_ident() == here and os.getpid() == process:  # children that were forked leave this way
+            raise SystemExit(status)
+        real_exit(status)
+
+    real_exit = os._exit
     real_wait = _rclpy.WaitSet.wait
     replaced: list[tuple[Any, str, Any]] = [
         *((rclpy, name, checked(f"rclpy.{name}()", getattr(rclpy, name), _has_no_limit)) for name in _SPINS),
@@ -313,6 +322,8 @@ def waiting_forbidden() -> Iterator[None]:
         (Client, "call", checked("Client.call()", Client.call, _has_no_limit)),
         (Clock, "sleep_until", checked("Clock.sleep_until()", Clock.sleep_until, _sleeps_long)),
         (_rclpy.WaitSet, "wait", wait),
+        (builtins, "input", checked("input()", builtins.input, lambda _arguments: True)),
+        (os, "_exit", leave),
     ]
     before = [(owner, name, getattr(owner, name)) for owner, name, _ in replaced]
     for owner, name, value in replaced:
