@@ -18,6 +18,8 @@ from thymio_sim_ros.bridge.protocol import messages as ms
 DROPS = 3
 STEPS = 12
 STEP_MS = PATIENCE_MS / STEPS
+KEY_MS = 150
+"""Time from one key to the next: that of a pupil. Lists that open between two keys can take the next one."""
 
 MARKS = [pytest.mark.browser, pytest.mark.process]
 

@@ -11,6 +11,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.page_support import (
+    KEY_MS,
     MARKS,
     choose_in_file_menu,
     choose_language,
@@ -156,7 +157,7 @@ def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(bl
 
     # a mistake is shown at its block, and the file keeps the last program without one
     page.locator(f"{BLOCKS} .blocklyShadow .blocklyField").click()
-    page.keyboard.type("99999\n")
+    page.keyboard.type("99999\n", delay=KEY_MS)
     expect(page, VERDICT).to_contain_text("1 mistake: The number is 99999")
     playwright.expect(page.get_by_role("button", name="Run program")).to_be_disabled()
     expect(page, f"{BLOCKS} .blocklyWarningIcon, {BLOCKS} .blocklyIconGroup").to_have_count(1)
@@ -191,7 +192,7 @@ def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(bl
     add(page, "Motion", "thymio_setMotor", below(page, "thymio_touching", 4, 46))
     choose(page, "thymio_setMotor", 0, "right")
     page.locator(f"{BLOCKS} .thymio_setMotor .blocklyShadow .blocklyField").click()
-    page.keyboard.type("-50\n")
+    page.keyboard.type("-50\n", delay=KEY_MS)
     add(page, "Events", "thymio_notouching", (far[0], far[1] + 140))
     add(page, "Motion", "thymio_setMotor", below(page, "thymio_notouching", 4, 46))
     expect(page, VERDICT).to_have_text("No mistakes")

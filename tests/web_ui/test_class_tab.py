@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, choose_language, choose_robot, drop_file, open_page, open_tab
+from tests.web_ui.page_support import KEY_MS, MARKS, choose_language, choose_robot, drop_file, open_page, open_tab
 from tests.web_ui.test_page_access import AXE, FINDINGS
 
 pytestmark = MARKS
@@ -85,7 +85,7 @@ def test_names_are_given_by_keys_shown_everywhere_and_kept(class_page):
     playwright.expect(fields).to_have_count(20)
     fields.first.focus()
     for name in ("Ada", "Ben"):
-        page.keyboard.type(name)
+        page.keyboard.type(name, delay=KEY_MS)
         page.keyboard.press("Enter")
     page.click("[data-names=edit]")
     playwright.expect(page.locator(".class-name").first).to_have_text("Ada")

@@ -7,6 +7,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.page_support import (
+    KEY_MS,
     MARKS,
     choose_in_file_menu,
     choose_language,
@@ -332,7 +333,7 @@ def test_common_names_come_first_in_completion_and_help(editor):
     write(editor, "")
     for typed, first in (("motor.", "motor.left.target"), ("call l", "leds.top"), ("onevent b", "button.center")):
         write(editor, "")
-        editor.keyboard.type(typed)
+        editor.keyboard.type(typed, delay=KEY_MS)
         offered = editor.locator(".cm-tooltip-autocomplete li .cm-completionLabel")
         playwright.expect(offered.first).to_have_text(first)
         editor.keyboard.press("Escape")

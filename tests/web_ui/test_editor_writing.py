@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.web_ui.page_support import open_editor, open_page, wait_for_service
+from tests.web_ui.page_support import KEY_MS, open_editor, open_page, wait_for_service
 
 playwright = pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.browser, pytest.mark.process, pytest.mark.ros]
@@ -47,7 +47,7 @@ def test_enter_after_a_complete_word_breaks_the_line_however_slowly_it_is_typed(
     page.focus(".cm-content")
     page.keyboard.press("Control+a")
     page.keyboard.press("Delete")
-    page.keyboard.type("onevent prox\nmotor.left.target = 100\nif acc[0] > 3 then\nend\n", delay=150)
+    page.keyboard.type("onevent prox\nmotor.left.target = 100\nif acc[0] > 3 then\nend\n", delay=KEY_MS)
     assert text_of(page).rstrip() == "onevent prox\n\tmotor.left.target = 100\n\tif acc[0] > 3 then\n\tend"
 
 
@@ -61,7 +61,7 @@ def test_writing_a_program_as_one_is_used_to(world, page):
     page.focus(".cm-content")
     signature = page.locator(".signature")
     for line in WRITTEN:
-        page.keyboard.type(line)
+        page.keyboard.type(line, delay=KEY_MS)
         if line.startswith("call"):
             playwright.expect(signature).to_have_count(0)  # the call is finished
         page.keyboard.press("Escape")  # the list of completions
@@ -70,7 +70,7 @@ def test_writing_a_program_as_one_is_used_to(world, page):
 
     place_cursor(page, 7, 8)
     page.keyboard.press("Enter")
-    page.keyboard.type("call leds.top(1, ")
+    page.keyboard.type("call leds.top(1, ", delay=KEY_MS)
     playwright.expect(signature).to_contain_text("leds.top(")
     second = signature.locator(".signature-argument")
     playwright.expect(second).to_have_count(1)

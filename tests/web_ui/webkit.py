@@ -17,7 +17,7 @@ import pytest
 
 from tests.patience import PATIENCE_S, until
 from tests.processes import free_port, wait_for_port, x_display
-from tests.web_ui.page_support import without_welcome
+from tests.web_ui.page_support import KEY_MS, without_welcome
 
 PROGRAMS = ("WebKitWebDriver", "Xvfb")
 VARIABLES = {
@@ -26,8 +26,6 @@ VARIABLES = {
     "LIBGL_ALWAYS_SOFTWARE": "1",
 }
 SIZE = (1280, 860)
-KEY_S = 0.15
-"""Time from one key to the next: that of a pupil."""
 ENTER = "\ue007"
 NOTE_ERRORS = """window.errors = [];
     addEventListener("error", ({message}) => message.startsWith("ResizeObserver loop") || window.errors.push(message));
@@ -153,7 +151,7 @@ class WebKitPage:
 
         actions = ActionChains(self._browser)
         for key in keys:
-            actions.send_keys(ENTER if key == "\n" else key).pause(KEY_S)
+            actions.send_keys(ENTER if key == "\n" else key).pause(KEY_MS / 1000)
         actions.perform()
 
     def quit(self) -> None:
