@@ -74,8 +74,8 @@ const READINGS = new Map(
 const COMPARISONS = { "==": "EQ", "!=": "NEQ", "<": "LT", "<=": "LTE", ">": "GT", ">=": "GTE" };
 const BITS = ["<<", ">>", "&", "|", "^"];
 const PRESSED = /^(button\.\w+) == 1$/;
-/** Distances of blocks in the workspace, and the height of one, in pixels at scale 1. */
-const [LEFT, RIGHT, TOP, GAP, HEIGHT] = [20, 620, 20, 60, 45];
+/** Places of blocks in the workspace, and the greatest height of a statement, in pixels at scale 1. */
+const [LEFT, TOP, GAP, HEIGHT] = [20, 20, 60, 45];
 
 /** What no block stands for. */
 class NoBlock extends Error {
@@ -117,13 +117,14 @@ class Reader {
     const parts = children(parser.parse(this.code).topNode);
     const isPart = (/** @type {Node} */ { name }) => name === "Handler" || name === "Subroutine";
     const start = this.#statements(parts.filter((node) => !isPart(node)));
-    /** @type {BlockState[]} */ const blocks = start === undefined ? [] : [{ ...start, x: LEFT, y: TOP }];
+    const hats = parts.filter(isPart).map((part) => this.#hat(part));
     let y = TOP;
-    for (const part of parts.filter(isPart)) {
-      const hat = this.#hat(part);
-      blocks.push({ ...hat, x: RIGHT, y });
-      y += GAP + HEIGHT * sizeOf(hat);
-    }
+    // one below the other, what runs at the start at the end: the events are what a program is about
+    const blocks = [...hats, ...(start === undefined ? [] : [start])].map((block) => {
+      const placed = { ...block, x: LEFT, y };
+      y += GAP + HEIGHT * sizeOf(block);
+      return placed;
+    });
     const variables = [...this.#sizes.keys()].map((name) => ({ id: name, name }));
     return { blocks: { languageVersion: 0, blocks }, variables };
   }
@@ -428,10 +429,11 @@ const number = (value) => ({ type: "math_number", fields: { NUM: value } });
 /** A number is a shadow, as in a new block. @param {BlockState} block */
 const plug = (block) => (block.type === "math_number" ? { shadow: block } : { block });
 
-/** How many statements are in and below a block. @param {BlockState | undefined} block @returns {number} */
+/** The height of a block and of those below, in statements. @param {BlockState | undefined} block @returns {number} */
 function sizeOf(block) {
   if (block === undefined) return 0;
   const inside = Object.values(block.inputs ?? {}).map((socket) => socket.block);
   const isStatement = ["statement", "hat"].includes(BLOCKS.get(block.type)?.shape ?? "");
-  return (isStatement ? 1 : 0) + [...inside, block.next?.block].reduce((sum, each) => sum + sizeOf(each), 0);
+  const own = isStatement ? 1 : block.type === "logic_operation" ? 0.5 : 0;
+  return own + [...inside, block.next?.block].reduce((sum, each) => sum + sizeOf(each), 0);
 }
