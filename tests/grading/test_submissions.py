@@ -297,6 +297,13 @@ def test_copies_that_differ_are_not_chosen_from() -> None:
     assert problem == "no file follower.aesl; found follower (1).aesl, follower (2).aesl"
 
 
+def test_another_number_is_another_file() -> None:
+    files = {"level_1.aesl": b"1", "level_2.aesl": b"2", "level_1 (1).aesl": b"3"}
+    result = prepared(Submission("anna", files=files), ["level_1.aesl"])
+    assert result.notes == ("level_1 (1).aesl was not graded, but level_1.aesl",)
+    assert prepared(Submission("anna", files={"level_2.aesl": b"", "x.aesl": b""}), ["level_1.aesl"]).problem
+
+
 @pytest.mark.parametrize("name", ["level 2.aesl", "level2.aesl", "task (a).aesl"])
 def test_an_expected_name_may_look_like_a_copy(name: str) -> None:
     files = {name: b"right", "other.aesl": b""}

@@ -9,7 +9,7 @@ import re
 import unicodedata
 from pathlib import PurePosixPath
 
-__all__ = ["original_name"]
+__all__ = ["is_copy"]
 
 _APPENDED = re.compile(r"\.(?:txt|download|xml|html?|crdownload|part|bak|bin)$", re.IGNORECASE)
 """Suffixes behind the right one, which programs and operating systems add and often hide."""
@@ -22,16 +22,19 @@ _BEHIND = re.compile(
 """The marks of copies: of browsers and Windows, of Windows and macOS in four languages, of Firefox and macOS."""
 
 
-def original_name(name: str, suffix: str) -> str:
-    """Return the name of the file of which one with this name and without a folder is a copy, in lower case.
+def is_copy(name: str, wanted: str) -> bool:
+    """Return whether a file of any folder has the name `wanted`, in another case or with marks of copies.
 
-    `suffix` is the one that is expected, as in `.aesl`.
+    A name that has such a mark itself, as `level_2.aesl`, is no copy of another one that has, as `level_1.aesl`.
     """
-    found = unicodedata.normalize("NFC", PurePosixPath(name).name).casefold()
-    suffix = suffix.casefold()
+    suffix = PurePosixPath(wanted).suffix.casefold()
+    found, target = (unicodedata.normalize("NFC", PurePosixPath(one).name).casefold() for one in (name, wanted))
     while suffix in found.removesuffix(suffix) and (shorter := _APPENDED.sub("", found)) != found:
         found = shorter
     stem = found.removesuffix(suffix).rstrip()
-    while (shorter := _BEFORE.sub("", _BEHIND.sub("", stem.removesuffix(suffix)))) not in (stem, ""):
-        stem = shorter.strip()
-    return stem + suffix
+    while stem + suffix != target:
+        shorter = _BEFORE.sub("", _BEHIND.sub("", stem.removesuffix(suffix))).strip()
+        if shorter in (stem, ""):
+            return False
+        stem = shorter
+    return True

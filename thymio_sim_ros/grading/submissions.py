@@ -26,7 +26,7 @@ from thymio_sim_ros.grading.archives import (
     unpack,
 )
 from thymio_sim_ros.grading.errors import GradingError
-from thymio_sim_ros.grading.other_names import original_name
+from thymio_sim_ros.grading.other_names import is_copy
 
 __all__ = ["Submission", "find", "prepared", "read_one"]
 
@@ -109,7 +109,7 @@ def _with_expected(submission: Submission, files: Content, expected: Collection[
     while not set(expected) & files.keys() and (folder := _common_folder(files)):
         files = {name.removeprefix(folder): content for name, content in files.items()}
     for wanted in expected:
-        copies = [name for name in files if name not in expected and _is_copy(name, wanted)]
+        copies = [name for name in files if name not in expected and is_copy(name, wanted)]
         if wanted in files:
             notes += [f"{name} was not graded, but {wanted}" for name in copies if files[name] != files[wanted]]
             continue
@@ -117,7 +117,7 @@ def _with_expected(submission: Submission, files: Content, expected: Collection[
         named = [name for name in files if name.endswith(f"/{wanted}")]
         same = [name for name in files if _suffix(name) == suffix and name not in expected]
         blocks = [name for name in files if suffix == ".aesl" and is_of_blocks(files[name])]
-        copied_blocks = [name for name in blocks if _is_copy(PurePosixPath(name).stem + suffix, wanted)]
+        copied_blocks = [name for name in blocks if is_copy(PurePosixPath(name).stem + suffix, wanted)]
         found = next((some[0] for some in (named, copies, copied_blocks, same, blocks) if len(some) == 1), None)
         if found is None:
             listed = ", ".join(sorted(files)[:5])
@@ -138,10 +138,6 @@ def _with_expected(submission: Submission, files: Content, expected: Collection[
             files[wanted] = files.pop(found)
             notes.append(f"{found} was graded as {wanted}")
     return replace(submission, files=files, notes=tuple(notes))
-
-
-def _is_copy(name: str, wanted: str) -> bool:
-    return original_name(name, _suffix(wanted)) == original_name(wanted, _suffix(wanted))
 
 
 def _with_zips_opened(files: Content) -> Content:
