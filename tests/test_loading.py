@@ -150,6 +150,22 @@ def test_an_error_quotes_nothing_of_a_file_that_is_no_playground(tmp_path: Path,
     assert "aseba-playground" in caught.value.expected
 
 
+@pytest.mark.parametrize(
+    ("content", "hint"),
+    [
+        ("<network></network>", "this is a program, which --program takes"),
+        ("import rclpy\n", "this is a ROS node"),
+        ("from tdmclient import aw\n", "this is a Python program for tdmclient"),
+        ('{"advancedBlocks": [], "program": [], "blocks": 1}', "this is a program of VPL 3"),
+    ],
+)
+def test_a_program_in_place_of_a_playground_is_recognized(tmp_path: Path, content: str, hint: str) -> None:
+    path = tmp_path / "mine.playground"
+    path.write_text(content)
+    with pytest.raises(PlaygroundError, match=hint):
+        load_playground(str(path))
+
+
 @pytest.mark.parametrize("content", ['{"format": 1, "titel": "x"}', '{"format": 2}', "<aseba-playground><wall/>"])
 def test_an_error_about_a_playground_says_what_is_wrong(tmp_path: Path, content: str) -> None:
     path = tmp_path / "mine.json"

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from aseba_vm import AeslError
+from aseba_vm.aesl import text_decoding
 from aseba_vm.aesl.foreign_files import looks_like_network, refuse_foreign
 from aseba_vm.errors import TextError
 from thymio_sim_ros import resources
@@ -40,6 +41,7 @@ _PART = "#"
 """Before the name of one of several playgrounds in an archive."""
 _UNNAMED = "uploaded playground"
 _PLAYGROUNDS = 'JSON with "format": 1, XML with <aseba-playground>, or a zip that holds one'
+_FOREIGN_PROGRAMS = frozenset(f"foreign-{kind}" for kind in ("blocks", "python", "ros", "scratch", "tdmclient", "vpl3"))
 _PROGRAMS = (".aesl", ".aseba", ".txt")
 """Suffixes of program files. Of other files only the kind is said, because error messages quote from the content."""
 _PROGRAM_NAME = re.compile(r"\.(?:aesl|aseba|txt)(?![a-z])", re.IGNORECASE)
@@ -75,7 +77,17 @@ def load_playground(value: str) -> tuple[str, Playground]:
     except PlaygroundError:
         if _may_be_quoted(path):
             raise
-        raise PlaygroundError(str(path), "", "a file that is not a playground", _PLAYGROUNDS) from None
+        raise PlaygroundError(str(path), "", "a file that is not a playground", _PLAYGROUNDS + _hint(path)) from None
+
+
+def _hint(path: Path) -> str:
+    """What the file is instead of a playground, and how it is used, if it is a program."""
+    try:
+        text = text_decoding.decode(path.read_bytes()[:MAX_BYTES]).text
+        refuse_foreign(text)
+    except TextError as error:
+        return f"; {error}" if error.kind in _FOREIGN_PROGRAMS else ""
+    return "; this is a program, which --program takes" if looks_like_network(text) else ""
 
 
 def _archive_and_part(value: str) -> tuple[Path, str]:
