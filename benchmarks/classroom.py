@@ -21,7 +21,6 @@ from benchmarks.lib.report import Goal, Report, Table
 from tests.classroom.class_support import RunningClass
 
 QUICK = {"pupils": [2], "seconds": 2.0}
-FIRST_PORT, FIRST_DOMAIN = 21_400, 121
 POLL_S = 0.5
 KEEPS_UP = 0.95
 LEAST_PERCENT = 95.0
@@ -56,16 +55,14 @@ def one_class(count: int, seconds: float, program: str) -> tuple[list[Any], floa
     names = [f"pupil {number}" for number in range(1, count + 1)]
     with tempfile.TemporaryDirectory() as folder:
         began_s = time.monotonic()
-        running = RunningClass(
-            Path(folder), names, port=FIRST_PORT, domain=FIRST_DOMAIN, arguments=("--program", program)
-        )
+        running = RunningClass(Path(folder), names, arguments=("--program", program))
         try:
             for pupil in running.state():
                 running.until(pupil["id"], lambda one: one["phase"] == "running" and one["programs"])
             start_s = time.monotonic() - began_s
             return _row(running, count, seconds, start_s)
         finally:
-            running.process.end()
+            running.end()
 
 
 def _row(running: RunningClass, count: int, seconds: float, start_s: float) -> tuple[list[Any], float]:

@@ -52,6 +52,7 @@ def test_the_loop_of_the_shell_leaves_a_result_and_a_log_for_each_seed(tmp_path:
 
 
 @pytest.mark.slow
+@pytest.mark.process
 def test_the_script_gives_a_row_for_each_seed(tmp_path: Path) -> None:
     (tmp_path / "sweep.py").write_text(SWEEP)
     rows = list(csv.DictReader(run(tmp_path, sys.executable, "sweep.py", str(SEEDS)).splitlines()))

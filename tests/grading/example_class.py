@@ -121,7 +121,7 @@ PUPILS = {
     ),
     "Threads": Pupil(acting("threading.Thread(target=time.sleep, args=(1e6,)).start() if prox[6] else None"), "6", ""),
     "Deletes files": Pupil(
-        acting("import shutil\nfor path in HOST_FOLDER, '/usr/bin', '.': shutil.rmtree(path, True)"), "1", "failed"
+        acting("import shutil\nfor path in HOST_FOLDER, '/usr/bin', '.': shutil.rmtree(path, True)"), "6", "passed"
     ),
     "Calls the network": Pupil(acting("socket.create_connection(('127.0.0.1', HOST_PORT), 1)"), "0", "failed"),
     "Prints gigabytes": Pupil(acting("while True: print('x' * 10000)"), "0", "output limit"),

@@ -122,6 +122,7 @@ class Topics:
         topic.is_wanted = is_wanted
         if not is_wanted:
             topic.unwanted_s = time.monotonic()
+            self._end_if_unused(topic)
             return
         self._demand[channel_id] = None
         if self.poll():
@@ -168,9 +169,8 @@ class Topics:
             yield
 
     def _check(self, number: int, topic: _Topic) -> None:
-        if not topic.is_wanted and time.monotonic() >= topic.unwanted_s + KEEP_S:
-            self._unsubscribe(topic)
-            self._post(RetainLast(topic.channel.id, 0))
+        if not topic.is_wanted:
+            self._end_if_unused(topic)
             return
         is_due = number % _FULL_CHECK_PERIOD == self._refreshes % _FULL_CHECK_PERIOD
         if not is_due and self._node.count_publishers(topic.channel.topic) == topic.publishers:
@@ -179,6 +179,13 @@ class Topics:
         if qos != topic.qos:
             self._unsubscribe(topic)
             self._subscribe(topic, qos)
+
+    def _end_if_unused(self, topic: _Topic) -> None:
+        """End the subscription of a topic without clients: after `KEEP_S`, or at once if it alone keeps the topic."""
+        is_over = time.monotonic() >= topic.unwanted_s + KEEP_S or not self._node.count_publishers(topic.channel.topic)
+        if topic.subscription is not None and is_over:
+            self._unsubscribe(topic)
+            self._post(RetainLast(topic.channel.id, 0))
 
     def close(self) -> None:
         """End all subscriptions."""
