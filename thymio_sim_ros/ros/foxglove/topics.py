@@ -163,7 +163,7 @@ class Topics:
     def _check_all(self) -> Iterator[None]:
         self._refreshes += 1
         for number, topic in list(self._by_id.items()):
-            if topic.subscription is None:
+            if topic.subscription is None and not topic.is_wanted:
                 continue
             self._check(number, topic)
             yield
@@ -171,6 +171,14 @@ class Topics:
     def _check(self, number: int, topic: _Topic) -> None:
         if not topic.is_wanted:
             self._end_if_unused(topic)
+            return
+        if topic.subscription is None:
+            if self._node.count_publishers(topic.channel.topic):  # there is one again
+                self._demand[number] = None
+                self._wake()
+            return
+        if self._is_alone(topic):
+            self._end(topic)
             return
         is_due = number % _FULL_CHECK_PERIOD == self._refreshes % _FULL_CHECK_PERIOD
         if not is_due and self._node.count_publishers(topic.channel.topic) == topic.publishers:
@@ -182,10 +190,17 @@ class Topics:
 
     def _end_if_unused(self, topic: _Topic) -> None:
         """End the subscription of a topic without clients: after `KEEP_S`, or at once if it alone keeps the topic."""
-        is_over = time.monotonic() >= topic.unwanted_s + KEEP_S or not self._node.count_publishers(topic.channel.topic)
-        if topic.subscription is not None and is_over:
-            self._unsubscribe(topic)
-            self._post(RetainLast(topic.channel.id, 0))
+        if topic.subscription is not None and (time.monotonic() >= topic.unwanted_s + KEEP_S or self._is_alone(topic)):
+            self._end(topic)
+
+    def _is_alone(self, topic: _Topic) -> bool:
+        """Whether the subscription of the bridge alone keeps a topic in the graph, such as one of a robot that has gone."""
+        name = topic.channel.topic
+        return self._node.count_publishers(name) == 0 and self._node.count_subscribers(name) <= 1
+
+    def _end(self, topic: _Topic) -> None:
+        self._unsubscribe(topic)
+        self._post(RetainLast(topic.channel.id, 0))
 
     def close(self) -> None:
         """End all subscriptions."""

@@ -46,8 +46,9 @@ SIMILAR = 0.8
 MAX_NAMES = 3
 """Largest number of names that a warning proposes."""
 
-_OURS = ("simulator", "aseba_runtime", "_aseba_runtime")
-"""Nodes of this package with many endpoints, all of which fit: they are skipped, since queries cost time."""
+_OURS = ("simulator", "aseba_runtime", "_aseba_runtime", "foxglove_bridge", "_foxglove_subscriber")
+"""Nodes of this package with many endpoints, whose names come from the graph or fit: they are skipped, since queries
+cost time."""
 _OF_EVERY_NODE = frozenset({
     "rosout", "parameter_events", "describe_parameters", "get_parameter_types", "get_parameters", "list_parameters",
     "set_parameters", "set_parameters_atomically", "get_type_description",
