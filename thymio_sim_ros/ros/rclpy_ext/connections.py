@@ -18,9 +18,8 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node, NodeNameNonExistentError
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 
-from thymio_sim_ros.lockstep.matching import fit
 from thymio_sim_ros.type_names import type_name
 
 __all__ = [
@@ -310,7 +309,8 @@ def wrong_qos(
     side: Side, topic: str, node: str, kind: str, found: QoSProfile, expected: QoSProfile
 ) -> Unconnected | None:
     """Describe an endpoint with the profile `found` that does not fit that of its peer, `expected`; None if it fits."""
-    if fit(found, expected) if side is PUBLISHER else fit(expected, found):
+    compatibility, _ = qos_check_compatible(*((found, expected) if side is PUBLISHER else (expected, found)))
+    if compatibility != QoSCompatibility.ERROR:  # a warning is about a default, such as that of liveliness
         return None
     policy, what, need = _misfit(found, expected)
     return Unconnected(
