@@ -13,6 +13,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros.pytest_plugin import GRADED, Graded
+from thymio_sim_ros.ros.compat.tf2_messages import TFMessage
 from thymio_sim_ros.ros.simulator.world_services import SERVICES
 from thymio_sim_ros.testing import no_contact
 
@@ -81,6 +82,26 @@ def test_the_test_has_the_topics_of_operators_and_the_truth(graded, ros, simulat
     ros.publisher(PoseWithCovarianceStamped, "initialpose").publish(message)
     ros.publisher(Bool, "_press/forward").publish(Bool(data=True))
     sim.until(lambda: pressed.latest.data and truth.latest.pose.pose.position.x == pytest.approx(-0.2), seconds=1)
+
+
+@pytest.mark.parametrize(("parameters", "shown_x_m"), [({}, 0.1), ({"publish_map_tf": True}, 0.4)])
+def test_transforms_have_the_pose_by_odometry_unless_the_test_wants_the_true_one(
+    graded, ros, simulation, parameters, shown_x_m
+) -> None:
+    sim = simulation(noise=False, **parameters)
+    sim.thymio.place(0.1, 0.0, 0.0)  # before the start
+    sim.step(0.2)
+    sim.thymio.place(0.4, 0.0, 0.0)
+    sim.step(0.2)
+    moving = ros.collect(TFMessage, "/tf")  # a late subscriber
+    sim.step(0.2)
+    places = {one.child_frame_id: one.transform.translation.x for one in moving.latest.transforms}
+    assert places["odom"] + places["base_link"] == pytest.approx(shown_x_m, abs=1e-3)
+    sim.reset()
+    sim.thymio.place(-0.2, 0.0, 0.0)
+    sim.step(0.2)
+    places = {one.child_frame_id: one.transform.translation.x for one in moving.latest.transforms}
+    assert places["odom"] + places["base_link"] == pytest.approx(-0.2, abs=1e-3)
 
 
 def test_a_world_that_is_reset_from_outside_keeps_the_record(ros, simulation) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 from rclpy.node import Node
 
@@ -40,16 +41,19 @@ class SimulatorEndpoints:
         control: Node | LocalNode,
         params: SimulatorParams,
         make: Callable[[str, RobotNames], RobotEndpoints],
+        *,
+        is_localized: bool = True,
     ) -> None:
         """`control` publishes what shows the world; `make` creates the endpoints of a robot from its name in the world
-        and its ROS names.
+        and its ROS names. `is_localized`: see `TransformOptions`.
         """
         self.clock = ClockPublisher(node, is_on=params.publish_clock, rate_hz=params.clock_rate)
         self.world = WorldEndpoints(node, control, publish_map=params.publish_map, map_frame=params.map_frame)
         self.demand = SubscriberDemand(params.periods_ns)
         self.robots = RobotEndpointSet(make, params.naming)
         self._raw = RawTopic(self.world.raw, self.demand)
-        self._transforms = Transforms(node, self.demand, params.transform_options)
+        options = replace(params.transform_options, is_localized=is_localized)
+        self._transforms = Transforms(node, self.demand, options)
         self._polled_ns = self._poll_period_ns = 0
 
     def poll_if_due(self, wall_ns: int) -> None:
@@ -69,6 +73,7 @@ class SimulatorEndpoints:
     def reset_robots(self, robots: Iterable[str]) -> None:
         """Serve the robots of a new or reset world; retained messages and static frames are published again."""
         self.robots.reset(robots)
+        self._transforms.restart()
         self._set_frames()
 
     def update_robots(self, robots: Iterable[str]) -> bool:

@@ -58,8 +58,16 @@ class Simulator:
     and callbacks of `node` use them. `local_commands` takes commands from other threads.
     """
 
-    def __init__(self, context: Context, defaults: SimulatorParams | None = None, *, is_closed: bool = False) -> None:
+    def __init__(
+        self,
+        context: Context,
+        defaults: SimulatorParams | None = None,
+        *,
+        is_closed: bool = False,
+        is_localized: bool = True,
+    ) -> None:
         """`is_closed`: only this process reaches services, parameters and topics of the world, by `control`.
+        `is_localized`: whether transforms have the true pose on the map, or that of the odometry.
 
         Raises StartError for a playground, a parameter or a log file that cannot be used.
         """
@@ -91,7 +99,7 @@ class Simulator:
             raise StartError(str(error)) from error
         self._last_heartbeat_ns = 0
         self._messages = MessageReports()
-        self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot)
+        self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot, is_localized=is_localized)
         self.local_commands = LocalCommands(self.node, self.endpoints.robots.receive)
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
         self._robot_options = replace(values.endpoint_options, extra=extra)

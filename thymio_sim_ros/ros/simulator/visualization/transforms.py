@@ -30,12 +30,16 @@ __all__ = ["POSE_SENSOR", "TransformOptions", "Transforms", "frames_of", "origin
 
 @dataclass(frozen=True, slots=True)
 class TransformOptions:
-    """Whether to publish `map → odom`, wheel frames and fixed frames, and whether in each robot's namespace."""
+    """Whether to publish `map → odom`, wheel frames and fixed frames, and whether in each robot's namespace.
+
+    `is_localized`: whether `map → odom` compensates the drift of the odometry; else it stays as at the start.
+    """
 
     publish_map: bool = True
     publish_wheels: bool = True
     publish_static: bool = True
     namespaced: bool = False
+    is_localized: bool = True
 
 
 POSE_SENSOR = "pose"
@@ -102,6 +106,14 @@ class Transforms:
         self._is_on = tf2_messages.available()
         self._moving = _TransformTopic(node, "tf", qos.TRANSFORMS, demand)
         self._static = _TransformTopic(node, "tf_static", qos.TRANSIENT_LOCAL)
+        self._origins: dict[RobotNames, Pose] = {}
+        """Origin of the odometry at the first reading, where it is published unchanged."""
+        if not self._options.is_localized:
+            demand.add(MOVING_FRAMES)  # else a late subscriber would determine when the first reading is
+
+    def restart(self) -> None:
+        """Begin again with a new or reset world."""
+        self._origins.clear()
 
     def set_robots(self, robots: Sequence[RobotNames]) -> None:
         """Publish the static frames of these robots, in one message per topic."""
@@ -122,9 +134,14 @@ class Transforms:
 
     def add_reading(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
         """Add the moving frames of a robot from a pose reading and its wheel angles; `flush` publishes them."""
+        if not isinstance(reading, PoseReading):
+            return
+        origin = origin_of(reading.truth, reading.odometry)
+        if not self._options.is_localized:
+            origin = self._origins.setdefault(names, origin)
         topic = self._topic(names, self._moving)
-        if isinstance(reading, PoseReading) and self._moving.has_subscribers(topic):
-            self._moving.add(topic, self._frames(names, reading, angles_rad))
+        if self._moving.has_subscribers(topic):
+            self._moving.add(topic, self._frames(names, reading, origin, angles_rad))
 
     def poll(self) -> None:
         """Find out which moving frames have subscribers."""
@@ -137,12 +154,14 @@ class Transforms:
     def _topic(self, names: RobotNames, channel: _TransformTopic) -> str:
         return names.topic(channel.word) if self._options.namespaced else f"/{channel.word}"
 
-    def _frames(self, names: RobotNames, reading: PoseReading, angles_rad: tuple[float, float]) -> list[Transform]:
+    def _frames(
+        self, names: RobotNames, reading: PoseReading, origin: Pose, angles_rad: tuple[float, float]
+    ) -> list[Transform]:
         ns = reading.stamp_ns
-        origin, odom, base, *wheels = _moving_frames(names)
+        world, odom, base, *wheels = _moving_frames(names)
         frames = [_planar(ns, odom, base, reading.odometry, reading.tilt, reading.height_m)]
         if self._options.publish_map:
-            frames.insert(0, _planar(ns, origin, odom, origin_of(reading.truth, reading.odometry)))
+            frames.insert(0, _planar(ns, world, odom, origin))
         if self._options.publish_wheels:
             for wheel, place, angle in zip(wheels, _WHEELS, angles_rad, strict=True):
                 frames.append(Transform(ns, base, wheel, place, wheel_rotation(angle)))
