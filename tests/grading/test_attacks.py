@@ -119,6 +119,8 @@ def answer():
         "import sys\ndef answer(): sys.modules['test_shown'].no_contact.__code__ = (lambda thymio: False).__code__",
         {},
     ),
+    "Replaces a function of Python": ("import builtins\ndef answer(): builtins.abs = lambda of: 0", {}),
+    "Adds a method": ("from thymio_sim_ros.testing import Thymio\ndef answer(): Thymio.__getattr__ = abs", {}),
     "Changes reports": (
         "from _pytest.reports import TestReport\ndef answer(): TestReport.passed = True; TestReport.outcome = 'passed'",
         {},
@@ -131,6 +133,8 @@ POINTS = {
     "Prints": "3",
     "Replaces a fixture": "0",
     "Replaces a test": "0",
+    "Replaces a function of Python": "0",
+    "Adds a method": "0",
     "Changes reports": "3",
 }
 """3 for the shown tests but the last, 1 for the hidden one; a process with replaced functions has none."""

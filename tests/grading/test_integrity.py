@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import builtins
+import json
+import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -57,6 +60,9 @@ def other(*_: object) -> int:
         (lambda module: setattr(module.Base, "method", other), "Base.method"),
         (lambda module: setattr(module.Base, "value", property(other)), "Base.value"),
         (lambda module: setattr(module.Base, "static", staticmethod(other)), "Base.static"),
+        (lambda module: setattr(module, "Base", type("Base", (), {})), "Base"),
+        (lambda module: setattr(module.Base, "__getattribute__", other), "Base.__getattribute__"),
+        (lambda module: setattr(module, "abs", other), "abs"),
     ],
 )
 def test_what_is_replaced_is_found(
@@ -73,6 +79,16 @@ def test_a_method_of_a_fixture_that_is_replaced_is_found(
     monkeypatch.setattr(Thymio, "until", other)
     (message,) = functions.replaced()
     assert "thymio_sim_ros.testing.thymio.Thymio.until" in message
+
+
+@pytest.mark.parametrize(("owner", "name"), [(builtins, "abs"), (builtins, "float"), (math, "hypot"), (json, "loads")])
+def test_a_function_of_python_that_is_replaced_is_found(
+    functions: TestFunctions, monkeypatch: pytest.MonkeyPatch, owner: ModuleType, name: str
+) -> None:
+    with monkeypatch.context() as patched:
+        patched.setattr(owner, name, other)
+        messages = functions.replaced()
+    assert messages == [f"the submission replaced {owner.__name__}.{name}, a function of the tests"]
 
 
 def test_a_world_that_runs_replaces_nothing(module: ModuleType, functions: TestFunctions) -> None:

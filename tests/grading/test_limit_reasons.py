@@ -12,6 +12,11 @@ from thymio_sim_ros.grading.limit_reasons import limit_in
     ("message", "outcome", "reason"),
     [
         ("OSError: [Errno 28] No space left on device", "disk limit", "it wrote more than the 2.5 MB of files"),
+        (
+            "E   FileNotFoundError: [Errno 2] No usable temporary directory found in [a]",
+            "disk limit",
+            "it wrote more than",
+        ),
         ("OSError: [Errno 27] File too large", "disk limit", "it wrote more than"),
         ("Failed: p.py ended with exit code 1: the disk is full", "disk limit", "it wrote more than"),
         ("p.py printed more than 10 MB", "output limit", "it printed more than 10 MB"),

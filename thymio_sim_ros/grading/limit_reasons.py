@@ -13,7 +13,7 @@ __all__ = ["limit_in"]
 _SIGNS: Mapping[str, tuple[str, str]] = {
     "output limit": (r"printed more than [\d.]+ MB", "it printed more than {output_mb:g} MB"),
     "disk limit": (
-        r"\[Errno (?:27|28|122)\]|the disk is full",
+        r"\[Errno (?:27|28|122)\]|the disk is full|No usable temporary directory",
         "it wrote more than the {disk_mb:g} MB of files that it may write",
     ),
     "memory limit": (
