@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable
-from typing import Any
 
 from builtin_interfaces.msg import Time as TimeMessage
 from geometry_msgs.msg import TransformStamped
@@ -20,18 +19,17 @@ from rclpy.time import Time
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.tf.buffer_core import CACHE_NS, BufferCore, RigidTransform, StampedTransform
-from thymio_sim_ros.tf.errors import TransformException, TypeException
-from thymio_sim_ros.tf.geometry import TRANSFORMERS
+from thymio_sim_ros.tf.buffer_interface import NO_WAIT, BufferInterface
+from thymio_sim_ros.tf.errors import TransformException
 
 __all__ = ["Buffer", "StaticTransformBroadcaster", "TransformBroadcaster", "TransformListener"]
 
-NOW = Duration()
 DYNAMIC = QoSProfile(depth=100)
 STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-class Buffer:
+class Buffer(BufferInterface):
     """Transforms of the last 10 s, or of `cache_time`; filled by a TransformListener or by `set_transform`.
 
     Thread-safe. `time` is a time of rclpy or a stamp; `Time()` means the latest time at which all transforms between
@@ -41,6 +39,7 @@ class Buffer:
 
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
         """`node` provides the clock for time-outs; wall time is used without it."""
+        super().__init__()
         self._core = BufferCore(CACHE_NS if cache_time is None else cache_time.nanoseconds)
         self._clock = Clock() if node is None else node.get_clock()
         self._changed = threading.Condition()
@@ -60,7 +59,7 @@ class Buffer:
             self._core.clear()
 
     def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Time | TimeMessage, timeout: Duration = NOW
+        self, target_frame: str, source_frame: str, time: Time | TimeMessage, timeout: Duration = NO_WAIT
     ) -> TransformStamped:
         """Return the pose of `source_frame` in `target_frame`; wait until it is known, at most for `timeout`.
 
@@ -75,7 +74,7 @@ class Buffer:
         source_frame: str,
         source_time: Time | TimeMessage,
         fixed_frame: str,
-        timeout: Duration = NOW,
+        timeout: Duration = NO_WAIT,
     ) -> TransformStamped:
         """Return the pose of `source_frame` at one time in `target_frame` at another time.
 
@@ -111,7 +110,7 @@ class Buffer:
         target_frame: str,
         source_frame: str,
         time: Time | TimeMessage,
-        timeout: Duration = NOW,
+        timeout: Duration = NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
         """Whether a transform is known, after waiting at most for `timeout`.
@@ -129,7 +128,7 @@ class Buffer:
         source_frame: str,
         source_time: Time | TimeMessage,
         fixed_frame: str,
-        timeout: Duration = NOW,
+        timeout: Duration = NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
         """Whether a transform between two times is known; see `can_transform` and `lookup_transform_full`."""
@@ -145,7 +144,67 @@ class Buffer:
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> tuple[bool, str]:
         """Whether a transform is known, and the reason if not, as tf2_py has it."""
-        return self._wait_and_reason(lambda: self._core.lookup(target_frame, source_frame, _ns(time)), NOW)
+        return self._wait_and_reason(lambda: self._core.lookup(target_frame, source_frame, _ns(time)), NO_WAIT)
+
+    def lookup_transform_full_core(
+        self,
+        target_frame: str,
+        target_time: Time | TimeMessage,
+        source_frame: str,
+        source_time: Time | TimeMessage,
+        fixed_frame: str,
+    ) -> TransformStamped:
+        """Return the pose of a frame at another time; the same as `lookup_transform_full`, as tf2_py has it."""
+        return self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame)
+
+    def can_transform_full_core(
+        self,
+        target_frame: str,
+        target_time: Time | TimeMessage,
+        source_frame: str,
+        source_time: Time | TimeMessage,
+        fixed_frame: str,
+    ) -> tuple[bool, str]:
+        """Whether a transform between two times is known, and the reason if not, as tf2_py has it."""
+        return self._wait_and_reason(
+            lambda: self._core.lookup_full(target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame),
+            NO_WAIT,
+        )
+
+    def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
+        """The latest time at which all transforms between two frames are known; 0 if all are static.
+
+        Raises LookupException, ConnectivityException or InvalidArgumentException.
+        """
+        with self._changed:
+            return Time(nanoseconds=self._core.latest_common_ns(target_frame, source_frame))
+
+    def lookupVelocityCore(  # noqa: N802  # as tf2's
+        self, tracking_frame: str, observation_frame: str, time: Time | TimeMessage, averaging_interval: Duration
+    ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """The linear and angular velocity of a frame in another one, in m/s and rad/s; see `lookupVelocityFullCore`."""
+        return self.lookupVelocityFullCore(
+            tracking_frame, observation_frame, observation_frame, (0, 0, 0), tracking_frame, time, averaging_interval
+        )
+
+    def lookupVelocityFullCore(  # noqa: N802  # as tf2's
+        self,
+        tracking_frame: str,
+        observation_frame: str,
+        reference_frame: str,
+        reference_point: tuple[float, float, float],
+        reference_point_frame: str,
+        time: Time | TimeMessage,
+        averaging_interval: Duration,
+    ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """The mean velocity of `tracking_frame` seen from `observation_frame`, with the axes of `reference_frame`.
+
+        Returns the linear velocity of the reference point in m/s and the angular velocity in rad/s, averaged over an
+        interval around `time`. Raises the exceptions of `lookup_transform`.
+        """
+        frames = (tracking_frame, observation_frame, reference_frame, reference_point, reference_point_frame)
+        with self._changed:
+            return self._core.velocity(*frames, _ns(time), averaging_interval.nanoseconds)
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> Future:
         """Return a future whose result is True as soon as the transform is known."""
@@ -163,34 +222,6 @@ class Buffer:
         return self._future(
             lambda: self._core.lookup_full(target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame)
         )
-
-    def transform(
-        self, object_stamped: Any, target_frame: str, timeout: Duration = NOW, new_type: type | None = None
-    ) -> Any:
-        """Transform a PointStamped, PoseStamped or Vector3Stamped to another frame at the time of its header.
-
-        Raises TypeException for another message, and the exceptions of `lookup_transform`.
-        """
-        header = object_stamped.header
-        act = _transformer(object_stamped, new_type)
-        return act(object_stamped, self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout))
-
-    def transform_full(
-        self,
-        object_stamped: Any,
-        target_frame: str,
-        target_time: Time | TimeMessage,
-        fixed_frame: str,
-        timeout: Duration = NOW,
-        new_type: type | None = None,
-    ) -> Any:
-        """Transform a message to another frame at another time; see `transform` and `lookup_transform_full`."""
-        header = object_stamped.header
-        act = _transformer(object_stamped, new_type)
-        found = self.lookup_transform_full(
-            target_frame, target_time, header.frame_id, header.stamp, fixed_frame, timeout
-        )
-        return act(object_stamped, found)
 
     def all_frames_as_string(self) -> str:
         """One line for each frame with a parent."""
@@ -410,12 +441,3 @@ def _is_known(lookup: Callable[[], StampedTransform]) -> bool:
     except TransformException:
         return False
     return True
-
-
-def _transformer(message: Any, new_type: type | None) -> Callable[[Any, TransformStamped], Any]:
-    kind = type(message)
-    if kind not in TRANSFORMERS or new_type not in (None, kind):
-        known = ", ".join(one.__name__ for one in TRANSFORMERS)
-        wanted = f" as {new_type.__name__}" if new_type not in (None, kind) and new_type is not None else ""
-        raise TypeException(f"found {kind.__name__}{wanted}, expected one of {known}")
-    return TRANSFORMERS[kind]

@@ -178,6 +178,50 @@ class BufferCore:
         first, second = self.lookup(fixed, source, source_ns), self.lookup(target, fixed, target_ns)
         return StampedTransform(second.stamp_ns, target, source, second.motion * first.motion)
 
+    def velocity(
+        self,
+        tracking: str,
+        observation: str,
+        reference: str,
+        point: Vector,
+        point_frame: str,
+        time_ns: int,
+        averaging_ns: int,
+    ) -> tuple[Vector, Vector]:
+        """The linear and angular velocity of `tracking` seen from `observation`, in m/s and rad/s, along `reference`.
+
+        It is the mean of the time `averaging_ns` around `time_ns`, or before the latest common time if that is earlier.
+        The linear velocity is that of the `point` of `point_frame`, as if it were fixed to `tracking`.
+        Raises the exceptions of `lookup`.
+        """
+        latest_ns = self.latest_common_ns(observation, tracking)
+        end_ns = latest_ns if time_ns == LATEST_NS else min(time_ns + averaging_ns // 2, latest_ns)
+        start_ns = max(end_ns - averaging_ns, LATEST_NS + 1)
+        if end_ns <= start_ns:
+            raise ExtrapolationException(
+                f"the velocity of [{tracking}] in [{observation}] needs transforms of two times, but the latest is at"
+                f" {_s(latest_ns)}"
+            )
+        duration_s = (end_ns - start_ns) / 1e9
+        start = self.lookup(observation, tracking, start_ns).motion
+        end = self.lookup(observation, tracking, end_ns).motion
+        linear = _scaled(_difference(end.translation, start.translation), 1.0 / duration_s)
+        angular = _scaled(_rotation_vector(RigidTransform(rotation=end.rotation) * start.inverse()), 1.0 / duration_s)
+        lever = _difference(self.lookup(observation, point_frame, end_ns).motion.apply(point), end.translation)
+        turning = _cross(angular, lever)
+        linear = (linear[0] + turning[0], linear[1] + turning[1], linear[2] + turning[2])
+        seen = self.lookup(reference, observation, end_ns).motion
+        return seen.rotate(linear), seen.rotate(angular)
+
+    def latest_common_ns(self, target: str, source: str) -> int:
+        """The latest time at which all transforms between two frames are known; 0 if all are static.
+
+        Raises InvalidArgumentException, LookupException or ConnectivityException.
+        """
+        for role, name in (("target_frame", target), ("source_frame", source)):
+            self._check_known(name, role)
+        return self._latest_ns(source) if target == source else self._latest_common_ns(target, source)
+
     def frames(self) -> tuple[str, ...]:
         """All frames, in order of appearance."""
         return tuple(self._frames)
@@ -322,6 +366,29 @@ def _check_name(name: str, what: str) -> None:
         raise InvalidArgumentException(f"an empty name {what}: frame ids in tf2 cannot be empty")
     if name.startswith("/"):
         raise InvalidArgumentException(f"\"{name}\" {what}: frame ids in tf2 cannot start with a '/'")
+
+
+def _difference(one: Vector, other: Vector) -> Vector:
+    return (one[0] - other[0], one[1] - other[1], one[2] - other[2])
+
+
+def _scaled(vector: Vector, factor: float) -> Vector:
+    return (vector[0] * factor, vector[1] * factor, vector[2] * factor)
+
+
+def _cross(one: Vector, other: Vector) -> Vector:
+    (x, y, z), (a, b, c) = one, other
+    return (y * c - z * b, z * a - x * c, x * b - y * a)
+
+
+def _rotation_vector(turned: RigidTransform) -> Vector:
+    """The axis of a rotation, times its angle of at most π rad."""
+    x, y, z, w = turned.rotation
+    sine = math.hypot(x, y, z)
+    if sine == 0.0:
+        return (0.0, 0.0, 0.0)
+    angle = 2.0 * math.atan2(sine, abs(w)) * math.copysign(1.0, w)
+    return _scaled((x, y, z), angle / sine)
 
 
 def quaternion_product(one: Quaternion, other: Quaternion) -> Quaternion:

@@ -9,6 +9,7 @@ __all__ = [
     "ExtrapolationException",
     "InvalidArgumentException",
     "LookupException",
+    "NotImplementedException",
     "TimeoutException",
     "TransformException",
     "TypeException",
@@ -41,3 +42,7 @@ class TimeoutException(TransformException):
 
 class TypeException(ThymioSimError):  # noqa: N818  # as tf2 has it
     """A message type cannot be transformed."""
+
+
+class NotImplementedException(ThymioSimError):  # noqa: N818  # as tf2 has it
+    """A class derived from BufferInterface lacks a method."""

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["AbsentType", "AbsentTypeError", "absent"]
+__all__ = ["AbsentType", "AbsentTypeError", "absent", "without_action"]
 
 
 class AbsentTypeError(ThymioSimError, RuntimeError):
@@ -43,11 +43,22 @@ def absent(module: str, name: str, *, twin: str = "") -> AbsentType:
     return made
 
 
+def without_action(name: str, action: str, instead: str) -> ImportError:
+    """The error for importing what needs an action type that is not installed."""
+    return ImportError(
+        f"{name} needs the action {action}, which is not installed, and no wheel has it: use {instead}, or use ROS 2"
+        f" from packages of the system, with {_debian(action)}"
+    )
+
+
 def _error(kind: AbsentType) -> AbsentTypeError:
-    package = kind.__module__.partition(".")[0]
     twin = kind.__dict__["__twin__"]
     instead = f"use {twin}, which has the same fields, or " if twin else ""
     return AbsentTypeError(
         f"{kind.__module__}.{kind.__name__} is not installed, and no wheel has it: {instead}use ROS 2 from packages of"
-        f" the system, with ros-<distribution>-{package.replace('_', '-')}"
+        f" the system, with {_debian(kind.__module__)}"
     )
+
+
+def _debian(name: str) -> str:
+    return f"ros-<distribution>-{name.partition('.')[0].replace('_', '-')}"

@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from geometry_msgs.msg import TransformStamped
+from rclpy.time import Time
 from rosidl_parser.definition import NamespacedType, UnboundedSequence
 
 from thymio_sim_ros import course_packages
@@ -140,9 +141,9 @@ else:
 
 
 def from_message(message: TransformStamped) -> Transform:
-    """The values of a message."""
+    """The values of a message. Its stamp may be a time of rclpy, which tf2 reads, too."""
     stamp, t, q = message.header.stamp, message.transform.translation, message.transform.rotation
-    stamp_ns = stamp.sec * _SECOND_NS + stamp.nanosec
+    stamp_ns = stamp.nanoseconds if isinstance(stamp, Time) else stamp.sec * _SECOND_NS + stamp.nanosec
     return Transform(stamp_ns, message.header.frame_id, message.child_frame_id, (t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
 
 
