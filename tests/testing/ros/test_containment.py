@@ -192,6 +192,50 @@ def test_a_service_and_a_coroutine_are_contained_too(ros, short):
         ros.until(lambda: False)
 
 
+class Goals(Node):
+    """Accepts goals as an action server does: rclpy's server gives each accepted goal to the executor as a task."""
+
+    def __init__(self):
+        super().__init__("goals")
+        self.rate = self.create_rate(20)
+        self.create_subscription(String, "goal", self.accept, 10)
+
+    def accept(self, _message):
+        self.executor.create_task(self.execute, 90)
+
+    async def execute(self, _degrees):
+        self.rate.sleep()
+
+
+class PlainGoals(Goals):
+    def execute(self, _degrees):
+        self.rate.sleep()
+
+
+class GoalsThatWait(Goals):
+    async def execute(self, _degrees):
+        threading.Event().wait()
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        (Goals, r"Rate\.sleep\(\) in a constructor or callback waits for ever"),
+        (PlainGoals, r"Rate\.sleep\(\) in a constructor or callback waits for ever"),
+        (GoalsThatWait, "the callback of node goals for a task waits and does not return"),
+    ],
+)
+def test_the_goal_of_an_action_is_contained_too(ros, short, kind, said):
+    """The wheels have no action type, so the test makes the task itself that `ActionServer` makes of a goal."""
+    ros.start(kind)
+    ros.publisher(String, "goal").publish(String())
+    with pytest.raises(
+        StudentError, match=rf"{said}[^\n]*\n  it is at .*test_containment\.py.* in execute: "
+    ) as failed:
+        ros.until(lambda: False)
+    assert "ros.run" in str(failed.value)
+
+
 def test_ctrl_c_still_ends_the_tests():
     containment = Containment()
     try:
