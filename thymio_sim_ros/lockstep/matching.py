@@ -94,6 +94,9 @@ def is_matched(node: Node, subscription: Any) -> bool:
 
 
 def fit(published: QoSProfile, wanted: QoSProfile) -> bool:
-    """Whether a publisher and a subscription with these profiles match."""
+    """Whether a publisher and a subscription with these profiles match.
+
+    A value that is left to the middleware, such as the liveliness of a plain QoSProfile, is a warning of rclpy.
+    """
     compatibility, _ = qos_check_compatible(published, wanted)
-    return bool(compatibility == QoSCompatibility.OK)
+    return bool(compatibility != QoSCompatibility.ERROR)
