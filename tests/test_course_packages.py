@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import importlib
 import os
 import re
@@ -114,6 +115,76 @@ def test_a_file_of_the_same_name_beside_the_node_is_not_imported_by_this_package
         "import tf_transformations\nimport thymio_sim_ros.tf as tf\nprint(tf.quaternion_from_euler.__module__)\n"
     )
     assert _prints(tmp_path, statement) == "thymio_sim_ros.tf.transformations"
+
+
+HALF = """\
+import math
+from thymio_sim_ros.tf import Buffer, TransformListener, quaternion_from_euler
+
+
+def euler_from_quaternion(q):
+    return 0.0, 0.0, 4.0
+"""
+
+OWN_NODE = NODE.replace(
+    "from tf_transformations import euler_from_quaternion, quaternion_from_euler",
+    "from tf_transformations import euler_from_quaternion",
+)
+
+OWN_TEST = """\
+import pytest
+from std_msgs.msg import Float64
+
+
+def test_turned(ros, simulation):
+    sim = simulation()
+    ros.start("node.py")
+    turned = ros.collect(Float64, "turned")
+    sim.until(lambda: turned.latest.data == pytest.approx(14.0), 5.0)
+"""
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("way", ["start", "run"])
+def test_a_node_uses_an_own_half_of_tf_transformations_in_a_test(ros, simulation, tmp_path, way):
+    """Its file imports from this package while it is itself half loaded, and lacks most names of the original."""
+    from std_msgs.msg import Float64
+
+    (tmp_path / "tf_transformations.py").write_text(HALF)
+    (tmp_path / "node.py").write_text(OWN_NODE)
+    sim = simulation()
+    getattr(ros, way)(tmp_path / "node.py")
+    turned = ros.collect(Float64, "turned")
+    sim.until(lambda: turned.latest.data == pytest.approx(14.0), 5.0)
+    loaded = sys.modules.get("tf_transformations")
+    assert loaded is None or loaded.__file__ != str(tmp_path / "tf_transformations.py")
+
+
+@pytest.mark.process
+def test_a_submission_with_an_own_half_of_tf_transformations_is_graded(tmp_path):
+    assignment, submission = tmp_path / "assignment", tmp_path / "submissions" / "ada"
+    for folder, name, text in (
+        (assignment, "test_turned.py", OWN_TEST),
+        (submission, "tf_transformations.py", HALF),
+        (submission, "node.py", OWN_NODE),
+    ):
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    command = [sys.executable, "-m", "thymio_sim_ros", "grade", submission.parent, "--assignment"]
+    out = tmp_path / "out"
+    done = subprocess.run([*command, assignment / "test_turned.py", "-o", out], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    with (out / "marks.csv").open(newline="") as file:
+        assert [(row["name"], row["points"], row["verdict"]) for row in csv.DictReader(file)] == [
+            ("ada", "1", "passed")
+        ]
+
+
+@pytest.mark.process
+def test_a_program_in_a_prepared_terminal_uses_its_own_half_of_tf_transformations(tmp_path):
+    (tmp_path / "tf_transformations.py").write_text(HALF)
+    statement = OWN_NODE.partition("class")[0] + "print(euler_from_quaternion([0.0, 0.0, 0.0, 1.0])[2])\n"
+    assert _prints(tmp_path, statement) == "4.0"
 
 
 @pytest.mark.process
