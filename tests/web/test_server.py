@@ -112,6 +112,17 @@ def test_only_get_and_head_are_answered(serve, method):
     assert response.headers["Connection"] == "close"
 
 
+def test_a_client_that_sends_a_large_body_gets_the_answer_and_the_end_of_its_connection(serve):
+    port = serve()
+    with contextlib.closing(http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)) as connection:
+        connection.request("POST", "/", bytes(20 << 20))
+        response = connection.getresponse()
+        assert response.status == 405
+        response.read()
+        assert response.will_close
+    assert ask(port)[0].status == 200
+
+
 def test_a_connection_serves_many_requests(serve):
     connection = http.client.HTTPConnection("127.0.0.1", serve(), timeout=PATIENCE_S)
     for path in ("/", "/nothing", "/assets/index-DGs6OHeF.js", "/"):

@@ -42,6 +42,10 @@ COMMON_HEADERS = {
 }
 """Headers of every response."""
 _CLOSE_S = 0.3
+_LINGER_S = 5.0
+"""Longest time in which the rest of a body that is refused is received and dropped. A connection that is closed before
+it has been read is reset by the kernel, and many clients then show that instead of the answer. The time limits of
+`connections` apply as well."""
 _SWEEP_S = 0.5
 _RETRY_S = 0.02
 _ITERATIONS = 6
@@ -195,7 +199,7 @@ class _Acceptor:
             keepalive_timeout=_NEVER_S,  # `connections` closes idle connections
             access_log=None,
             logger=self._log,
-            lingering_time=0,
+            lingering_time=_LINGER_S,
         )
 
 

@@ -235,6 +235,14 @@ def test_large_bodies_and_heads_are_refused(server):
     assert ask(server, "GET", "/nodes").status == 200
 
 
+@pytest.mark.parametrize("size", [5 << 20, 20 << 20])
+def test_a_client_that_sends_a_body_far_too_large_gets_the_reason(server, size):
+    answer = ask(server, "PUT", N, b" " * size)
+    assert answer.status == 413
+    assert f"expected at most {limits.MAX_BODY}" in answer.body.decode()
+    assert ask(server, "GET", "/nodes").status == 200
+
+
 def test_robots_come_and_go(serve):
     server = serve("anna", "bert")
     source = EventSource(server, "/nodes/bert/events")
