@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import time
 from collections.abc import Sequence
 from http import HTTPStatus
 
@@ -19,6 +18,7 @@ from thymio_sim_ros.bridge.origin_policy import is_allowed
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.protocol.messages import Status
 from thymio_sim_ros.bridge.protocol.wire import encode_server
+from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.bridge.transport import SharedConnection
 
 __all__ = ["WRONG_TOKEN", "HandshakeCheck", "select_subprotocol"]
@@ -30,7 +30,6 @@ _NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's t
 _WRONG_TOKEN_TEXT = (
     "the token is wrong or from an earlier start: open the address that the simulator's terminal shows now"
 )
-_WARNING_PERIOD_S = 60.0
 
 
 class HandshakeCheck:
@@ -39,10 +38,8 @@ class HandshakeCheck:
     def __init__(self, tokens: Tokens, allowed_origins: Sequence[str], log: logging.Logger) -> None:
         self._tokens = tokens
         self._allowed_origins = allowed_origins
-        self._log = log
         self._check = TokenCheck(tokens, allowed_origins)
-        self._warned_s: dict[str, float] = {}
-        """Time of the last warning, by topic."""
+        self._warn = ReportLimiter(lambda text: log.warning("%s", text))
 
     async def check(self, connection: ServerConnection, request: Request) -> Response | None:
         """Return the response that rejects a handshake without a valid token or from a foreign page, otherwise None.
@@ -78,13 +75,6 @@ class HandshakeCheck:
         with contextlib.suppress(ConnectionClosed):
             await connection.send(encode_server(Status(StatusLevel.ERROR, text, "access")))
             await connection.close(WRONG_TOKEN, "wrong or missing token")
-
-    def _warn(self, topic: str, text: str) -> None:
-        """Log a warning, at most once in `_WARNING_PERIOD_S` per topic: any client can cause it."""
-        now_s = time.monotonic()
-        if now_s - self._warned_s.get(topic, -_WARNING_PERIOD_S) >= _WARNING_PERIOD_S:
-            self._warned_s[topic] = now_s
-            self._log.warning("%s", text)
 
 
 def select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol:

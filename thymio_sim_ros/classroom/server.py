@@ -12,6 +12,7 @@ from socket import socket
 from aiohttp import web
 
 from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError, given_token
+from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.requests import MAX_BODY, RefusalError, answer
 from thymio_sim_ros.web.content import Content
@@ -69,10 +70,7 @@ async def serve_class(
 ) -> None:
     """Serve the teacher's page on listening sockets until this task is cancelled; `folder` has the built page."""
     log = logging.getLogger(__name__)
-
-    def report(_kind: str, text: str) -> None:
-        log.warning("teacher's page: %s", text)
-
+    report = ReportLimiter(lambda text: log.warning("teacher's page: %s", text))
     settings = Settings(_port(listeners), is_loopback=is_loopback, max_connections=max_connections())
     with ThreadPoolExecutor(2, "page") as pool:
         page = Page(Content(folder, b"{}", index=_INDEX), settings, report, pool)

@@ -7,12 +7,12 @@ import contextlib
 import importlib.util
 import socket
 import threading
-import time
 import traceback
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.network.announcement import ASEBA, DEVICE_MANAGER, Announcement, Announcer, aseba_properties
 from thymio_sim_ros.network.aseba_server import AsebaServer
 from thymio_sim_ros.network.hub import Hub, Network
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["NetworkThread", "Server"]
 
-_REPORT_PERIOD_S = 60.0
 _CLOSE_TIMEOUT_S = 3.0
 """Longest time that `close` waits; the thread is a daemon."""
 
@@ -56,7 +55,7 @@ class NetworkThread:
         self.hub = Hub()
         self._settings, self._warn, self._info = settings, warn, info
         self._tokens = tokens or Tokens()
-        self._reported_s: dict[str, float] = {}
+        self._report = ReportLimiter(warn)
         self._loop = asyncio.new_event_loop()
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="network-servers", daemon=True)
@@ -99,12 +98,7 @@ class NetworkThread:
 
     def report(self, about: str, text: str) -> None:
         """Log a warning, at most once a minute for each subject; only in this thread."""
-        now_s = time.monotonic()
-        if now_s - self._reported_s.get(about, -_REPORT_PERIOD_S) >= _REPORT_PERIOD_S:
-            if len(self._reported_s) > 1000:  # subjects contain addresses of clients
-                self._reported_s.clear()
-            self._reported_s[about] = now_s
-            self._warn(text)
+        self._report(about, text)
 
     def _run(self) -> None:
         try:

@@ -5,17 +5,16 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import threading
-import time
 import traceback
 from collections.abc import Callable
 
+from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.web.content import Content
 from thymio_sim_ros.web.settings import Settings
 
 __all__ = ["PageThread", "Settings"]
 
-_REPORT_PERIOD_S = 60.0
 _CLOSE_TIMEOUT_S = 3.0
 """Longest time that `close` waits; the thread is a daemon."""
 
@@ -33,7 +32,7 @@ class PageThread:
         self._content = content
         self._settings = settings
         self._warn = warn
-        self._reported_s: dict[str, float] = {}
+        self._report = ReportLimiter(lambda text: warn(f"page: {text} (not repeated for a minute)"))
         self._listeners = listen(address, port)
         self.port = int(self._listeners[0].getsockname()[1])
         self._loop = asyncio.new_event_loop()
@@ -66,9 +65,3 @@ class PageThread:
                 listener.close()
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())
             self._loop.close()
-
-    def _report(self, kind: str, text: str) -> None:
-        now_s = time.monotonic()
-        if now_s - self._reported_s.get(kind, -_REPORT_PERIOD_S) >= _REPORT_PERIOD_S:
-            self._reported_s[kind] = now_s
-            self._warn(f"page: {text} (not repeated for a minute)")

@@ -1,0 +1,97 @@
+"""The server of the teacher's page: who gets no answer, and what the log says then."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from tests.bridge.peers import run
+from tests.classroom.test_requests import OPTIONS
+from tests.patience import PATIENCE_S
+from thymio_sim_ros.bridge import access
+from thymio_sim_ros.bridge.connections import MIN_WAIT_S, Phase
+from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.classroom import server
+from thymio_sim_ros.classroom.classroom import Classroom
+from thymio_sim_ros.classroom.folder import ClassFolder
+from thymio_sim_ros.classroom.requests import MAX_BODY
+
+pytestmark = pytest.mark.process
+
+TOKEN = "lesson-2026"
+"""Of the teacher; chosen, so that it may be guessed."""
+
+
+@contextlib.asynccontextmanager
+async def served(path: Path) -> AsyncIterator[int]:
+    """The port of the page of a class whose suites are not started."""
+    folder = ClassFolder(path)
+    classroom = Classroom(folder.places(["Ada"]), OPTIONS, folder)
+    listeners = listen("127.0.0.1", 0)
+    serving = asyncio.create_task(server.serve_class(listeners, classroom, None, TOKEN, is_loopback=True))
+    try:
+        yield int(listeners[0].getsockname()[1])
+    finally:
+        serving.cancel()
+        await asyncio.gather(serving, return_exceptions=True)
+        for listener in listeners:
+            listener.close()
+
+
+async def ask(port: int, name: str, token: str, body: bytes = b"") -> tuple[int, str]:
+    """Status and text of the answer to a request."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    with contextlib.closing(writer):
+        head = f"Host: localhost\r\nAuthorization: Bearer {token}\r\nContent-Length: {len(body)}\r\nConnection: close"
+        writer.write(f"POST /{name} HTTP/1.1\r\n{head}\r\n\r\n".encode() + body)
+        async with asyncio.timeout(PATIENCE_S):
+            status, _, text = (await reader.read()).decode().partition("\r\n\r\n")
+    return int(status.split()[1]), text
+
+
+def test_who_tries_many_tokens_is_told_to_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(access, "_PER_S", 1e-9)  # the time that passes gives no attempts back
+    monkeypatch.setattr(access, "_MAX_WAIT_S", 0.0)
+
+    async def answers() -> list[tuple[int, str]]:
+        async with served(tmp_path) as port:
+            found = [await ask(port, "class/message", f"wrong{number}") for number in range(access._BURST + 1)]
+            assert (await ask(port, "", ""))[0] == 405  # the page itself needs no token
+            return found
+
+    *refused, (status, text) = run(answers())
+    assert {status for status, _ in refused} == {401}
+    assert (status, text) == (429, "too many wrong tokens from this address; try again in a minute\n")
+
+
+def test_a_body_that_is_too_large_is_answered(tmp_path: Path) -> None:
+    async def answer() -> tuple[int, str]:
+        async with served(tmp_path) as port:
+            return await ask(port, "class/message", TOKEN, b" " * (20 << 20))
+
+    assert run(answer()) == (413, f"expected a body of at most {MAX_BODY} bytes\n")
+
+
+def test_connections_beyond_the_limit_are_logged_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(server, "max_connections", lambda: 3)
+    monkeypatch.setitem(MIN_WAIT_S, Phase.SILENT, 0.0)
+
+    async def crowd() -> None:
+        async with served(tmp_path) as port, contextlib.AsyncExitStack() as stack:
+            for _ in range(30):
+                _, writer = await asyncio.open_connection("127.0.0.1", port)
+                stack.callback(writer.close)
+            assert (await ask(port, "class/message", TOKEN, b'{"text": ""}'))[0] == 200
+
+    with caplog.at_level(logging.WARNING):
+        run(crowd())
+    assert [record.getMessage() for record in caplog.records] == [
+        "teacher's page: the maximum number of connections is reached; more have to wait"
+    ]
