@@ -83,7 +83,7 @@ def test_connections_beyond_the_limit_are_logged_once(
     monkeypatch.setattr(server, "max_connections", lambda: 3)
     monkeypatch.setitem(MIN_WAIT_S, Phase.SILENT, 0.0)
 
-    async def crowd() -> None:
+    async def many() -> None:
         async with served(tmp_path) as port, contextlib.AsyncExitStack() as stack:
             for _ in range(30):
                 _, writer = await asyncio.open_connection("127.0.0.1", port)
@@ -91,7 +91,7 @@ def test_connections_beyond_the_limit_are_logged_once(
             assert (await ask(port, "class/message", TOKEN, b'{"text": ""}'))[0] == 200
 
     with caplog.at_level(logging.WARNING):
-        run(crowd())
+        run(many())
     assert [record.getMessage() for record in caplog.records] == [
         "teacher's page: the maximum number of connections is reached; more have to wait"
     ]

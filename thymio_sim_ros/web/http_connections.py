@@ -18,7 +18,7 @@ from socket import SO_SNDBUF, SOL_SOCKET, socket
 from types import MappingProxyType
 from typing import Any, cast
 
-from aiohttp import web
+from aiohttp import StreamReader, web
 
 from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
 
@@ -67,6 +67,8 @@ class _Connection(web.RequestHandler):
         self._ahead = 0
         self._busy = Phase.ANSWERING
         self._stream: asyncio.Task[Any] | None = None
+        self._body: StreamReader | None = None
+        """That of the request that is answered; what has not been read of it is dropped after the answer."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Connect the slot with the transport."""
@@ -83,6 +85,8 @@ class _Connection(web.RequestHandler):
         self._connections.remove(self._slot)
         if self._stream is not None:
             self._stream.cancel()
+        if self._body is not None and not self._body.is_eof():
+            self._body.feed_eof()  # aiohttp would wait for the rest until the end of `_LINGER_S`
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
@@ -121,10 +125,11 @@ class _Connection(web.RequestHandler):
         self._busy, self._stream = Phase.STREAMING, asyncio.current_task()
         self._connections.set_phase(self._slot, Phase.STREAMING)
 
-    async def finish_response(self, *arguments: Any, **options: Any) -> Any:
+    async def finish_response(self, request: web.BaseRequest, *arguments: Any, **options: Any) -> Any:
         """Send an answer; afterwards the client may send another request."""
+        self._body = request.content
         try:
-            return await super().finish_response(*arguments, **options)
+            return await super().finish_response(request, *arguments, **options)
         finally:
             self._ahead = 0
             self._busy, self._stream = Phase.ANSWERING, None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import http.client
 import json
@@ -243,6 +244,19 @@ def test_a_client_that_sends_a_body_far_too_large_gets_the_reason(server, size):
     assert answer.status == 413
     assert f"expected at most {limits.MAX_BODY}" in answer.body.decode()
     assert ask(server, "GET", "/nodes").status == 200
+
+
+def test_a_client_that_leaves_before_the_end_of_its_body_leaves_nothing_behind(server, monkeypatch):
+    monkeypatch.setattr(http_connections, "_LINGER_S", 2 * PATIENCE_S)
+    with socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE_S) as connection:
+        head = f"PUT {N} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {limits.MAX_BODY + 1}\r\n\r\n"
+        connection.sendall(head.encode())
+        assert b" 413 " in connection.recv(1 << 16)
+    until(lambda: "RequestHandler.start" not in server.call(running))
+
+
+def running():
+    return {task.get_coro().__qualname__ for task in asyncio.all_tasks()}
 
 
 def test_robots_come_and_go(serve):
