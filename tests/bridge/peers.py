@@ -9,12 +9,13 @@ import socket
 from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, PROGRAM_S
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
@@ -123,6 +124,7 @@ class Bridge:
             origin=None if origin is None else Origin(origin),
             additional_headers=headers,
             max_size=None,
+            ping_interval=None,
         ) as connection:
             yield Client(connection)
 
@@ -140,10 +142,10 @@ class Bridge:
 
 @asynccontextmanager
 async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge]:
-    """A server that ends with the block."""
+    """A server that ends with the block. Neither it nor its clients ping: the time of a pong depends on the machine."""
     sink = Sink()
     board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr", "json")))
-    server = BridgeServer(board, sink, settings)
+    server = BridgeServer(board, sink, replace(settings or ServerSettings(), ping_interval_s=PROGRAM_S))
     sink.answer = server.execute
     (listener,) = listen("127.0.0.1", 0)
     await server.start([listener])
