@@ -46,9 +46,11 @@ class Classroom:
         tasks.append(asyncio.create_task(self._follow_watching()))
         try:
             await asyncio.gather(*tasks)
-        finally:
+        except Exception:  # a canceled `gather` has canceled them: a second time would interrupt the end of the suites
             for task in tasks:
                 task.cancel()
+            raise
+        finally:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     def state(self) -> Mapping[str, Any]:

@@ -116,6 +116,7 @@ class Seat:
                         serving = asyncio.create_task(self._serve())
                         await self._until_ready(serving)
                     reason = await self._until_end(serving)
+                    self._process = None  # not if this task is cancelled: then it still has to be ended
                 except OSError as error:  # its files cannot be read or written, or there is no process for it
                     reason = f"{error.filename or self.place.name}: {error.strerror}"
                 if self._asked.is_set():
@@ -245,7 +246,6 @@ class Seat:
         finally:
             for task in (ended, asked, serving):
                 task.cancel()
-            self._process = None
 
     def _on_parameter(self, name: str, value: str) -> None:
         work = self._work
