@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { ClassApi, TokenError } from "../../web_ui/classroom/api.js";
 import { bodyColor, fit } from "../../web_ui/classroom/plan.js";
 import { needsHelp, pupilState, slowPercent } from "../../web_ui/classroom/pupil_state.js";
 
@@ -47,4 +48,11 @@ test("a plan fills the picture and stays in its middle", () => {
 test("the body of a robot has the color of its light, white without one", () => {
   assert.equal(bodyColor([0, 0, 0]), "#ffffff");
   assert.equal(bodyColor([32, 0, 0]), "rgb(255 0 0)");
+});
+
+test("a wrong token and too many wrong ones (429) are token errors, another failure is not", async (t) => {
+  for (const [status, isToken] of /** @type {[number, boolean][]} */ ([[401, true], [429, true], [500, false]])) {
+    t.mock.method(globalThis, "fetch", async () => new Response("reason", { status }));
+    await assert.rejects(new ClassApi("wrong").state(), (error) => (error instanceof TokenError) === isToken);
+  }
 });
