@@ -194,7 +194,7 @@ class Topics:
             self._end(topic)
 
     def _is_alone(self, topic: _Topic) -> bool:
-        """Whether the subscription of the bridge alone keeps a topic in the graph, such as one of a robot that has gone."""
+        """Whether the subscription of the bridge alone keeps a topic in the graph, as after the end of a robot."""
         name = topic.channel.topic
         return self._node.count_publishers(name) == 0 and self._node.count_subscribers(name) <= 1
 
