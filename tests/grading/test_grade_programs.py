@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+from tests.grading.test_attacks import playground
 from tests.grading.test_grade import level
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.grading.sandbox.levels import LEVELS, why_unavailable
@@ -22,12 +23,13 @@ pytestmark = pytest.mark.process
 ASSIGNMENT = """
 tests = ["test_driver.py"]
 files = ["driver.py"]
+data = ["own.json"]
 """
 TEST = """
 import pytest
 
 @pytest.mark.points(2)
-@pytest.mark.thymio(playground="base")
+@pytest.mark.thymio(playground="own.json")
 def test_it_drives(ros, simulation):
     sim = simulation()
     program = ros.run("driver.py")
@@ -68,6 +70,7 @@ def grade(folder: Path, submissions: dict[str, str], level: str) -> Path:
     """Grade these programs; return the folder of the reports."""
     (folder / "assignment.toml").write_text(ASSIGNMENT)
     (folder / "test_driver.py").write_text(TEST)
+    (folder / "own.json").write_text(playground("Own"))
     for name, text in submissions.items():
         (folder / "class" / name).mkdir(parents=True)
         (folder / "class" / name / "driver.py").write_text(text)

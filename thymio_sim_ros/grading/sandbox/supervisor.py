@@ -185,7 +185,8 @@ class _Supervisor:
     def _write_assignment(self) -> None:
         """Write the data of the assignment where no submission can change them, if the level gives such a place."""
         folder = self._place.folder / "assignment"
-        if self._place.has_own_disk and folder.exists():
+        has_landlock = self._place.confinement.writable is not None
+        if (self._place.has_own_disk or has_landlock) and folder.exists():  # a rule of Landlock holds for this folder
             return
         _remove(folder)
         folder.mkdir()
@@ -294,7 +295,9 @@ def _empty(folder: Path, keep: Collection[tuple[str, ...]] = ()) -> None:
 
 def _remove(folder: Path) -> None:
     """Remove a folder with all that a submission has left in it, also folders that it has closed."""
-    if folder.is_dir():
+    if folder.is_symlink():  # a submission has put it there
+        folder.unlink()
+    elif folder.is_dir():
         for parent, folders, _ in os.walk(folder):
             for name in folders:
                 path = os.path.join(parent, name)
