@@ -100,6 +100,20 @@ def test_a_robot_is_moved_in_the_frame_of_the_viewer(ros, simulation, frame, pla
     sim.until(lambda: found() == pytest.approx(expected, abs=0.005), seconds=0.5)
 
 
+def test_a_place_without_ground_is_refused(ros, simulation):
+    sim = simulation(playground="base")
+    log = ros.collect(Log, "/rosout", where=lambda line: "initialpose" in line.msg)
+    message = PoseWithCovarianceStamped(header=Header(frame_id="map"))
+    message.pose.pose = Pose(position=Point(x=9.0, y=9.0))
+    ros.publisher(PoseWithCovarianceStamped, "/initialpose").publish(message)
+    ros.until(lambda: log)
+    assert "/initialpose rejected: 'thymio' cannot be placed at 9.000, 9.000 m: there is no ground; the nearest is" in (
+        log[0].msg
+    )
+    sim.step(0.1)
+    assert math.hypot(sim.thymio.pose.x_m, sim.thymio.pose.y_m) < 2.0
+
+
 def test_a_frame_that_is_not_the_robot_s_is_refused(ros, simulation):
     sim = simulation()
     log = ros.collect(Log, "/rosout", where=lambda line: "initialpose" in line.msg)

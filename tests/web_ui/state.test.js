@@ -148,7 +148,7 @@ test("a ROS node that is not connected is reported once, and no longer than it i
   const first = after([report("a", "b")]);
   assert.deepEqual(first.notices.map(({ level, technical }) => [level, technical]), [["warning", "a"], ["warning", "b"]]);
   const [{ id }] = first.notices;
-  const dismissed = [{ type: "dismiss", id }, report("a", "b")].reduce(reduce, first);
+  const dismissed = reduce(reduce(first, { type: "dismiss", id }), report("a", "b"));
   assert.deepEqual(dismissed.notices.map(({ technical }) => technical), ["b"]);
   assert.deepEqual(reduce(dismissed, report("a")).notices, []);
 });

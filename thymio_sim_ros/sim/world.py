@@ -14,7 +14,7 @@ from typing import NamedTuple
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.batch.robot_batch import RobotBatch
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, Lift, MoveObject, MoveRobot, SetMotorModel, SetPen
-from thymio_sim_ros.sim.ground.floor_support import FloorSupport
+from thymio_sim_ros.sim.ground.floor_support import FloorSupport, nearest_floor
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.input_recorder import Input, InputRecorder, Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
@@ -40,6 +40,8 @@ __all__ = ["TICK_NS", "StepResult", "World"]
 
 _TICK_S = TICK_NS * 1e-9
 _NO_CLEARANCE = (0.0, 0.0, 0.0)
+_ON_EDGE_M = 1e-9
+"""Positions so little outside of a ground are on its edge."""
 
 
 class StepResult(NamedTuple):
@@ -176,6 +178,18 @@ class World:
             self._record(Posted(name, command))
         self._posted.append((name, command))
 
+    def check_ground(self, name: str, x_m: float, y_m: float) -> None:
+        """Raise PlacementError for a position outside of every ground; without a ground no position is.
+
+        `post` and `spawn` do not check it: what is placed there falls. This is for people, who mistake coordinates.
+        """
+        is_finite = math.isfinite(x_m) and math.isfinite(y_m)  # `post` reports what is not
+        if is_finite and self._floor_support.clearance_m(x_m, y_m) < -_ON_EDGE_M:
+            floor, (x, y) = nearest_floor(self.playground.floors, (x_m, y_m))
+            raise PlacementError(
+                name, Pose(x_m, y_m, 0.0), f"there is no ground; the nearest is '{floor.name}' at {x:.3f}, {y:.3f} m"
+            )
+
     def spawn(self, start: RobotStart) -> None:
         """Add a robot at once.
 
@@ -277,7 +291,7 @@ class World:
         here = (there.name for there in standing if there.name != wanted.name and there.overlaps(wanted))
         blocker = self._fixed.blocker(wanted) or next(here, None)
         if blocker is not None:
-            raise PlacementError(wanted.name, Pose(*wanted.middle, 0.0), blocker)
+            raise PlacementError(wanted.name, Pose(*wanted.middle, 0.0), f"occupied by '{blocker}'")
 
     def _moving_to(self) -> dict[str, Pose]:
         """Return where pending commands place robots and objects, by name."""

@@ -13,6 +13,7 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from std_msgs.msg import Header, String
 from std_srvs.srv import Trigger
 
+from thymio_sim_ros.sim.commands import MoveRobot
 from thymio_sim_ros.sim.playground import reader as playgrounds
 
 GRAY = "#808080"
@@ -73,7 +74,7 @@ def test_the_state_lists_robots_that_fell(ros, simulation):
     sim = simulation(playground=ROOM)
     states = ros.collect(String, "/simulator/_state")
     ros.until(lambda: states and json.loads(states[-1].data)["robots"][0]["fallen"] is False)
-    assert ask(ros, "set_poses", thymio=numbers(50.0, 50.0)) == {"thymio": ""}
+    sim.world.post("thymio", MoveRobot(50.0, 50.0, 0.0))
     sim.until(lambda: json.loads(states[-1].data)["robots"][0]["fallen"] is True)
     assert ask(ros, "set_poses", thymio=numbers(0.0, 0.0)) == {"thymio": ""}
     sim.until(lambda: json.loads(states[-1].data)["robots"][0]["fallen"] is False)
@@ -125,6 +126,21 @@ def test_robots_and_objects_are_moved(ros, simulation):
     thymio, crate, post = poses(ros, "thymio", "crate", "post")
     assert (thymio, crate, post) == ([-0.5, 0.0, 1.0], [0.25, 0.25, 0.0], [])
     assert "occupied by 'post'" in ask(ros, "set_poses", crate=numbers(0.0, 0.5))["crate"]
+
+
+def test_a_place_without_ground_is_refused_with_the_nearest(ros, simulation):
+    sim = simulation(playground=ROOM)
+    reason = "there is no ground; the nearest is 'ground' at 1.000, 1.000 m"
+    places = ask(ros, "set_poses", thymio=numbers(9.0, 9.0), crate=numbers(9.0, 9.0))
+    assert places == {name: f"'{name}' cannot be placed at 9.000, 9.000 m: {reason}" for name in ("thymio", "crate")}
+    assert ask(ros, "spawn", anna=numbers(9.0, 9.0)) == {"anna": f"'anna' cannot be placed at 9.000, 9.000 m: {reason}"}
+    assert list(sim.world.robots) == ["thymio"]
+    assert ask(ros, "set_poses", thymio=numbers(0.99, 0.99)) == {"thymio": ""}  # its middle is on the ground
+
+
+def test_every_place_of_a_playground_without_ground_is_allowed(ros, simulation):
+    simulation(playground=json.dumps(json.loads(ROOM) | {"shapes": []}))
+    assert ask(ros, "set_poses", thymio=numbers(9.0, 9.0)) == {"thymio": ""}
 
 
 @pytest.mark.parametrize("place", [numbers(-0.5, 0.5, math.nan), numbers(math.inf, 0.5)])

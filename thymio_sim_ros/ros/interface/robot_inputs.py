@@ -104,7 +104,7 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
             PoseWithCovarianceStamped,
             _pose,
             "move the robot, m in the frame of the header: that of the world (or empty), `odom` or `base_link`; "
-            "odometry is unchanged. Rejected if the place is occupied",
+            "odometry is unchanged. Rejected if the place is occupied, or outside of every ground",
             qos.COMMAND,
         ),
         *(

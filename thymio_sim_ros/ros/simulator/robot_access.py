@@ -12,7 +12,7 @@ from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.visualization.transforms import frames_of
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
-from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.commands import Command, MoveRobot
 from thymio_sim_ros.sim.model.geometry import Pose
 
 __all__ = ["RobotAccess"]
@@ -43,7 +43,11 @@ class RobotAccess:
         """Execute deferred ticks and post a command to the world; dropped if the robot has been removed."""
         self._runner.catch_up()
         world = self._runner.world
-        if self._robot in world.robots:
+        if self._robot not in world.robots:
+            return
+        if isinstance(command, MoveRobot):
+            self._runner.move(self._robot, command.x_m, command.y_m, command.yaw_rad)
+        else:
             world.post(self._robot, command)
 
     def report_rejected(self, topic: str, text: str) -> None:

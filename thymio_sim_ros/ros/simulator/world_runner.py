@@ -25,6 +25,7 @@ from thymio_sim_ros.ros.simulator.recording import Recording
 from thymio_sim_ros.ros.simulator.tick_scheduler import TickScheduler
 from thymio_sim_ros.ros.simulator.world_endpoints import WorldState
 from thymio_sim_ros.runlog.replay import LoggedRun
+from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
@@ -132,9 +133,26 @@ class WorldRunner:
         self._publish_start()
 
     def spawn(self, start: RobotStart) -> None:
-        """Add a robot. Raises ValueError as `World.spawn` does, and for a name that topics of another robot use."""
+        """Add a robot on a ground.
+
+        Raises ValueError as `World.spawn` does, and for a name that topics of another robot use; PlacementError also
+        for a position outside of every ground.
+        """
         self._endpoints.robots.check_name(start.name)
+        self.world.check_ground(start.name, start.x_m, start.y_m)
         self.world.spawn(start)
+
+    def move(self, name: str, x_m: float, y_m: float, yaw_rad: float) -> None:
+        """Move a robot or object to a position on a ground; a lifted robot to any position.
+
+        Raises KeyError for an unknown name, and ValueError as `World.post` does; PlacementError also for a position
+        outside of every ground.
+        """
+        robot = self.world.robots.get(name)
+        if robot is None or not robot.is_lifted:
+            self.world.check_ground(name, x_m, y_m)
+        command = MoveObject if robot is None else MoveRobot
+        self.world.post(name, command(x_m, y_m, yaw_rad))
 
     def update_robots(self) -> None:
         """Create or destroy topics and frames if robots were added or removed."""

@@ -24,7 +24,6 @@ from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
-from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
 from thymio_sim_ros.sim.playground import writer
@@ -153,12 +152,9 @@ class WorldServices:
 
     def _move(self, name: str, x: float, y: float, yaw: float) -> None:
         world = self._runner.world
-        if name in world.robots:
-            world.post(name, MoveRobot(x, y, yaw))
-        elif name in world.movables:
-            world.post(name, MoveObject(x, y, yaw))
-        else:
+        if name not in world.robots and name not in world.movables:
             raise ValueError(_unknown(name, (*world.robots, *world.movables)))
+        self._runner.move(name, x, y, yaw)
 
     def _get_poses(self, request: GetParameters.Request, response: GetParameters.Response) -> GetParameters.Response:
         world = self._runner.world

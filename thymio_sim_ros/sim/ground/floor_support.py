@@ -12,7 +12,7 @@ from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Floor
 from thymio_sim_ros.sim.model.spatial_grid import SpatialGrid
 
-__all__ = ["FloorSupport"]
+__all__ = ["FloorSupport", "nearest_floor"]
 
 _Sides = tuple[tuple[float, float, float], ...]
 """A convex polygon as sides (nx, ny, c): inside where n·p <= c."""
@@ -36,6 +36,24 @@ class FloorSupport:
         for sides in self._floors.near((x_m, y_m, x_m, y_m)):
             largest = max(largest, min(c - nx * x_m - ny * y_m for nx, ny, c in sides))
         return largest
+
+
+def nearest_floor(floors: Sequence[Floor], point: Point) -> tuple[Floor, Point]:
+    """The floor that is nearest to a point outside of all floors, and the place on its edge, in m."""
+    places = [
+        (floor, _nearest_on_edge(floor.vertices[index - 1], vertex, point))
+        for floor in floors
+        for index, vertex in enumerate(floor.vertices)
+    ]
+    return min(places, key=lambda place: math.dist(place[1], point))
+
+
+def _nearest_on_edge(begin: Point, end: Point, point: Point) -> Point:
+    (ax, ay), (bx, by), (px, py) = begin, end, point
+    length_2 = (bx - ax) ** 2 + (by - ay) ** 2
+    share = 0.0 if length_2 == 0.0 else ((px - ax) * (bx - ax) + (py - ay) * (by - ay)) / length_2
+    share = min(max(share, 0.0), 1.0)
+    return ax + share * (bx - ax), ay + share * (by - ay)
 
 
 def _sides(vertices: Sequence[Point]) -> _Sides:

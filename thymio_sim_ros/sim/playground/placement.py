@@ -18,12 +18,11 @@ _HULL = robot_constants.hull()
 
 
 class PlacementError(ThymioSimError, ValueError):
-    """A position is occupied. `thing` is the name of the robot or object, `blocker` the name of what is there."""
+    """A robot or object, `thing`, cannot be placed: the position is occupied, or without ground; the text says why."""
 
-    def __init__(self, thing: str, pose: Pose, blocker: str) -> None:
-        super().__init__(f"'{thing}' cannot be placed at {pose.x_m:.3f}, {pose.y_m:.3f} m: occupied by '{blocker}'")
+    def __init__(self, thing: str, pose: Pose, reason: str) -> None:
+        super().__init__(f"'{thing}' cannot be placed at {pose.x_m:.3f}, {pose.y_m:.3f} m: {reason}")
         self.thing = thing
-        self.blocker = blocker
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,6 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     resource,
 )
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
-from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
 from thymio_sim_ros.sim.playground.placement import PlacementError
@@ -137,7 +136,7 @@ class Entities:
         if category != ROBOT and name not in world.movables:
             raise RefusedError(FAILED, f"'{name}' is a door: it cannot be moved")
         try:
-            world.post(name, MoveRobot(*place) if category == ROBOT else MoveObject(*place))
+            self._runner.move(name, *place)
         except PlacementError as error:
             raise RefusedError(STATE_POSE_INVALID, str(error)) from error
 
