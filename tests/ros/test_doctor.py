@@ -77,7 +77,9 @@ def test_everything_that_is_wrong_is_named_with_the_topics(ros, suite):
             code, output, errors = doctor(ros, "--json", meanwhile=lambda: publisher.publish(message))
             assert (code, errors) == (1, "")
             result = json.loads(output)
-            return result if len(result["faults"]) == 5 else None
+            uses = {(use["name"], use["type"].rpartition("/")[2]): use for use in result["topics"]}
+            is_complete = len(result["faults"]) == 5 and ("/cmd_vel", "TwistStamped") in uses
+            return result if is_complete and uses["/cmd_vel", "Twist"]["last"] else None
 
         result = ros.until(found, PATIENCE_S, what="all faults")
     finally:

@@ -33,8 +33,8 @@ SUITE = ("simulator", "aseba_runtime", "_aseba_runtime", "foxglove_bridge", "web
 """Names of the nodes of a suite."""
 FIND_S = 8.0
 """Longest wait for a simulator: discovery, and the next `/diagnostics`."""
-LOOK_S = 2.0
-"""How long messages are collected."""
+LOOK_S, LOOKS = 2.0, 4
+"""How long messages are collected, and how often new topics are looked for meanwhile."""
 
 _STATE, _DIAGNOSTICS = "_state", "/diagnostics"
 _OF_EVERY_NODE = frozenset({"/rosout", "/parameter_events", "/clock", _DIAGNOSTICS})
@@ -98,6 +98,7 @@ class _Doctor:
         self._found = Examination(where)
         self._statuses: dict[str, DiagnosticStatus] = {}
         self._states: dict[str, dict[str, Any]] = {}
+        self._listened: set[tuple[str, str]] = set()
         self._last: dict[tuple[str, str], tuple[str, float]] = {}
         node.create_subscription(DiagnosticArray, _DIAGNOSTICS, self._on_diagnostics, qos.SENSOR)
 
@@ -110,12 +111,12 @@ class _Doctor:
                 f"no simulator found in {self._found.where}: start `thymio-sim`, and run this command in a terminal"
                 ' with the same ROS_DOMAIN_ID (`eval "$(thymio-sim env)"`)'
             )
-        uses = list(self._uses())
-        for use in uses:
-            self._listen(use)
-        self._spin(LOOK_S, lambda: False)
+        for _ in range(LOOKS):  # the first looks may be before the discovery of some nodes
+            for use in self._uses():
+                self._listen(use)
+            self._spin(LOOK_S / LOOKS, lambda: False)
         now_s = time.monotonic()
-        self._found.topics = [self._with_last(use, now_s) for use in uses]
+        self._found.topics = [self._with_last(use, now_s) for use in self._uses()]
         for state in self._states.values():
             self._describe(state)
         self._found.faults = list(dict.fromkeys([*self._found.faults, *self._other_faults()]))
@@ -164,8 +165,9 @@ class _Doctor:
     def _listen(self, use: TopicUse) -> None:
         """Subscribe to a topic of the suite's type; one process cannot use another one on the same topic."""
         nodes = (node.rpartition("/")[2] for node in (*use.publishers, *use.subscribers))
-        if not use.publishers or not set(nodes).intersection(SUITE):
+        if not use.publishers or not set(nodes).intersection(SUITE) or (use.name, use.type) in self._listened:
             return
+        self._listened.add((use.name, use.type))
 
         def receive(message: Any) -> None:
             self._last[use.name, use.type] = _text(message), time.monotonic()
