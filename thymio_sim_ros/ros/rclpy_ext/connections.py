@@ -18,8 +18,9 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node, NodeNameNonExistentError
-from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
+from thymio_sim_ros.lockstep.matching import fit
 from thymio_sim_ros.type_names import type_name
 
 __all__ = [
@@ -309,8 +310,7 @@ def wrong_qos(
     side: Side, topic: str, node: str, kind: str, found: QoSProfile, expected: QoSProfile
 ) -> Unconnected | None:
     """Describe an endpoint with the profile `found` that does not fit that of its peer, `expected`; None if it fits."""
-    compatibility, _ = qos_check_compatible(*((found, expected) if side is PUBLISHER else (expected, found)))
-    if compatibility != QoSCompatibility.ERROR:  # a warning is about a default, such as that of liveliness
+    if fit(*((found, expected) if side is PUBLISHER else (expected, found))):
         return None
     policy, what, need = _misfit(found, expected)
     return Unconnected(
