@@ -39,8 +39,9 @@ run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NA
 	if [ "$$group" = "$$front" ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
 
 # Three tiers of the same tests, selected by their markers (docs/testing.md). Files are shared out among the workers, the
-# long ones first.
-TEST := $(PYTHON) -m pytest -n auto --maxprocesses 4
+# long ones first. One worker more than there are cores: a third of a worker's time is waiting for other processes.
+CORES := $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+TEST := $(PYTHON) -m pytest -n $(shell expr $(CORES) + 1) --maxprocesses 4
 check: lint $(VENV)/.ready-test  ## before a commit: lint, and tests without ROS, browser, sockets and other processes
 	@$(TEST) -q -m 'not process and not browser and not ros and not slow' $(ARGS)
 
