@@ -42,8 +42,8 @@ def test_endpoints_of_a_process_match_unless_its_profile_says_otherwise(tmp_path
     assert matched(tmp_path, "ANNOUNCING") == "matched 1"
 
 
-@pytest.mark.parametrize("profile", [dds_profile.ALONE, dds_profile.ANNOUNCING])
-def test_both_profiles_announce_participants_more_often_than_every_three_seconds(profile: Path) -> None:
+@pytest.mark.parametrize("profile", [dds_profile.ALONE, dds_profile.ANNOUNCING, dds_profile.LOOPBACK])
+def test_all_profiles_announce_participants_more_often_than_every_three_seconds(profile: Path) -> None:
     """A profile that cannot be parsed is ignored by Fast DDS."""
     name = "{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}"
     (period,) = ElementTree.parse(profile).getroot().iter(f"{name}leaseAnnouncement")
@@ -86,3 +86,8 @@ def test_another_rmw_keeps_its_own_settings(monkeypatch: pytest.MonkeyPatch) -> 
     with dds_profile.used(dds_profile.ALONE, environment) as is_used:
         assert not is_used
         assert environment == {}
+
+
+def test_another_rmw_gets_no_profile_without_shared_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dds_profile, "get_rmw_implementation_identifier", lambda: "rmw_cyclonedds_cpp")
+    assert dds_profile.for_this_machine(shared_memory=False) == {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}

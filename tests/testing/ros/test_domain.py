@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 import rclpy
@@ -19,6 +22,24 @@ def test_every_test_has_a_domain_of_its_own():
         assert os.environ["ROS_DOMAIN_ID"] == str(other)
         assert os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
     assert os.environ.get("ROS_DOMAIN_ID") == own
+
+
+PARTICIPANT = """
+import rclpy
+from pathlib import Path
+rclpy.init()
+node = rclpy.create_node("one")
+print("/dev/shm/fastrtps_" in Path("/proc/self/maps").read_text())
+"""
+
+
+@pytest.mark.process
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="needs /proc")
+def test_shared_memory_is_used_only_where_it_is_wanted():
+    for wanted in (True, False):
+        with reserved(shared_memory=wanted):
+            run = subprocess.run([sys.executable, "-c", PARTICIPANT], capture_output=True, text=True, check=True)
+        assert run.stdout == f"{wanted}\n"
 
 
 def test_the_user_s_own_domain_is_left_alone(monkeypatch):

@@ -8,6 +8,10 @@ regular announcement is what the new participant discovers it by (measured: some
 By default Fast DDS compares every endpoint with all others of its participant and allocates memory for a hundred
 messages of each: the suite with a hundred robots took 153 s of processor time to start, and takes 11 s with this
 profile (docs/performance-method.md). Nodes that need each other's topics then need `rclpy_ext/peers.py`.
+
+`LOOPBACK`: as `ANNOUNCING`, but messages go by UDP on 127.0.0.1 only. Where shared memory is closed, Fast DDS prints
+errors to standard output, among the lines of the program. With the discovery range LOCALHOST, rmw_fastrtps adds shared
+memory whatever FASTDDS_BUILTIN_TRANSPORTS and profiles say, so that this profile has the peers of that range itself.
 """
 
 from __future__ import annotations
@@ -19,9 +23,9 @@ from pathlib import Path
 
 from rclpy.utilities import get_rmw_implementation_identifier
 
-__all__ = ["ALONE", "ANNOUNCING", "VARIABLE", "has_own_profile", "used"]
+__all__ = ["ALONE", "ANNOUNCING", "LOOPBACK", "VARIABLE", "for_this_machine", "has_own_profile", "used"]
 
-ALONE, ANNOUNCING = (Path(__file__).with_name(f"{name}.xml") for name in ("alone", "announcing"))
+ALONE, ANNOUNCING, LOOPBACK = (Path(__file__).with_name(f"{name}.xml") for name in ("alone", "announcing", "loopback"))
 
 VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 """Variable with the path of the profile; Fast DDS 2 reads it when the process creates its first participant."""
@@ -40,6 +44,13 @@ def has_own_profile(environment: MutableMapping[str, str] = os.environ) -> bool:
     if any(name in environment for name in _OTHERS) or Path(_USERS_FILE).exists():
         return True
     return environment.get(VARIABLE, str(ANNOUNCING)) != str(ANNOUNCING)
+
+
+def for_this_machine(*, shared_memory: bool) -> dict[str, str]:
+    """Return the environment of participants whose messages stay on this machine, with or without shared memory."""
+    if shared_memory or get_rmw_implementation_identifier() != _RMW:
+        return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT", VARIABLE: str(LOOPBACK)}
 
 
 @contextmanager

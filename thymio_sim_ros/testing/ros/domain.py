@@ -9,6 +9,7 @@ import socket
 from collections.abc import Iterator
 
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.compat.shm_cleanup import remove_abandoned
 
 __all__ = ["NoDomainError", "reserved"]
@@ -40,10 +41,11 @@ class NoDomainError(ThymioSimError):
 
 
 @contextlib.contextmanager
-def reserved() -> Iterator[int]:
+def reserved(*, shared_memory: bool = True) -> Iterator[int]:
     """Reserve a domain, another one each time. Child processes inherit it, and messages stay on this machine.
 
-    The domain of the user's own environment is not used. Raises NoDomainError if all domains are in use.
+    Without `shared_memory`, they go by UDP only. The domain of the user's own environment is not used. Raises
+    NoDomainError if all domains are in use.
     """
     own = os.environ.get("ROS_DOMAIN_ID", "0")
     free = [domain for domain in DOMAINS if str(domain) != own]
@@ -58,7 +60,7 @@ def reserved() -> Iterator[int]:
             if _has_participants(domain):
                 continue
             remove_abandoned()
-            with _environment(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST"):
+            with _environment(ROS_DOMAIN_ID=str(domain), **dds_profile.for_this_machine(shared_memory=shared_memory)):
                 yield domain
             return
     raise NoDomainError(f"no free ROS domain on this machine: {len(free)} are in use")
