@@ -12,6 +12,8 @@ import pytest
 from tests.grading.example_class import zipped
 from thymio_sim_ros.grading import archives
 from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.reports.texts import file_name
+from thymio_sim_ros.grading.results import Graded
 from thymio_sim_ros.grading.submissions import Submission, find, prepared
 
 
@@ -42,6 +44,34 @@ def test_a_moodle_export_has_names_numbers_and_zips_in_folders(tmp_path: Path) -
         "Anna B": ("12", {"a.aesl": b"1"}),
         "Ben": ("13", {"a.aesl": b"2"}),
     }
+
+
+def test_a_moodle_export_without_folders_has_names_and_numbers(tmp_path: Path) -> None:
+    files = {"Anna B_12_assignsubmission_file_my_a.aesl": b"1", "Anna B_12_assignsubmission_file_map.json": b"2"}
+    (tmp_path / "export.zip").write_bytes(zipped(files))
+    (submission,) = find(tmp_path / "export.zip")
+    assert (submission.name, submission.identifier) == ("Anna B", "12")
+    assert dict(submission.files) == {"my_a.aesl": b"1", "map.json": b"2"}
+
+
+@pytest.mark.parametrize("is_zip", [True, False])
+def test_of_files_that_were_handed_in_again_the_last_one_counts(tmp_path: Path, is_zip: bool) -> None:
+    files = {"anna_12_1000_a-1.aesl": b"new", "anna_12_999_a.aesl": b"old", "anna_12_998_b.json": b"same"}
+    (tmp_path / "export.zip").write_bytes(zipped({**files, "anna_12_1001_b-1.json": b"same"}))
+    if not is_zip:
+        with zipfile.ZipFile(tmp_path / "export.zip") as archive:
+            archive.extractall(tmp_path / "unpacked")
+    (submission,) = find(tmp_path / ("export.zip" if is_zip else "unpacked"))
+    assert dict(submission.files) == {"a.aesl": b"new", "b.json": b"same"}
+    assert submission.notes == ("a.aesl was handed in more than once: the last one was graded",)
+
+
+def test_files_of_the_same_name_are_graded_as_those_of_one_pupil_with_a_remark(tmp_path: Path) -> None:
+    (tmp_path / "Anna.aesl").write_text("1")
+    (tmp_path / "Anna.zip").write_bytes(zipped({"b.aesl": b"2"}))
+    (submission,) = find(tmp_path)
+    assert submission.files.keys() == {"Anna.aesl", "b.aesl"}
+    assert submission.notes == ("several files or folders have the name Anna: they were graded as those of one pupil",)
 
 
 def test_a_canvas_export_joins_the_files_of_a_pupil(tmp_path: Path) -> None:
@@ -78,6 +108,35 @@ def test_a_gradescope_export_has_the_names_of_its_metadata(tmp_path: Path, folde
             "Ben and Cleo": "901",
             "submission_902": "902",
         }
+
+
+def test_a_pupil_of_gradescope_who_hands_in_again_keeps_the_page(tmp_path: Path) -> None:
+    pages = []
+    for number, sid in (
+        (900, ":sid: '1'"),
+        (950, ":sid: '1'"),
+        (950, ":sid: '2'"),
+        (950, ":email: a@b"),
+        (960, "a: b"),
+    ):
+        metadata = f"submission_{number}:\n  :submitters:\n  - :name: Anna\n    {sid}\n"
+        files = {"submission_metadata.yml": metadata.encode(), f"submission_{number}/a.aesl": b""}
+        (tmp_path / "export.zip").write_bytes(zipped(files))
+        (submission,) = find(tmp_path / "export.zip")
+        assert submission.identifier == str(number)
+        pages.append(file_name(Graded(submission, [])))
+    assert pages[0] == pages[1]
+    assert len(set(pages)) == 4
+
+
+def test_two_submissions_of_one_pupil_of_gradescope_have_two_pages(tmp_path: Path) -> None:
+    entry = "  :submitters:\n  - :name: Anna\n    :sid: '1'\n"
+    files = {"submission_metadata.yml": f"submission_7:\n{entry}submission_8:\n{entry}".encode()}
+    files |= {f"submission_{number}/a.aesl": b"" for number in (7, 8)}
+    (tmp_path / "export.zip").write_bytes(zipped(files))
+    submissions = find(tmp_path / "export.zip")
+    assert [one.name for one in submissions] == ["Anna (7)", "Anna (8)"]
+    assert len({file_name(Graded(one, [])) for one in submissions}) == 2
 
 
 @pytest.mark.parametrize("metadata", [b"", b"a: [", b"- 1", b"submission_900: {':submitters': 3}", b"\xff\xfe", b"!!x"])

@@ -1,4 +1,4 @@
-"""The names of the pupils in an export of Gradescope, whose folders have numbers.
+"""The pupils in an export of Gradescope, whose folders have numbers.
 
 The export has a folder `submission_123` for each submission and one `submission_metadata.yml`:
 
@@ -6,17 +6,29 @@ The export has a folder `submission_123` for each submission and one `submission
       :submitters:
       - :name: Anna Smith
         :sid: '4711'
+        :email: anna@school.example
+
+A pupil who hands in again gets another number, so that the number does not tell whose submission it is.
 """
 
 from __future__ import annotations
 
-__all__ = ["METADATA", "names"]
+from typing import NamedTuple
+
+__all__ = ["METADATA", "Pupil", "pupils"]
 
 METADATA = "submission_metadata.yml"
 
 
-def names(metadata: object) -> dict[str, str]:
-    """Names by folder, those of a group joined by " and "; none where the metadata, as bytes, does not say."""
+class Pupil(NamedTuple):
+    """Name and key of a pupil or a group. The key stays when they hand in again; empty if there is none."""
+
+    name: str
+    key: str
+
+
+def pupils(metadata: object) -> dict[str, Pupil]:
+    """Pupils by folder, the names of a group joined by " and "; none where the metadata, as bytes, does not say."""
     import yaml
 
     if not isinstance(metadata, bytes):
@@ -27,10 +39,17 @@ def names(metadata: object) -> dict[str, str]:
         return {}
     if not isinstance(table, dict):
         return {}
-    return {folder: joined for folder, entry in table.items() if (joined := " and ".join(_submitters(entry)))}
+    return {folder: pupil for folder, entry in table.items() if (pupil := _pupil(entry)).name}
 
 
-def _submitters(entry: object) -> list[str]:
+def _pupil(entry: object) -> Pupil:
     listed = entry.get(":submitters") if isinstance(entry, dict) else None
     people = [one for one in listed if isinstance(one, dict)] if isinstance(listed, list) else []
-    return [name for one in people if isinstance(name := one.get(":name"), str) and name]
+    names = [name for one in people if (name := _text(one, ":name"))]
+    keys = [_text(one, ":sid") or _text(one, ":email") for one in people]
+    return Pupil(" and ".join(names), "\0".join(sorted(keys)) if all(keys) else "")
+
+
+def _text(person: dict[object, object], field: str) -> str:
+    value = person.get(field)
+    return value if isinstance(value, str) else ""

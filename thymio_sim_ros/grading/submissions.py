@@ -30,9 +30,11 @@ from thymio_sim_ros.grading.other_names import is_copy
 
 __all__ = ["Submission", "find", "prepared", "read_one"]
 
-_MOODLE = re.compile(r"(?P<name>.+)_(?P<id>\d+)_assignsubmission_(?:file|onlinetext)_?")
+_MOODLE = re.compile(r"(?P<name>.+)_(?P<id>\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<file>.*))?")
+"""A folder, or a file with its name at the end where the teacher wanted no folders."""
 _CANVAS = re.compile(r"(?P<name>[^_]+)_(?:LATE_)?(?P<id>\d+)_\d+_(?P<file>.+)")
 _GRADESCOPE = re.compile(r"submission_(?P<id>\d+)")
+_DIGITS = re.compile(r"\d+")
 _RESUBMITTED = re.compile(r"-\d+(?=\.\w+$)")
 """Canvas adds -1, -2, … to the name of a file that is handed in again."""
 
@@ -50,6 +52,8 @@ class Submission:
     name: str
     identifier: str = ""
     """The number of the pupil or submission in the learning platform, if there is one."""
+    key: str = ""
+    """Tells the pupil from others of the same name, also after another submission; empty: `identifier` does."""
     files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     problem: str = ""
     notes: tuple[str, ...] = ()
@@ -68,7 +72,7 @@ def find(path: Path) -> list[Submission]:
     except OSError as error:
         raise GradingError(f"{error.filename or path}: {error.strerror}; expected a folder or a zip") from error
     merged: dict[tuple[str, str], Submission] = {}
-    for entry in entries:
+    for entry in entries:  # the last one of several
         key = (entry.name, entry.identifier)
         merged[key] = _merged(merged[key], entry) if key in merged else entry
     if not merged:
@@ -152,17 +156,24 @@ def _suffix(name: str) -> str:
 
 def _class_entries(path: Path) -> list[Submission]:
     if path.is_dir():
-        paths = sorted(entry for entry in path.iterdir() if not is_clutter(entry.name))
+        paths = [entry for entry in path.iterdir() if not is_clutter(entry.name)]
+        paths.sort(key=lambda entry: _with_numbers(entry.name))
         metadata = path / gradescope.METADATA
-        names = gradescope.names(read_folder(metadata).get(gradescope.METADATA)) if metadata in paths else {}
-        return [_from_path(entry, names) for entry in paths if entry.name != gradescope.METADATA]
+        pupils = gradescope.pupils(read_folder(metadata).get(gradescope.METADATA)) if metadata in paths else {}
+        return [_from_path(entry, pupils) for entry in paths if entry.name != gradescope.METADATA]
     tops = _by_top(read_class_zip(path.read_bytes()))
     if len(tops) == 1:
         ((top, only),) = tops.items()
         if "" not in only and not _MOODLE.fullmatch(top):  # the folder of the class itself
             tops = _by_top(only)
-    names = gradescope.names(tops.pop(gradescope.METADATA, {}).get(""))
-    return [_from_files(top, files, names) for top, files in tops.items()]
+    pupils = gradescope.pupils(tops.pop(gradescope.METADATA, {}).get(""))
+    return [_from_files(top, tops[top], pupils) for top in sorted(tops, key=_with_numbers)]
+
+
+def _with_numbers(name: str) -> list[tuple[str, int, str]]:
+    """A key for sorting by which 99 comes before 100: learning platforms count what is handed in."""
+    numbers = [digits.lstrip("0") for digits in _DIGITS.findall(name)]
+    return [(text, len(digits), digits) for text, digits in zip(_DIGITS.split(name), [*numbers, ""], strict=True)]
 
 
 def _by_top(files: Mapping[str, _Read]) -> dict[str, dict[str, _Read]]:
@@ -175,22 +186,22 @@ def _by_top(files: Mapping[str, _Read]) -> dict[str, dict[str, _Read]]:
     return tops
 
 
-def _from_path(path: Path, names: Mapping[str, str]) -> Submission:
+def _from_path(path: Path, pupils: Mapping[str, gradescope.Pupil]) -> Submission:
     try:
         if path.is_symlink():
             raise RejectedError(f"{path.name} is a symbolic link; expected a file or folder")
         content = read_folder(path) if path.is_dir() else {"": next(iter(read_folder(path).values()))}
     except (RejectedError, OSError) as error:
         reason = f"{path.name}: {error.strerror}" if isinstance(error, OSError) else str(error)
-        name, identifier, _ = _owner(path.name, names, is_folder=path.is_dir() and not path.is_symlink())
-        return Submission(name, identifier, problem=reason)
-    return _from_files(path.name, content, names)
+        owner, _ = _owner(path.name, pupils, is_folder=path.is_dir() and not path.is_symlink())
+        return replace(owner, problem=reason)
+    return _from_files(path.name, content, pupils)
 
 
-def _from_files(top: str, files: Mapping[str, _Read], names: Mapping[str, str]) -> Submission:
+def _from_files(top: str, files: Mapping[str, _Read], pupils: Mapping[str, gradescope.Pupil]) -> Submission:
     """A submission from an entry of the class: a file has the key "", a folder its relative paths."""
     is_folder = "" not in files
-    name, identifier, file = _owner(top, names, is_folder=is_folder)
+    owner, file = _owner(top, pupils, is_folder=is_folder)
     content: dict[str, bytes] = {}
     try:
         for path, data in files.items():
@@ -198,32 +209,51 @@ def _from_files(top: str, files: Mapping[str, _Read], names: Mapping[str, str]) 
                 raise data
             if data is not None:
                 content[path if is_folder else file] = data
-        return Submission(name, identifier, unpack(content))
+        return replace(owner, files=unpack(content))
     except RejectedError as error:
-        return Submission(name, identifier, problem=str(error))
+        return replace(owner, problem=str(error))
 
 
-def _owner(top: str, names: Mapping[str, str], *, is_folder: bool) -> tuple[str, str, str]:
-    """Name and number of the pupil, and the name of the file as it was handed in."""
+def _owner(top: str, pupils: Mapping[str, gradescope.Pupil], *, is_folder: bool) -> tuple[Submission, str]:
+    """The pupil as a submission without files, and the name of the file as it was handed in."""
     top = unicodedata.normalize("NFC", top)
     if moodle := _MOODLE.fullmatch(top):
-        return moodle["name"], moodle["id"], top
+        return Submission(moodle["name"], moodle["id"]), moodle["file"] or top
     if is_folder:
         handed_in = _GRADESCOPE.fullmatch(top)
-        return names.get(top, top), handed_in["id"] if handed_in else "", top
+        pupil = pupils.get(top, gradescope.Pupil(top, ""))
+        return Submission(pupil.name, handed_in["id"] if handed_in else "", pupil.key), top
     if canvas := _CANVAS.fullmatch(top):
-        return canvas["name"], canvas["id"], _RESUBMITTED.sub("", canvas["file"])
-    return PurePosixPath(top).stem, "", top
+        return Submission(canvas["name"], canvas["id"]), _RESUBMITTED.sub("", canvas["file"])
+    return Submission(PurePosixPath(top).stem), top
 
 
 def _merged(one: Submission, other: Submission) -> Submission:
-    return replace(one, files={**one.files, **other.files}, problem=one.problem or other.problem)
+    """Two entries of one pupil as one submission; of a file that both have, the one of `other`."""
+    notes = [
+        f"{name} was handed in more than once: the last one was graded"
+        for name, data in one.files.items()
+        if other.files.get(name, data) != data
+    ]
+    if not one.identifier:
+        notes.append(f"several files or folders have the name {one.name}: they were graded as those of one pupil")
+    return replace(
+        one,
+        files={**one.files, **other.files},
+        problem=one.problem or other.problem,
+        notes=tuple(dict.fromkeys([*one.notes, *notes])),
+    )
 
 
 def _with_unique_names(submissions: list[Submission]) -> list[Submission]:
     names = [submission.name for submission in submissions]
+    owners = [(submission.name, submission.key) for submission in submissions]
     return [
-        replace(one, name=f"{one.name} ({one.identifier})") if names.count(one.name) > 1 and one.identifier else one
+        replace(
+            one,
+            name=f"{one.name} ({one.identifier})" if names.count(one.name) > 1 and one.identifier else one.name,
+            key=one.key if owners.count((one.name, one.key)) == 1 else "",
+        )
         for one in submissions
     ]
 

@@ -36,7 +36,7 @@ def file_name(graded: Graded) -> str:
         one if unicodedata.category(one)[0] in "LMN" else "-" for one in unicodedata.normalize("NFC", name)
     )
     readable = re.sub("-+", "-", letters).strip("-")[:_LONGEST_NAME] or "submission"
-    owner = f"{name}\0{submission.identifier}".encode("utf-8", "surrogatepass")
+    owner = f"{name}\0{submission.key or submission.identifier}".encode("utf-8", "surrogatepass")
     return f"{readable}-{hashlib.sha256(owner).hexdigest()[:8]}"
 
 
