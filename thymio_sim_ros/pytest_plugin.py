@@ -198,14 +198,20 @@ def spin_until(ros: Ros) -> Callable[..., Any]:
 
 @pytest.fixture
 def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simulation]:
-    """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters."""
+    """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters.
+
+    A velocity ends as under `thymio-sim`, half a second after the last command; with `cmd_vel_timeout=0.0` it is valid
+    until the next one, as with the driver and `ros2 launch`.
+    """
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
+    from thymio_sim_ros.suite_config import SuiteConfig
     from thymio_sim_ros.testing.ros import Simulation
 
     def make(**parameters: Any) -> Simulation:
         known = {field.name for field in fields(SimulatorParams)}
         marked = {name: value for name, value in _wanted(request).items() if name in known}
-        wanted = {"playground": "base", **marked, **parameters}
+        as_suite = {"cmd_vel_timeout": SuiteConfig().cmd_vel_timeout_s}
+        wanted = {"playground": "base", **as_suite, **marked, **parameters}
         wanted["playground"] = _playground(request, wanted["playground"])
         wanted.setdefault("log", str(_run_log(request) or ""))
         defaults = replace(SimulatorParams(start_paused=True), **wanted)

@@ -31,7 +31,7 @@ BOTH_WAYS = pytest.mark.parametrize("out_of_range", ["rep117", "driver"])
 
 @pytest.mark.parametrize("out_of_range", [pytest.param("rep117", marks=pytest.mark.slow), "driver"])
 def test_a_square_is_driven_by_odometry(ros, simulation, out_of_range):
-    sim = simulation(playground="borderless", out_of_range=out_of_range)
+    sim = simulation(playground="borderless", out_of_range=out_of_range, cmd_vel_timeout=0.0)
     lights = ros.collect(Float32MultiArray, "/_led/state")
     truth = ros.collect(Odometry, "/_ground_truth/odom")
     square = ros.start(Square)
@@ -78,6 +78,6 @@ def test_a_limit_stops_the_robot_in_both_conventions(ros, simulation, out_of_ran
 
 
 def test_relative_names_follow_a_namespace(ros, simulation):
-    sim = simulation(playground="borderless", robot_names=["thymio0"])
+    sim = simulation(playground="borderless", robot_names=["thymio0"], cmd_vel_timeout=0.0)
     ros.start(Square, namespace="/thymio0")
     sim.until(lambda: sim.world.robots["thymio0"].pose.x_m > 0.05)

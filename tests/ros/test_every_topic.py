@@ -179,7 +179,7 @@ def test_there_is_a_message_for_every_topic():
 
 @pytest.mark.parametrize("topic", SENT)
 def test_a_robot_subscribes_to_every_input(ros, simulation, monkeypatch, topic):
-    sim = simulation(playground=PAIR)
+    sim = simulation(playground=PAIR, cmd_vel_timeout=0.0)
     posted = []
     monkeypatch.setattr(sim.world, "post", lambda robot, command: posted.append((robot, command)))
     (info,) = ros.node.get_subscriptions_info_by_topic(f"/anna/{topic}")

@@ -40,7 +40,7 @@ def shown(message):
 
 
 def test_moving_objects_have_their_own_markers(ros, simulation):
-    sim = simulation(playground=PUSHING, noise=False)
+    sim = simulation(playground=PUSHING, noise=False, cmd_vel_timeout=0.0)
     fixed = ros.collect(MarkerArray, "/_markers", transient_local=True)
     objects = ros.collect(MarkerArray, "/_markers/objects", transient_local=True)
     ros.until(lambda: fixed and objects)
@@ -63,7 +63,7 @@ def test_resting_objects_are_not_published_again(ros, simulation):
 
 
 def test_an_added_robot_has_topics_until_it_is_removed(ros, simulation):
-    sim = simulation(playground=PUSHING)
+    sim = simulation(playground=PUSHING, cmd_vel_timeout=0.0)
     states = ros.collect(String, "/simulator/_state", transient_local=True)
     old = ros.collect(Odometry, "/_ground_truth/odom")
     sim.until(lambda: old)
@@ -121,7 +121,7 @@ def test_an_occupied_place_is_rejected_and_the_node_continues(ros, simulation):
 
 def test_a_log_of_the_node_replays(ros, simulation, tmp_path):
     path = tmp_path / "run.jsonl"
-    sim = simulation(playground=PUSHING, log=str(path), seed=3)
+    sim = simulation(playground=PUSHING, log=str(path), seed=3, cmd_vel_timeout=0.0)
     ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.1)
     sim.world.spawn(RobotStart("late", -0.5, 0.0))

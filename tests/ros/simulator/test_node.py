@@ -63,7 +63,7 @@ def forward(speed_m_s, turn_rad_s=0.0):
 
 
 def test_cmd_vel_moves_the_robot(ros, simulation):
-    sim = simulation()
+    sim = simulation(cmd_vel_timeout=0.0)
     odometry = ros.collect(Odometry, "/odom")
     ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
     sim.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.1)
@@ -149,7 +149,7 @@ def test_a_command_ends_after_its_timeout(ros, simulation):
 
 
 def test_commands_persist_without_a_timeout(ros, simulation):
-    sim = simulation()
+    sim = simulation(cmd_vel_timeout=0.0)
     odometry = ros.collect(Odometry, "/odom")
     ros.publisher(Twist, "/cmd_vel").publish(forward(0.02))
     sim.until(lambda: odometry and odometry[-1].twist.twist.linear.x > 0.01)
@@ -167,7 +167,7 @@ def test_nan_in_a_command_is_refused(ros, simulation):
 
 
 def test_a_wall_ahead_lowers_the_range(ros, simulation):
-    sim = simulation(playground=WALL_AHEAD)
+    sim = simulation(playground=WALL_AHEAD, cmd_vel_timeout=0.0)
     ranges = ros.collect(Range, "/proximity/center")
     counts = ros.collect(Int16MultiArray, "/_raw/proximity")
     scans = ros.collect(LaserScan, "/_proximity/laser")
@@ -217,7 +217,7 @@ def test_a_short_led_array_is_refused(ros, simulation):
 
 
 def test_reset_rewinds_world_and_clock(ros, simulation):
-    sim = simulation()
+    sim = simulation(cmd_vel_timeout=0.0)
     clocks = ros.collect(Clock, "/clock")
     odometry = ros.collect(Odometry, "/odom")
     ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
@@ -388,7 +388,7 @@ def test_a_rejected_start_parameter_has_a_reason(ros):
 
 
 def test_a_pen_draws_a_trail(ros, simulation):
-    sim = simulation()
+    sim = simulation(cmd_vel_timeout=0.0)
     trails = ros.collect(MarkerArray, "/_pen/trail", transient_local=True)
     ros.publisher(ColorRGBA, "/_pen/color").publish(ColorRGBA(r=1.0, a=1.0))
     ros.publisher(Float32, "/_pen/width").publish(Float32(data=0.03125))

@@ -271,7 +271,7 @@ def test_all_sensors_have_one_rate_on_request(ros, simulation):
 
 
 def test_velocities_swap_their_names_on_request(ros, simulation):
-    sim = simulation(stamped_cmd_vel=True)
+    sim = simulation(stamped_cmd_vel=True, cmd_vel_timeout=0.0)
     ros.publisher(TwistStamped, "/cmd_vel").publish(TwistStamped(twist=Twist(linear=Vector3(x=0.1))))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.05)
     ros.publisher(Twist, "/cmd_vel_unstamped").publish(Twist(linear=Vector3(x=-0.1)))

@@ -8,6 +8,7 @@ from nav_msgs.msg import Odometry
 
 from tests.testing.test_thymio import WALL
 from thymio_sim_ros.sim.playground.reader import RobotStart
+from thymio_sim_ros.suite_config import SuiteConfig
 from thymio_sim_ros.testing import emitted, no_contact, reached, shows, slower_than
 
 GREET = """<network><event size="1" name="hello"/><node name="thymio-II">var heard = 0
@@ -23,7 +24,7 @@ end
 
 
 def test_a_robot_is_seen_as_in_a_classroom(ros, simulation):
-    sim = simulation(playground=WALL)
+    sim = simulation(playground=WALL, cmd_vel_timeout=0.0)
     ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
     sim.until(~no_contact(sim.thymio), seconds=10)
     assert [touch.other for touch in sim.thymio.touches] == ["wall"]
@@ -32,8 +33,25 @@ def test_a_robot_is_seen_as_in_a_classroom(ros, simulation):
     assert sim.thymio.path[-1].at_s == sim.now
 
 
+def test_a_velocity_ends_as_under_thymio_sim(ros, simulation):
+    """What is graded is what the student saw: a node that publishes once drives for half a second."""
+    sim = simulation()
+    ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
+    sim.step(SuiteConfig().cmd_vel_timeout_s - 0.1)
+    assert sim.thymio.speed > 0.05
+    sim.step(1.0)
+    assert abs(sim.thymio.speed) < 0.001
+
+
+def test_a_velocity_is_valid_until_the_next_one_on_request(ros, simulation):
+    sim = simulation(cmd_vel_timeout=0.0)
+    ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
+    sim.step(2.0)
+    assert sim.thymio.speed > 0.05
+
+
 def test_a_reset_begins_the_past_anew(ros, simulation, runtime):
-    sim = simulation(playground=WALL)
+    sim = simulation(playground=WALL, cmd_vel_timeout=0.0)
     runtime('<network><event size="0" name="begun"/><node name="thymio-II">emit begun</node></network>')
     ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
     sim.until(~no_contact(sim.thymio), seconds=10)
