@@ -12,6 +12,7 @@ import rclpy
 from geometry_msgs.msg import Twist, TwistStamped, Vector3
 from rclpy.context import Context
 from rclpy.node import Node
+from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 from std_srvs.srv import Empty, SetBool
 
 from tests.patience import PATIENCE_S
@@ -98,6 +99,23 @@ def test_everything_that_is_wrong_is_named_with_the_topics(ros, suite):
     assert (driven["subscribers"], driven["last"]) == (["/simulator"], "linear.x nan")
     stamped = uses["/cmd_vel", "geometry_msgs/msg/TwistStamped"]
     assert (stamped["publishers"], stamped["subscribers"], stamped["age_s"]) == (["/other"], [], None)
+
+
+def test_events_that_no_program_declares_are_named(ros, suite):
+    """Simulator and Aseba runtime report alike; the doctor shows both."""
+    message = Int16MultiArray(layout=MultiArrayLayout(dim=[MultiArrayDimension(label="go")]))
+    publisher = ros.publisher(Int16MultiArray, "/_aseba/emit")
+
+    def found():
+        code, output, errors = doctor(ros, "--json", meanwhile=lambda: publisher.publish(message))
+        assert errors == ""
+        faults = json.loads(output)["faults"]
+        return (code, faults) if faults else None
+
+    assert ros.until(found, PATIENCE_S, what="the fault") == (
+        1,
+        ["event go rejected: the program declares no events"],
+    )
 
 
 def test_an_unknown_robot_is_an_error_with_the_known_ones(ros, suite):

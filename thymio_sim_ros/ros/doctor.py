@@ -1,7 +1,8 @@
 """Examines a running suite as another node sees it: who is connected to whom, what arrives, and what is wrong.
 
-The simulator finds the faults (`rclpy_ext/connections.py`, `simulator/diagnostics.py`) and the Aseba runtime those of
-its programs; both publish them. This module collects them, with the topics that other nodes use.
+Simulator and Aseba runtime find what is wrong with endpoints and messages (`rclpy_ext/connections.py`,
+`rclpy_ext/message_reports.py`), the runtime also with its programs; both publish it. This module collects it, with the
+topics that other nodes use.
 """
 
 from __future__ import annotations
@@ -38,8 +39,9 @@ LOOK_S, LOOKS = 2.0, 4
 
 _STATE, _DIAGNOSTICS = "_state", "/diagnostics"
 _OF_EVERY_NODE = frozenset({"/rosout", "/parameter_events", "/clock", _DIAGNOSTICS})
-_SUMMARIES = (": messages", ": connections")
-"""Ends of names of statuses whose sentences are in the state, too."""
+_MESSAGES, _CONNECTIONS = ": messages", ": connections"
+"""Ends of names of statuses whose values are sentences."""
+_CLAMPED = " clamped: "
 _MAX_VALUES = 6
 """Largest number of values of a message that are shown."""
 
@@ -203,16 +205,19 @@ class _Doctor:
         found.faults += state["faults"]
 
     def _other_faults(self) -> Iterable[str]:
-        """Statuses with a fault that the state does not have: pace, clock, programs."""
+        """Statuses with a fault that the state does not have: pace, clock, programs, messages to the runtime."""
+        in_state = {f"{topic.strip('/').removesuffix(f'/{_STATE}')}{_MESSAGES}" for topic in self._states}
         for name, status in self._statuses.items():
-            if status.level != DiagnosticStatus.OK and not name.endswith(_SUMMARIES):
+            if status.level == DiagnosticStatus.OK or name in in_state:
+                continue
+            if name.endswith((_MESSAGES, _CONNECTIONS)):
+                yield from (pair.value for pair in status.values if " " in pair.value and _CLAMPED not in pair.value)
+            else:
                 yield f"{name}: {status.message}"
-            elif status.level != DiagnosticStatus.OK and name.endswith(_SUMMARIES[1]):
-                yield from (pair.value for pair in status.values)
 
     def _clamped(self) -> Iterable[str]:
         values = (pair.value for status in self._statuses.values() for pair in status.values)
-        return [text for text in values if " clamped: " in text]
+        return [text for text in values if _CLAMPED in text]
 
     def _unused(self) -> Iterable[str]:
         """Speed topics without a publisher."""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rcl_interfaces.msg import Log
 from std_msgs.msg import Int16MultiArray, MultiArrayDimension
 from std_srvs.srv import Trigger
@@ -11,6 +14,7 @@ from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
 from thymio_sim_ros.ros.aseba.bus import MAX_ROUNDS
 from thymio_sim_ros.ros.aseba.network import TOPIC
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
+from thymio_sim_ros.ros.rclpy_ext import message_reports
 
 TWO = {"robots": ["anna", "bert"], "follow_simulator": False}
 
@@ -74,6 +78,42 @@ def test_an_invalid_event_is_rejected_with_a_warning(ros, runtime, message, foun
     ros.publisher(Int16MultiArray, "/_aseba/emit").publish(message)
     logged(ros, logs, found)
     assert get_variables(ros, "times") == [[0]]
+
+
+def test_rejected_events_are_in_the_diagnostics(ros, runtime, monkeypatch):
+    monkeypatch.setattr(message_reports, "RECENT_S", math.inf)
+    runtime(HEAR, **TWO)
+    received = ros.collect(DiagnosticArray, "/diagnostics")
+    for topic, message in (
+        ("/anna/_aseba/emit", event("pong")),
+        ("/anna/_aseba/emit", event("ping", 1, 2, 3)),
+        ("/bert/aseba/emit/ping", Int16MultiArray(data=[1] * 4)),
+        ("/bert/_aseba/emit", Int16MultiArray(data=[1])),
+        ("/anna/_raw/buttons", Int16MultiArray(data=[1])),
+        (TOPIC, event("ping", 1)),
+    ):
+        ros.publisher(Int16MultiArray, topic).publish(message)
+
+    def status():
+        statuses = [one for one in received[-1].status if one.name == "aseba_runtime: messages"] if received else []
+        return statuses[0] if statuses and len(statuses[0].values) == 8 else None
+
+    found = ros.until(status)
+    values = [(pair.key, pair.value) for pair in found.values]
+    assert values[:2] == [("rejected", "6"), ("clamped", "0")]
+    texts = dict(values[2:])
+    assert found.level == DiagnosticStatus.WARN
+    assert found.message in texts.values()
+    network = f"/{TOPIC}"
+    assert texts == {
+        "anna: event pong": "anna: event pong rejected: the program declares ping",
+        "anna: event ping": "anna: event ping rejected: found 3 values, expected at most 2",
+        "bert: event ping": "bert: event ping rejected: found 4 values, expected at most 2",
+        "/bert/_aseba/emit": "/bert/_aseba/emit rejected: found 0 dimensions, expected 1:"
+        " layout.dim[0].label must be the name of the event",
+        "/anna/_raw/buttons": "/anna/_raw/buttons rejected: 1 words found, expected 5",
+        network: f"{network} rejected: found 1 labels and 1 values, expected 2 and 3 or more",
+    }
 
 
 def test_one_warning_does_not_hide_another(ros, runtime):

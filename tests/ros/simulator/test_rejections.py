@@ -10,7 +10,7 @@ from geometry_msgs.msg import Twist, Vector3
 from rcl_interfaces.msg import Log
 from std_msgs.msg import Float64MultiArray
 
-from thymio_sim_ros.ros.simulator import diagnostics
+from thymio_sim_ros.ros.rclpy_ext import message_reports
 
 NEAR_ZERO = 5e-324
 """What rclpy sends for the int 1 in a float field."""
@@ -97,7 +97,7 @@ def test_diagnostics_and_viewers_get_the_present_reasons(ros, simulation, monkey
     assert texts[0] == rejected
     assert texts[1].startswith("/cmd_vel clamped: a wheel would need 9 m/s")
     assert sim.simulator.runner.state().faults == (rejected,)
-    monkeypatch.setattr(diagnostics, "RECENT_S", -1.0)
+    monkeypatch.setattr(message_reports, "RECENT_S", -1.0)
     past = status()
     assert (past.level, [pair.value for pair in past.values]) == (DiagnosticStatus.OK, ["1", "1"])
     assert sim.simulator.runner.state().faults == ()

@@ -19,6 +19,7 @@ from thymio_sim_ros.device.behavior_host import is_internal
 from thymio_sim_ros.device.programs.foreign import is_unnamed
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.network import AsebaNetwork, NetworkEvent
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 
 __all__ = ["Bus"]
 
@@ -39,7 +40,7 @@ class Bus:
     all robots one list of events, so that events without names reach other robots as well.
     """
 
-    def __init__(self, node: Node, robots: Sequence[DeviceEndpoints]) -> None:
+    def __init__(self, node: Node, robots: Sequence[DeviceEndpoints], messages: MessageReports) -> None:
         """`robots`: all robots of the runtime, at any time."""
         self.reaches_all = True
         self.shares_numbers = False
@@ -48,7 +49,7 @@ class Bus:
         self._is_running = False
         self._slice_end_s: float | None = inf
         """Time after which no other robot starts to run; None: one slice after the next robot starts."""
-        self._network = AsebaNetwork(node, self._on_network_event)
+        self._network = AsebaNetwork(node, self._on_network_event, messages)
 
     @property
     def has_ready_robots(self) -> bool:
@@ -109,13 +110,12 @@ class Bus:
         sizes = {robot: _size(robot, event) for robot in robots}
         fits = {robot: size for robot, size in sizes.items() if size is not None and len(args) <= size}
         too_small = [size for size in sizes.values() if size is not None and len(args) > size]
-        about = f"event {event}"
         if is_internal(event):
-            endpoints.warn(about, "rejected: internal events stay in the robot")
+            endpoints.reject_event(event, "internal events stay in the robot")
         elif too_small:
-            endpoints.warn(about, f"rejected: found {len(args)} values, expected at most {min(too_small)}")
+            endpoints.reject_event(event, f"found {len(args)} values, expected at most {min(too_small)}")
         elif not fits and not (reaches_all and self._network.has_others):
-            endpoints.warn(about, f"rejected: the program declares {_declared(endpoints)}")
+            endpoints.reject_event(event, f"the program declares {_declared(endpoints)}")
         else:
             for robot, size in fits.items():
                 robot.receive_event(event, [*args, *[0] * (size - len(args))], source=COMPUTER)

@@ -131,9 +131,15 @@ class DeviceEndpoints:
         self._overload = ""
         rows = None if remote is None else ()
         self._outputs = OutputEndpoints(node, names, has_driver=has_driver, post=link.post if link else None, rows=rows)
-        self.warn = ThrottledLog(node)
+        self._warn = ThrottledLog(node)
         self._status = StatusEndpoints(node, names, number=number)
-        self._events = EventEndpoints(node, names, lambda event, args: bus.emit(self, event, args), self.warn)
+        self._events = EventEndpoints(
+            node,
+            names,
+            lambda event, args: bus.emit(self, event, args),
+            warn=self._warn,
+            messages=diagnostics.messages,
+        )
         self._variables = VariableEndpoints(node, names, self.device, self.run, language=self._debug_options.language)
         self._shutdown = node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
         self._sensors = SensorSubscriptions(
@@ -218,6 +224,11 @@ class DeviceEndpoints:
         self.device.receive_event(event, args, source=source)
         return True
 
+    def reject_event(self, event: str, reason: str) -> None:
+        """Report that an event from ROS was rejected."""
+        robot = f"{self.names.name}: " if self.names.name else ""
+        self._diagnostics.messages.add_rejected(f"{robot}event {event}", reason)
+
     def handle_messages(
         self, client: int, messages: Sequence[Message], send: Callable[[Sequence[Message], int | None], None]
     ) -> None:
@@ -240,11 +251,12 @@ class DeviceEndpoints:
         self._host.remember(replace(program, layout=self.device.layout))
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
-        """Store a reading; the caller then calls `run` or `is_due`. An invalid reading is logged."""
+        """Store a reading; the caller then calls `run` or `is_due`. An invalid reading is reported."""
         try:
             self.device.feed(sensor, words)
         except ValueError as error:
-            self.warn(full_name(self._node, self.names.topic(raw_topic(sensor))), f"rejected: {error}")
+            topic = full_name(self._node, self.names.topic(raw_topic(sensor)))
+            self._diagnostics.messages.add_rejected(topic, error)
 
     def is_due(self, now_ns: int) -> bool:
         """Advance the device to `now_ns` and return whether it has work to do."""
@@ -287,7 +299,7 @@ class DeviceEndpoints:
         self._replaced = 0
         overload = load.warning if self.device.status.state == RUNNING else ""
         if overload and not self._overload:
-            self.warn(f"{self.names.name or 'robot'}:", overload)
+            self._warn(f"{self.names.name or 'robot'}:", overload)
         self._overload = overload
         self._publish_status()
 

@@ -1,4 +1,4 @@
-"""Publishes `/diagnostics` of the runtime: the status of each robot, endpoints that are not connected."""
+"""Publishes `/diagnostics` of the runtime: the status of each robot, rejected messages, wrong endpoints."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from rclpy.node import Node
 
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 
 __all__ = ["DiagnosedRobot", "RuntimeDiagnostics"]
 
@@ -32,13 +33,15 @@ class RuntimeDiagnostics:
         self._node = node
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
         self._connections = Connections(node)
+        self.messages = MessageReports(node)
+        """Takes what is wrong with messages, such as events that no program declares."""
 
     def publish_all(self, robots: Sequence[DiagnosedRobot]) -> None:
         """Observe the load of all robots, poll for endpoints that are not connected and publish all statuses."""
         for robot in robots:
             robot.observe_load()
         self._connections.poll()
-        self._publish([*(robot.status_message for robot in robots), self._connections.status()])
+        self._publish([*(robot.status_message for robot in robots), self.messages.status(), self._connections.status()])
 
     def publish_changed(self, robot: DiagnosedRobot) -> None:
         """Publish the status of one robot, which has changed."""

@@ -12,6 +12,7 @@ from thymio_sim_ros.device.behavior_host import is_internal
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name, topic_word
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 
 __all__ = ["Emit", "EventEndpoints", "unique_topic_words"]
 
@@ -25,12 +26,14 @@ _MAX_TOPIC_LENGTH = 247
 class EventEndpoints:
     """A pair of topics for all events, and a pair for each event of the current program."""
 
-    def __init__(self, node: Node, names: RobotNames, emit: Emit, warn: Callable[[str, str], None]) -> None:
+    def __init__(
+        self, node: Node, names: RobotNames, emit: Emit, *, warn: Callable[[str, str], None], messages: MessageReports
+    ) -> None:
         self.words: Mapping[str, str] = {}
         self._node = node
         self._names = names
         self._emit = emit
-        self._warn = warn
+        self._warn, self._messages = warn, messages
         self._any = node.create_publisher(Int16MultiArray, names.topic("_aseba/events"), qos.EVENTS)
         self._any_emit = node.create_subscription(
             Int16MultiArray, names.topic("_aseba/emit"), self._on_any_emit, qos.EVENTS
@@ -82,7 +85,9 @@ class EventEndpoints:
 
     def _on_any_emit(self, message: Int16MultiArray) -> None:
         if len(message.layout.dim) != 1:
-            self._warn("_aseba/emit", "rejected: layout.dim[0].label must be the name of the event")
+            topic = full_name(self._node, self._names.topic("_aseba/emit"))
+            found = f"found {len(message.layout.dim)} dimensions, expected 1"
+            self._messages.add_rejected(topic, f"{found}: layout.dim[0].label must be the name of the event")
             return
         self._emit(message.layout.dim[0].label, list(message.data))
 

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.ros.interface import convert_readings, qos
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 
 __all__ = ["TOPIC", "AsebaNetwork", "NetworkEvent"]
 
@@ -32,9 +32,9 @@ class NetworkEvent:
 class AsebaNetwork:
     """Exchanges events with other runtimes."""
 
-    def __init__(self, node: Node, on_event: Callable[[NetworkEvent], None]) -> None:
+    def __init__(self, node: Node, on_event: Callable[[NetworkEvent], None], messages: MessageReports) -> None:
         """`on_event` is called with each received event."""
-        self._on_event, self._warn = on_event, ThrottledLog(node)
+        self._on_event, self._messages = on_event, messages
         self._own = uuid.uuid4().hex
         self._publisher = node.create_publisher(Int16MultiArray, TOPIC, qos.EVENTS)
         node.create_subscription(Int16MultiArray, TOPIC, self._on_message, qos.EVENTS)
@@ -55,7 +55,7 @@ class AsebaNetwork:
         labels: Sequence[str] = [dimension.label for dimension in message.layout.dim]
         if len(labels) != 2 or len(message.data) < HEAD:
             found = f"found {len(labels)} labels and {len(message.data)} values"
-            self._warn(self._publisher.topic_name, f"rejected: {found}, expected 2 and 3 or more")
+            self._messages.add_rejected(self._publisher.topic_name, f"{found}, expected 2 and 3 or more")
         elif labels[1] != self._own:
             source, channel, network, *args = message.data
             self._on_event(NetworkEvent(labels[0], source, (channel, network), tuple(args)))

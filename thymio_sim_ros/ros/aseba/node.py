@@ -157,7 +157,7 @@ class AsebaRuntime:
         self.robots.bus.shares_numbers = params.network.aseba_shared
         self._publish_behaviours()
         self._check = CheckService(node, layout=lambda: self.values.params.layout, robots=lambda: self.robots.names)
-        self._follower = SimulatorFollower(node, params, self.robots, link)
+        self._follower = SimulatorFollower(node, params, self.robots, link, self._diagnostics.messages)
         self.robots.set_names(params.robots)
         self.network: NetworkLink | None = None
         """The servers by which other programs reach the robots, if any is on."""

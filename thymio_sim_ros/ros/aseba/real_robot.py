@@ -32,6 +32,7 @@ from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext, robot_inputs
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.simulator.robot_endpoints import EndpointOptions, RobotEndpoints
 from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
 from thymio_sim_ros.ros.simulator.visualization.transforms import Transforms
@@ -78,7 +79,16 @@ def left_out(robot: RemoteRobot) -> frozenset[str]:
 class RealRobot:
     """One robot that is reached by a link. Invariant: its topics are those that it can serve, once it has connected."""
 
-    def __init__(self, node: Node, names: RobotNames, target: Target, *, number: int, timeout_s: float) -> None:
+    def __init__(
+        self,
+        node: Node,
+        names: RobotNames,
+        target: Target,
+        *,
+        number: int,
+        timeout_s: float,
+        messages: MessageReports,
+    ) -> None:
         """`timeout_s`: time after which a velocity ends."""
         self.robot = RemoteRobot(number)
         """The robot without ROS."""
@@ -89,6 +99,8 @@ class RealRobot:
         """Called after each message of the robot."""
         self.convert_options = ConvertOptions()
         """Options for the content of messages."""
+        self.messages = messages
+        """Takes what is wrong with messages."""
         self._node, self._names, self._target = node, names, target
         self._timeout_ns = round(timeout_s * SECOND_NS)
         self._left_out: frozenset[str] | None = None
@@ -117,15 +129,6 @@ class RealRobot:
         except ValueError as error:
             raise CommandError(str(error)) from error
         self.flush()
-
-    def report_rejected(self, topic: str, text: str) -> None:
-        """Do nothing: it is logged."""
-
-    def report_suspect(self, topic: str, text: str) -> None:
-        """Do nothing: it is logged."""
-
-    def report_clamped(self, topic: str, text: str) -> None:
-        """Do nothing: it is logged."""
 
     def flush(self) -> None:
         """Send what waits to be sent."""

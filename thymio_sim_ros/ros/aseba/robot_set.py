@@ -68,7 +68,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
             values.set_layout(described(THYMIO_II))
             if len(values.params.robots) != 1:
                 raise TargetError(f"robot {self._target}: found {len(values.params.robots)} robot_names, expected 1")
-        self.bus = Bus(node, self)
+        self.bus = Bus(node, self, diagnostics.messages)
         self.on_change: Callable[[], None] = lambda: None
         """Called when robots have come or gone."""
 
@@ -185,7 +185,8 @@ class RobotSet(Sequence[DeviceEndpoints]):
         )
 
     def _new_real_robot(self, names: RobotNames, number: int, target: Target) -> DeviceEndpoints:
-        real = RealRobot(self._node, names, target, number=number, timeout_s=self._values.params.cmd_vel_timeout)
+        timeout_s, messages = self._values.params.cmd_vel_timeout, self._diagnostics.messages
+        real = RealRobot(self._node, names, target, number=number, timeout_s=timeout_s, messages=messages)
         endpoints = DeviceEndpoints(
             self._node,
             names,

@@ -16,7 +16,7 @@ from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import full_name
 from thymio_sim_ros.ros.interface.raw_topic import RawDecoder
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 
 __all__ = ["SimulatorFollower"]
 
@@ -32,7 +32,14 @@ class SimulatorFollower:
     A real robot needs neither.
     """
 
-    def __init__(self, node: Node, params: RuntimeParams, robots: RobotSet, link: SimulatorLink | None) -> None:
+    def __init__(
+        self,
+        node: Node,
+        params: RuntimeParams,
+        robots: RobotSet,
+        link: SimulatorLink | None,
+        messages: MessageReports,
+    ) -> None:
         """Subscribe to the readings of all robots if a simulator publishes them already.
 
         The first robots are then created without subscriptions of their own, which the state would replace.
@@ -42,7 +49,7 @@ class SimulatorFollower:
         self._has_driver = params.robot_topics == "driver"
         self._raw: Any = None
         """The subscription to the integer readings of all robots of the simulator."""
-        self._decoder, self._warn = RawDecoder(), ThrottledLog(node)
+        self._decoder, self._messages = RawDecoder(), messages
         if self._is_on and not self._has_driver and node.count_publishers(SIMULATOR_RAW):
             if link is None:
                 self._subscribe_raw(SIMULATOR_RAW)
@@ -69,7 +76,7 @@ class SimulatorFollower:
             state = json.loads(message.data)
             names, raw = [str(robot["name"]) for robot in state["robots"]], str(state.get("raw", ""))
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            self._warn(full_name(self._node, SIMULATOR_STATE), f"rejected: {error!r}")
+            self._messages.add_rejected(full_name(self._node, SIMULATOR_STATE), repr(error))
             return
         self._subscribe_raw("" if self._has_driver else raw)
         if names != self._robots.names:
@@ -98,6 +105,6 @@ class SimulatorFollower:
                     robots[robot].feed(sensor, words)
                     fed[robots[robot]] = None
         except (ValueError, RuntimeError) as error:
-            self._warn(full_name(self._node, SIMULATOR_RAW), f"rejected: {error}")
+            self._messages.add_rejected(full_name(self._node, SIMULATOR_RAW), error)
         now_ns = self._node.get_clock().now().nanoseconds
         self._robots.bus.run_until_idle(*[endpoints for endpoints in fed if endpoints.is_due(now_ns)])

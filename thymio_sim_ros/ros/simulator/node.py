@@ -27,10 +27,11 @@ from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
-from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics, MessageReports
+from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.local_commands import LocalCommands
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
@@ -98,7 +99,7 @@ class Simulator:
             self.node.destroy_node()
             raise StartError(str(error)) from error
         self._last_heartbeat_ns = 0
-        self._messages = MessageReports()
+        self._messages = MessageReports(self.node)
         self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot, is_localized=is_localized)
         self.local_commands = LocalCommands(self.node, self.endpoints.robots.receive)
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()

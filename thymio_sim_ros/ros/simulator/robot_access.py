@@ -8,7 +8,7 @@ from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext
-from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.visualization.transforms import frames_of
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
@@ -26,7 +26,9 @@ class RobotAccess:
     ) -> None:
         """`robot`: name in the world."""
         self._robot, self._names = robot, names
-        self._runner, self._params, self._messages = runner, params, messages
+        self._runner, self._params = runner, params
+        self.messages = messages
+        """Reports on what is wrong with messages."""
 
     @property
     def convert_options(self) -> ConvertOptions:
@@ -49,18 +51,6 @@ class RobotAccess:
             self._runner.move(self._robot, command.x_m, command.y_m, command.yaw_rad)
         else:
             world.post(self._robot, command)
-
-    def report_rejected(self, topic: str, text: str) -> None:
-        """Show in the diagnostics why a message was rejected."""
-        self._messages.add_rejected(topic, text)
-
-    def report_suspect(self, topic: str, text: str) -> None:
-        """Show in the diagnostics why a message is surely a mistake."""
-        self._messages.add_suspect(topic, text)
-
-    def report_clamped(self, topic: str, text: str) -> None:
-        """Show in the diagnostics why a message was clamped."""
-        self._messages.add_clamped(topic, text)
 
     def _frames(self) -> Mapping[str, Pose]:
         robot = self._runner.world.robots.get(self._robot)

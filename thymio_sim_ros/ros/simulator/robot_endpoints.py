@@ -26,7 +26,7 @@ from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.simulator.visualization.urdf import urdf
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
@@ -111,6 +111,9 @@ class _SensorPublisher:
 class RobotOwner(Protocol):
     """The simulator as the endpoints of one robot use it."""
 
+    messages: MessageReports
+    """Takes what is wrong with messages."""
+
     @property
     def convert_options(self) -> ConvertOptions:
         """The current options for the content of messages."""
@@ -120,15 +123,6 @@ class RobotOwner(Protocol):
 
     def post(self, command: Command) -> None:
         """Post a command to the robot. Raises PlacementError for a place that is not free."""
-
-    def report_rejected(self, topic: str, text: str) -> None:
-        """Take note of a rejected message; `text` is the reason."""
-
-    def report_suspect(self, topic: str, text: str) -> None:
-        """Take note of a message that was executed, but is surely a mistake."""
-
-    def report_clamped(self, topic: str, text: str) -> None:
-        """Take note of a clamped message."""
 
 
 class RobotEndpoints:
@@ -161,7 +155,6 @@ class RobotEndpoints:
         self._reported: set[tuple[str, str]] = set()
         """Topics and first words of what is reported once."""
         self._is_cause_named = False
-        self._warn = ThrottledLog(node)
         self._demand = demand
         self._publishers: dict[str, list[_SensorPublisher]] = {sensor.name: [] for sensor in all_sensors()}
         self._sent: dict[str, tuple[_SensorPublisher, ...]] = {}
@@ -301,11 +294,10 @@ class RobotEndpoints:
                     self._report_limit(one, limit_check)
                 if field := tiny_field(message):
                     text = f"has a value near zero in {field}: {_INT_IN_FLOAT}"
-                    self._owner.report_suspect(self._full_name(one), text)
+                    self._owner.messages.add_suspect(self._full_name(one), text)
                     self._warn_once(one, text)
             except (CommandError, PlacementError) as error:
-                self._owner.report_rejected(self._full_name(one), f"rejected: {error}")
-                self._warn(self._full_name(one), f"rejected: {error}")
+                self._owner.messages.add_rejected(self._full_name(one), error)
                 if isinstance(error, NotFiniteError) and not self._is_cause_named:
                     self._is_cause_named = not self._owner.convert_options.driver_ranges
                     if self._is_cause_named:
@@ -315,7 +307,7 @@ class RobotEndpoints:
 
     def _report_limit(self, one: RobotInput, limit_check: str) -> None:
         """Log a clamped message once per topic: programs use large numbers for full speed on purpose."""
-        self._owner.report_clamped(self._full_name(one), f"clamped: {limit_check}")
+        self._owner.messages.add_clamped(self._full_name(one), limit_check)
         self._warn_once(one, f"clamped: {limit_check}")
 
     def _warn_once(self, one: RobotInput, text: str) -> None:

@@ -16,8 +16,8 @@ from rclpy.node import Node
 
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, deliver
-from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.prepared_playground import PreparedPlayground

@@ -20,8 +20,7 @@ from std_srvs.srv import SetBool, Trigger
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
-from thymio_sim_ros.ros.simulator.diagnostics import MessageReports
+from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.model import fields
@@ -81,7 +80,6 @@ class WorldServices:
         self, node: Node | LocalNode, runner: WorldRunner, robots: RobotEndpointSet, messages: MessageReports
     ) -> None:
         self._runner, self._robots, self._messages = runner, robots, messages
-        self._warn = ThrottledLog(node)
         handlers: dict[str, Handler] = {
             "~/pause": self._pause,
             "~/step": self._step,
@@ -178,8 +176,7 @@ class WorldServices:
         try:
             self._place_frame(message)
         except ValueError as error:
-            self._messages.add_rejected(PLACE_TOPIC, f"rejected: {error}")
-            self._warn(PLACE_TOPIC, f"rejected: {error}")
+            self._messages.add_rejected(PLACE_TOPIC, error)
 
     def _place_frame(self, message: TransformStamped) -> None:
         """Move an object or robot; `child_frame_id` is its name or a robot's frame."""
