@@ -168,9 +168,9 @@ def test_a_fault_is_logged_with_its_line(ros, runtime, prox):
 def test_all_robots_are_on_diagnostics(ros, runtime):
     runtime(SOURCE, robots=["anna", "bert"], follow_simulator=False)
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")
-    ros.until(lambda: any(len(message.status) == 3 for message in diagnostics))
-    names = next([one.name for one in message.status] for message in diagnostics if len(message.status) == 3)
-    assert names == ["aseba: anna", "aseba: bert", "aseba_runtime: connections"]
+    ros.until(lambda: any(len(message.status) == 4 for message in diagnostics))
+    names = next([one.name for one in message.status] for message in diagnostics if len(message.status) == 4)
+    assert names == ["aseba: anna", "aseba: bert", "aseba_runtime: messages", "aseba_runtime: connections"]
 
 
 def test_simulated_time_that_jumps_back_ends_a_pause(ros, simulation, runtime):
