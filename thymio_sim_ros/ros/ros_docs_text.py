@@ -92,7 +92,9 @@ ros2 param set /simulator playground maze
 
 A playground is a shipped name, a file or the JSON text itself. An invalid one is rejected with file, key, found and
 expected value, and the current world continues. A new seed or playground restarts at time 0, like `reset`: `/clock`
-jumps back, and nodes discard their history.
+jumps back, and nodes discard their history. The present value has no effect, unless the playground is a file that has
+changed, and the answer says so; `reset` restarts the world. The same holds for the programs of `/aseba_runtime`: the
+output of `ros2 param dump` can be loaded into running nodes.
 
 Robots are added, removed and moved by services that return a result with a reason for each name:
 

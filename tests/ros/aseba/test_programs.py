@@ -14,6 +14,7 @@ from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 
+SAME = "has this value already, nothing changed: the services aseba/reset and aseba/run of a robot restart its program"
 TWO = {"robots": ["anna", "bert"], "follow_simulator": False}
 
 NETWORK = """<network>
@@ -118,10 +119,10 @@ def test_constants_are_parameters_for_all_and_for_one(ros, runtime):
         ("robots.anna.watch", "me", "found 'me', expected a list of names"),
         ("local_events", True, "found True, expected a list of names"),
         ("script.path", "~no-such-user/x.aesl", "~no-such-user/x.aesl"),
-        ("robots.anna.script.source", 3, "Wrong parameter type, expected 'Type.STRING'"),
+        ("robots.anna.script.source", 3, "robots.anna.script.source: found 3, expected text"),
         ("robots.absent.script.source", 3, "found 3, expected text"),
         ("robots.absent.script.source", "var 3", "line 1, column 5"),
-        ("scrip.source", "var a", "found unknown parameter scrip.source"),
+        ("scrip.source", "var a", "unknown parameter scrip.source of /aseba_runtime (did you mean script.source?)"),
         ("emit_reaches", "all", "expected network or robot"),
         ("script.path", "no_such_program", "no_such_program"),
     ],
@@ -160,7 +161,8 @@ def test_the_last_of_path_and_text_counts(ros, runtime):
 def test_the_same_text_again_changes_nothing_and_a_reset_restarts(ros, runtime):
     robot = runtime("var me = 1\nonevent button.left\nme = 7").robots[0]
     robot.device.variables.set("me", (9,))
-    assert set_parameters(ros, {"script.source": "var me = 1\nonevent button.left\nme = 7"}).successful
+    result = set_parameters(ros, {"script.source": "var me = 1\nonevent button.left\nme = 7"})
+    assert (result.successful, result.reason) == (True, f"script.source {SAME}")
     assert get_variables(ros, "me") == [[9]]
     for verb in ("reset", "run"):
         assert ros.call(Trigger, f"/aseba/{verb}").success
@@ -199,10 +201,12 @@ def test_a_changed_file_is_read_again(ros, runtime, tmp_path):
     path.write_text("var me = 1\nonevent button.left\nme = 7")
     robot = runtime(path=str(path)).robots[0]
     robot.device.variables.set("me", (9,))
-    assert set_parameters(ros, {"script.path": str(path)}).successful
+    result = set_parameters(ros, {"script.path": str(path)})
+    assert (result.successful, result.reason) == (True, f"script.path {SAME}")
     assert get_variables(ros, "me") == [[9]]
     path.write_text("var me = 2\nonevent button.left\nme = 7")
-    assert set_parameters(ros, {"script.path": str(path)}).successful
+    result = set_parameters(ros, {"script.path": str(path)})
+    assert (result.successful, result.reason) == (True, "")
     assert get_variables(ros, "me") == [[2]]
 
 

@@ -111,13 +111,30 @@ def test_a_parameter_that_was_never_set_hides_no_other(ros, studio, peer):
 
 def test_an_unknown_parameter_is_rejected_and_the_bridge_continues(studio, peer):
     studio.parameter("/peer.program")
-    status, _ = set_and_answer(studio, ms.Parameter("/peer.nothing", 1))
-    assert status.message.startswith("/peer.nothing: ")
+    status, _ = set_and_answer(studio, ms.Parameter("/peer.sped", 1))
+    assert status.message == "/peer.sped: found unknown parameter sped of /peer (did you mean speed?)"
+    status, _ = set_and_answer(studio, ms.Parameter("/pear.speed", 1))
+    assert status.message == "/pear.speed: no node /pear with parameters (did you mean /peer?)"
     status, _ = set_and_answer(studio, ms.Parameter("/peer.\ud800", 1))
     assert status.message.endswith("not offered by this bridge")
     status, _ = set_and_answer(studio, ms.Parameter("/peer.program", "half \ud800"))
     assert "expected Unicode text" in status.message
     assert set_and_answer(studio, ms.Parameter("/peer.program", "better"))[-1].parameters[0].value == "better"
+
+
+def test_an_unknown_parameter_that_is_read_is_named_with_the_nearest_one(studio, peer):
+    studio.parameter("/peer.speed")
+    studio.send(ms.GetParameters(("/peer.speed", "/peer.sped", "/foxglove_bridge.nothing", "/peer"), "mine"))
+    sentences = {
+        "/peer.sped": "found unknown parameter sped of /peer (did you mean speed?)",
+        "/foxglove_bridge.nothing": "found unknown parameter nothing of /foxglove_bridge;"
+        " `ros2 param list /foxglove_bridge` lists them",
+        "/peer": "not offered by this bridge",
+    }
+    for name, sentence in sentences.items():
+        assert studio.next(ms.Status) == ms.Status(StatusLevel.WARNING, f"{name}: {sentence}", f"parameter:{name}")
+    answer = studio.next(ms.ParameterValues, lambda values: values.id == "mine")
+    assert answer.parameters == (ms.Parameter("/peer.speed", 1.5, "float64"),)
 
 
 def test_of_many_rejections_only_some_are_reported(studio, peer):

@@ -32,6 +32,9 @@ TWO = json.dumps(
 )
 
 
+SAME = "has this value already, nothing changed: the service /simulator/reset restarts the world"
+
+
 def set_parameter(ros, name, value):
     request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
     return ros.call(SetParameters, "/simulator/set_parameters", request).results[0]
@@ -66,10 +69,12 @@ def test_the_present_playground_again_changes_nothing_unless_its_file_does(ros, 
     sim = simulation(playground=str(path))
     sim.step(0.2)
     world = sim.world
-    assert set_parameter(ros, "playground", str(path)).successful
+    result = set_parameter(ros, "playground", str(path))
+    assert (result.successful, result.reason) == (True, f"playground {SAME}")
     assert sim.world is world
     path.write_text(TWO.replace("anna", "carl"))
-    assert set_parameter(ros, "playground", str(path)).successful
+    result = set_parameter(ros, "playground", str(path))
+    assert (result.successful, result.reason) == (True, "")
     assert "carl" in sim.world.robots
 
 
@@ -84,8 +89,8 @@ def test_the_present_values_of_seed_and_pace_change_nothing(ros, simulation):
     sim = simulation(seed=3, real_time_factor=2.0)
     sim.step(0.2)
     world, pacer = sim.world, sim.simulator.runner.scheduler._pacer
-    assert set_parameter(ros, "seed", 3).successful
-    assert set_parameter(ros, "real_time_factor", 2.0).successful
+    results = [set_parameter(ros, name, value) for name, value in (("seed", 3), ("real_time_factor", 2.0))]
+    assert [(result.successful, result.reason) for result in results] == [(True, f"seed {SAME}"), (True, "")]
     assert (sim.world, sim.simulator.runner.scheduler._pacer) == (world, pacer)
 
 

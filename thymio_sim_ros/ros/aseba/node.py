@@ -29,12 +29,13 @@ from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.device.options import OptionError
 from thymio_sim_ros.loading import shipped_behaviours
 from thymio_sim_ros.network.settings import NetworkSettings
+from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba.bus import SLICE_S
 from thymio_sim_ros.ros.aseba.check_service import CheckService
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.network_link import NetworkLink
 from thymio_sim_ros.ros.aseba.parameter_callbacks import ParameterCallbacks
-from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, WrongValueError
+from thymio_sim_ros.ros.aseba.parameters import BEHAVIOUR, RuntimeParams, WrongValueError
 from thymio_sim_ros.ros.aseba.robot_set import ROBOT_ERRORS, RobotSet
 from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
 from thymio_sim_ros.ros.aseba.simulator_follower import SimulatorFollower
@@ -88,7 +89,9 @@ class AsebaRuntime:
             context=context,
             is_set_again=self._is_set_again,
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
-            allow_undeclared_parameters=True,
+            is_free=aseba_params.is_free,
+            repeat=_repeat,
+            has_acted=self._has_started,
             start_parameter_services=not is_closed,
         )
         self.control: Node | LocalNode = LocalNode(self.node) if is_closed else self.node
@@ -185,6 +188,9 @@ class AsebaRuntime:
         is_replaced = any(endpoints.program.is_foreign for endpoints in getattr(self, "robots", ()))
         return parameter.endswith("script.path") or (is_replaced and parameter.endswith("script.source"))
 
+    def _has_started(self) -> bool:
+        return self._callbacks.has_started
+
     def _publish_behaviours(self) -> None:
         """Publish the retained list of built-in behaviors."""
         self._behaviours = self.node.create_publisher(String, "~/_behaviours", qos.TRANSIENT_LOCAL)
@@ -195,6 +201,12 @@ class AsebaRuntime:
         """Restart all robots when time jumps back, as at a reset of the simulator."""
         if jump.clock_change in (ClockChange.ROS_TIME_NO_CHANGE, ClockChange.SYSTEM_TIME_NO_CHANGE):
             self.robots.restart()
+
+
+def _repeat(parameter: str) -> str:
+    """Return how a robot runs its program again, for a parameter that chooses the program."""
+    is_program = parameter.endswith(("script.path", "script.source")) or parameter == BEHAVIOUR
+    return "the services aseba/reset and aseba/run of a robot restart its program" if is_program else ""
 
 
 def _tokens(node: Node, settings: NetworkSettings) -> Tokens:

@@ -32,6 +32,8 @@ class ParameterCallbacks:
         self._node, self._values, self._robots, self._variable_timer = node, values, robots, variable_timer
         self._accepted: ParameterChange | None = None
         """The parameters that were checked last, until they are applied."""
+        self.has_started = False
+        """Whether the last change started a program, also one of the same name."""
         node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, values.last_set_text))
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
@@ -39,13 +41,12 @@ class ParameterCallbacks:
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
         if self._values.is_declaring:
             return SetParametersResult(successful=True)
+        self.has_started = False
         changes = params.changes(parameters)
         named = script_parameters.named(changes, self._values.last_set_text)
         values = self._values.by_name | named
         try:
             for name, value in changes.items():
-                if not (self._node.has_parameter(name) or aseba_params.is_free(name)):
-                    raise WrongValueError(f"found unknown parameter {name}")
                 aseba_params.check_value(name, value)
             if reason := params.refusal(self._values.params, parameters):
                 raise WrongValueError(reason)
@@ -76,4 +77,4 @@ class ParameterCallbacks:
         self._robots.bus.reaches_all = self._values.params.emit_reaches == "network"
         if "watch_rate" in accepted.changes:
             self._variable_timer.set_rate(self._values.params.watch_rate)
-        self._robots.apply(old, accepted)
+        self.has_started = self._robots.apply(old, accepted)

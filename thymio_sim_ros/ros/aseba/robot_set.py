@@ -121,15 +121,20 @@ class RobotSet(Sequence[DeviceEndpoints]):
         self._assign_programs(new)
         self.on_change()
 
-    def apply(self, old: Mapping[str, Any], change: ParameterChange) -> None:
-        """Apply accepted parameters to all robots: debug options, programs, built-in behavior."""
+    def apply(self, old: Mapping[str, Any], change: ParameterChange) -> bool:
+        """Apply accepted parameters to all robots: debug options, programs, built-in behavior.
+
+        Returns whether a robot was started again.
+        """
         before = self._behaviour
         if "behaviour" in change.changes:
             self._behaviour = self._values.params.behaviour
         is_switched = self._behaviour != before  # not by a robot that gets a program of its own
+        has_started = False
         for endpoints in self._robots:
             endpoints.set_debug_options(self._values.debug_options(endpoints.names.name))
-            self._apply_program(endpoints, old, change, is_switched=is_switched)
+            has_started |= self._apply_program(endpoints, old, change, is_switched=is_switched)
+        return has_started
 
     def restart(self) -> None:
         """Restart all robots, after a jump back in time."""
@@ -222,7 +227,8 @@ class RobotSet(Sequence[DeviceEndpoints]):
 
     def _apply_program(
         self, endpoints: DeviceEndpoints, old: Mapping[str, Any], change: ParameterChange, *, is_switched: bool
-    ) -> None:
+    ) -> bool:
+        """Start a robot whose program or built-in behavior changes; return whether it was started."""
         name = endpoints.names.name
         share = change.shares.get(name, endpoints.share)
         is_other = script_parameters.script_of(old, name) != script_parameters.script_of(change.values, name)
@@ -231,8 +237,10 @@ class RobotSet(Sequence[DeviceEndpoints]):
             if "behaviour" not in change.changes:
                 self._behaviour = ""
             self._start_program(endpoints, share or Assignment(None))
-        elif is_switched:
+            return True
+        if is_switched:
             self._start_program(endpoints, share)
+        return is_switched
 
     def _start_program(self, endpoints: DeviceEndpoints, share: Assignment | None) -> None:
         """Start a robot with its program or with a built-in behavior."""

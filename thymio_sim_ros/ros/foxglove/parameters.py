@@ -3,6 +3,7 @@
 The parameters of a node are requested when a client first requests, sets or watches them, not before: a request may
 print warnings in the terminal of a node of another project. A rejected value is reported as an error status
 `parameter:<name>` before the answer, which always has the current value; the next success removes the status.
+A requested parameter that does not exist is reported as a warning of the same name.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import zip_longest
+from itertools import islice, zip_longest
 from typing import Any
 
 from rcl_interfaces.msg import Parameter as RosParameter
@@ -36,10 +37,14 @@ from thymio_sim_ros.bridge.switchboard.parameters import MAX_WATCHED
 from thymio_sim_ros.ros.foxglove.file_access import parameter_refusal
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
 from thymio_sim_ros.ros.foxglove.service_calls import SET_TIMEOUT_S, ServiceCalls
+from thymio_sim_ros.ros.rclpy_ext.parameters import meant, unknown
 
 __all__ = ["Parameters"]
 
 _LIST = "/list_parameters"
+_UNDECLARED = "Invalid access to undeclared parameter"
+"""Begin of the reason of rclpy for an unknown parameter; the list of names behind it is empty."""
+_NOT_OFFERED = "not offered by this bridge"
 _PORTION = 8
 """Parameters in one request to a node, so that it can handle other requests in between."""
 
@@ -142,7 +147,12 @@ class Parameters:
         names = request.names or None
         self._wants_all = self._wants_all or names is None
         nodes = self._present if names is None else _nodes_of(names) & self._present
-        self._after(nodes, lambda: self._post(SendParameters(request.client, names, request.request_id)))
+
+        def answer() -> None:
+            self._report_unknown(request)
+            self._post(SendParameters(request.client, names, request.request_id))
+
+        self._after(nodes, answer)
 
     def watch(self, request: ParametersWatched) -> None:
         """Follow the nodes whose parameters a client watches."""
@@ -210,9 +220,9 @@ class Parameters:
 
     def _checked(self, parameter: Parameter, node: str, name: str) -> ParameterValue:
         if node not in self._types:
-            raise UnfitValueError(f"no node {node} with parameters")
+            raise UnfitValueError(self._unknown_node(node))
         if not name or not self._is_allowed(parameter.name) or not _is_text(name):
-            raise UnfitValueError("not offered by this bridge")
+            raise UnfitValueError(_NOT_OFFERED)
         if refusal := parameter_refusal(name, parameter.value):
             raise UnfitValueError(refusal)
         return to_ros(parameter, self._types[node].get(name, ParameterType.PARAMETER_NOT_SET))
@@ -227,7 +237,7 @@ class Parameters:
                 missing = SetParametersResult(reason="the node did not report a result")
                 for name, result in zip_longest(names, response.results[: len(names)], fillvalue=missing):
                     if not result.successful:
-                        change.refused[f"{node}.{name}"] = result.reason or "rejected by the node"
+                        change.refused[f"{node}.{name}"] = self._explained(node, name, result.reason)
             self._read(node, names, lambda: was_read(), sender=change.request.client)
 
         def was_read() -> None:
@@ -240,6 +250,29 @@ class Parameters:
         self._calls.call(
             SetParameters, f"{node}/set_parameters", request, was_set, sender=sender, timeout_s=SET_TIMEOUT_S
         )
+
+    def _explained(self, node: str, name: str, reason: str) -> str:
+        """Return the reason of a node, or what rclpy means by a sentence that does not name the parameter."""
+        if reason.startswith(_UNDECLARED):
+            return unknown(name, node, list(self._types.get(node, ())))
+        return reason or "rejected by the node"
+
+    def _report_unknown(self, request: ParametersRequested) -> None:
+        """Say which requested parameters do not exist, of many some: the answer has the others only."""
+        reasons = ((name, self._absence(name)) for name in dict.fromkeys(request.names))
+        for name, reason in islice(((name, reason) for name, reason in reasons if reason), MAX_REFUSALS):
+            status = Status(StatusLevel.WARNING, f"{name}: {reason}", parameter_status(name))
+            self._post(SendToClient(request.client, status))
+
+    def _absence(self, full: str) -> str:
+        """Return why a node does not have a parameter; empty if it does, or if the node has not answered yet."""
+        node, _, name = full.partition(".")
+        if node not in self._types or node in self._reading | self._unread or name in self._types[node]:
+            return ""
+        return unknown(name, node, list(self._types[node])) if name and self._is_allowed(full) else _NOT_OFFERED
+
+    def _unknown_node(self, node: str) -> str:
+        return f"no node {node} with parameters{meant(node, sorted(self._present))}"
 
     def _answer(self, change: _Change) -> None:
         request = change.request

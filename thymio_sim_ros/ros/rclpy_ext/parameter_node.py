@@ -4,6 +4,10 @@
 arrives as text, an empty list as a list of booleans, and the lines of a program joined into one. Two rules compensate:
 a value is converted to the declared type where possible, and a value that equals the current one, directly or after
 such a round trip, is accepted without being set, even if the parameter is read-only.
+
+The reason of a rejection says in the words of a terminal what rclpy says with names of its classes, or not at all: it
+loses the name of an unknown parameter. A reason also comes with the success of a value that changes nothing although
+a user may expect it to act, such as the present playground: `ros2 param set` prints it.
 """
 
 from __future__ import annotations
@@ -41,20 +45,61 @@ class ParameterNode(Node):
         *,
         context: Context,
         is_set_again: Callable[[str], bool] = lambda _name: False,
+        is_free: Callable[[str], bool] | None = None,
+        repeat: Callable[[str], str] = lambda _name: "",
+        has_acted: Callable[[], bool] = lambda: True,
         **options: Any,
     ) -> None:
-        """`is_set_again`: whether a parameter is set even if unchanged, such as a file that may differ."""
-        self._is_set_again = is_set_again
-        super().__init__(name, context=context, **options)
+        """Create a node.
+
+        Args:
+            name: The name of the node.
+            context: Its context.
+            is_set_again: Whether a parameter is set even if unchanged, such as a file that may differ.
+            is_free: Whether a parameter may be set without being declared; without it, none may.
+            repeat: Says how to get the effect of a parameter again, such as a new world, that has its value already;
+                empty for one without such an effect.
+            has_acted: Whether the parameters that were set again have just had an effect.
+            options: Options of rclpy's node.
+        """
+        self._is_set_again, self._is_free = is_set_again, is_free
+        self._repeat, self._has_acted = repeat, has_acted
+        super().__init__(name, context=context, allow_undeclared_parameters=is_free is not None, **options)
         forget_destroyed(self)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set the values that differ, all or none; called by rclpy's parameter services."""
         wanted = [self._as_declared(one) for one in parameter_list]
-        changed = [one for one in wanted if self._is_set_again(one.name) or not self._is_present(one)]
-        if parameter_list and not changed:
-            return SetParametersResult(successful=True)
-        return super().set_parameters_atomically(changed)
+        if refusal := next(filter(None, map(self._unknown, wanted)), ""):
+            return SetParametersResult(successful=False, reason=refusal)
+        present = {one.name: one.value for one in wanted if self._is_present(one)}
+        changed = [one for one in wanted if one.name not in present or self._is_set_again(one.name)]
+        if changed:
+            result = super().set_parameters_atomically(changed)
+            if not result.successful:
+                result.reason = next(filter(None, map(self._misfit, changed)), result.reason)
+                return result
+            if self._has_acted():
+                return result
+        notes = ((name, self._repeat(name)) for name, value in present.items() if value != "")
+        sentences = (f"{name} has this value already, nothing changed: {how}" for name, how in notes if how)
+        return SetParametersResult(successful=True, reason="; ".join(sentences))
+
+    def _unknown(self, wanted: Parameter) -> str:
+        """Return a sentence if the node has no such parameter."""
+        if self.has_parameter(wanted.name) or (self._is_free is not None and self._is_free(wanted.name)):
+            return ""
+        return parameters.unknown(wanted.name, self.get_fully_qualified_name(), list(self.get_parameters_by_prefix("")))
+
+    def _misfit(self, wanted: Parameter) -> str:
+        """Return why rclpy rejected a value because of the parameter's descriptor; empty if it did not."""
+        if not self.has_parameter(wanted.name):
+            return ""
+        descriptor = self.describe_parameter(wanted.name)
+        if descriptor.read_only:
+            return f"{wanted.name} is read-only while the node runs: start it with --ros-args -p {wanted.name}:=…"
+        reason = parameters.misfit(wanted, descriptor)
+        return f"{wanted.name}: {reason}" if reason else ""
 
     def _as_declared(self, wanted: Parameter) -> Parameter:
         """Convert the value to the current type of the parameter where possible."""

@@ -14,6 +14,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import Field, dataclass, field
 from typing import Any, TypeVar
@@ -29,6 +30,22 @@ T = TypeVar("T")
 
 _LIKE = 0.7
 """Similarity 0…1 from which an unknown name is treated as a typing error for a known one."""
+
+_EXPECTED: Mapping[Parameter.Type, str] = {
+    Parameter.Type.BOOL: "true or false",
+    Parameter.Type.INTEGER: "an integer",
+    Parameter.Type.DOUBLE: "a number with a decimal point, such as 2.0",
+    Parameter.Type.STRING: "text",
+    Parameter.Type.BYTE_ARRAY: "a list of bytes",
+    Parameter.Type.BOOL_ARRAY: "a list of true and false",
+    Parameter.Type.INTEGER_ARRAY: "a list of integers",
+    Parameter.Type.DOUBLE_ARRAY: "a list of numbers with a decimal point, such as [2.0, 0.5]",
+    Parameter.Type.STRING_ARRAY: "a list of texts",
+}
+"""What is expected as the value of a parameter of each type, as it is typed in a terminal."""
+
+_SHOWN = 60
+"""Characters of a wrong value that a message has at most; a program or a playground is longer."""
 
 _OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
 
@@ -122,12 +139,17 @@ class Declared:
 
 
 def _limits(said: Mapping[str, Any]) -> str:
-    low, high = said["low"], said["high"]
+    low, high = (None if bound is None or math.isinf(bound) else _short(bound) for bound in (said["low"], said["high"]))
     if low is None and high is None:
         return ""
     if high is None:
-        return f"at least {low:g}"
-    return f"at most {high:g}" if low is None else f"{low:g} to {high:g}"
+        return f"at least {low}"
+    return f"at most {high}" if low is None else f"{low} to {high}"
+
+
+def _short(number: float) -> str:
+    """A number without unnecessary decimals; integers have all their digits."""
+    return str(number) if isinstance(number, int) else f"{number:g}"
 
 
 def _is_within(value: float, said: Mapping[str, Any]) -> bool:
@@ -168,7 +190,7 @@ def declare(node: Node, defaults: T) -> T:
         try:
             parameter = node.declare_parameter(one.name, one.default, one.descriptor)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
-            reason = " ".join(str(error).split())
+            reason = _start_refusal(node, one) or " ".join(str(error).split())
             raise StartError(f"parameter {one.name} of {node.get_name()}: {reason}") from error
         value = one.default if parameter.value is None else plain(parameter.value)
         reason = one.refusal(value)
@@ -176,6 +198,47 @@ def declare(node: Node, defaults: T) -> T:
             raise StartError(reason)
         values = _with(values, one.path, value)
     return values
+
+
+def _start_refusal(node: Node, one: Declared) -> str:
+    """Return why the start value of a parameter does not fit its descriptor, or an empty text."""
+    descriptor = one.descriptor
+    descriptor.type = Parameter.Type.from_parameter_value(one.default).value
+    given = node._parameter_overrides.get(one.name)  # rclpy has no public accessor
+    return "" if given is None else misfit(given, descriptor)
+
+
+def misfit(wanted: Parameter, descriptor: ParameterDescriptor) -> str:
+    """Return why a value does not fit the type or the range of its parameter, or an empty text.
+
+    rclpy decides; this describes in the words of a terminal what its own sentence says with names of Python's classes.
+    """
+    value, kind = plain(wanted.value), Parameter.Type(descriptor.type)
+    if kind in _EXPECTED and not descriptor.dynamic_typing and wanted.type_ != kind:
+        return f"found {'nothing' if value is None else shown(value)}, expected {_EXPECTED[kind]}"
+    for bounds in (*descriptor.integer_range, *descriptor.floating_point_range):
+        said = {"low": bounds.from_value, "high": bounds.to_value}
+        if isinstance(value, int | float) and not _is_within(value, said):
+            return f"found {value}, expected {_limits(said)}"
+    return ""
+
+
+def shown(value: Any) -> str:
+    """Return a value as a message shows it, shortened if it is long."""
+    return _cut(repr(value))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+
+
+def unknown(name: str, owner: str, names: Sequence[str]) -> str:
+    """Return the sentence about a parameter that a node does not have, with the most similar of its `names`.
+
+    `owner` is the full name of the node.
+    """
+    near = meant(name, names) or f"; `ros2 param list {owner}` lists them"
+    return f"found unknown parameter {_cut(name)} of {owner}{near}"
 
 
 def undeclared(node: Node, name: str) -> str:
@@ -205,9 +268,16 @@ def warn_of_unknown(
 
 
 def meant(name: str, names: Sequence[str]) -> str:
-    """Return " (did you mean …?)" with the most similar name, or an empty text."""
-    near = difflib.get_close_matches(name, names, 1, _LIKE)
+    """Return " (did you mean …?)" with the most similar name, or with one that has the whole word; or an empty text."""
+    if len(name) > _SHOWN:  # of no human; comparing it would take long
+        return ""
+    near = difflib.get_close_matches(name, names, 1, _LIKE) or _with_word(name, names)
     return f" (did you mean {near[0]}?)" if near else ""
+
+
+def _with_word(name: str, names: Sequence[str]) -> list[str]:
+    """Return the names that have this one as a word, as `cmd_vel_timeout` has `timeout`."""
+    return [one for one in names if name in re.split(r"[._]", one)]
 
 
 def overrides(node: Node) -> dict[str, Any]:

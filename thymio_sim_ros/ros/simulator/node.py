@@ -76,6 +76,8 @@ class Simulator:
             "simulator",
             context=context,
             is_set_again=lambda name: name == "playground",
+            repeat=self._repeat,
+            has_acted=self._has_loaded,
             start_parameter_services=not is_closed,
         )
         self.control: Node | LocalNode = LocalNode(self.node) if is_closed else self.node
@@ -162,6 +164,14 @@ class Simulator:
         if self._interfaces is not None:
             self._interfaces.close()
         self.node.destroy_node()
+
+    def _repeat(self, parameter: str) -> str:
+        """Return how the world restarts, for a parameter whose change restarts it."""
+        is_of_world = parameter in ("playground", "seed")
+        return f"the service {self.node.get_fully_qualified_name()}/reset restarts the world" if is_of_world else ""
+
+    def _has_loaded(self) -> bool:
+        return self.parameter_callbacks.has_loaded
 
     def _new_robot(self, robot: str, names: RobotNames) -> RobotEndpoints:
         owner = RobotAccess(robot, names, self.runner, self.params, self._messages)

@@ -41,6 +41,8 @@ class ParameterCallbacks:
         self._node, self._params, self._loader, self._runner = node, params, loader, runner
         self._accepted: tuple[PreparedPlayground, World] | None = None
         """The playground that was checked last, if it differs from the current one."""
+        self.has_loaded = False
+        """Whether the last change created a world, also from a file of the same name."""
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
 
@@ -64,6 +66,7 @@ class ParameterCallbacks:
         if not self._has_own(parameters):
             return SetParametersResult(successful=True)
         self._runner.catch_up()
+        self.has_loaded = False
         if reason := refusal(self._params.values, parameters):
             return _rejected(reason)
         playground = changed.get("playground")
@@ -98,7 +101,9 @@ class ParameterCallbacks:
         if "playground" in changed and self._accepted is not None:
             (prepared, world), self._accepted = self._accepted, None
             self._runner.replace(prepared, world)
+            self.has_loaded = True
         elif "seed" in changed:
+            self.has_loaded = True
             self._runner.replace(self._runner.prepared, new_world(self._runner.world.playground, values))
         self._runner.publish_state()
 
