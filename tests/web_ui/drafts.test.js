@@ -39,6 +39,20 @@ test("a draft that another tab has changed stays beside the own one", () => {
   assert.deepEqual(other.list().map(({ id }) => other.read(id)), ["of the other", "of one, later"]);
 });
 
+test("two tabs that change one draft by turns keep the last text of each, and no more drafts with each turn", () => {
+  const storage = newStorage();
+  const [one, other, third] = [new Drafts(storage), new Drafts(storage), new Drafts(storage)];
+  one.keep(DRAFT);
+  for (const drafts of [other, third]) drafts.read("a");
+  third.keep({ ...DRAFT, text: "of the third" });
+  for (let turn = 0; turn < 9; turn++) {
+    one.keep({ ...DRAFT, text: `one ${turn}` });
+    other.keep({ ...DRAFT, text: `other ${turn}` });
+  }
+  const texts = one.list().map(({ id }) => one.read(id));
+  assert.deepEqual(texts.sort(), ["of the third", "one 8", "other 7", "other 8"]);
+});
+
 test("a full storage keeps no outdated draft, and the others", () => {
   const storage = newStorage();
   const drafts = new Drafts(storage);

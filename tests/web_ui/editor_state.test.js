@@ -370,7 +370,20 @@ test("two tabs of a browser lose nothing: what the other one wrote is among the 
   assert.deepEqual(codesIn(one), ["a = 3", "a = 1"]);
   one.edit("a = 5");
   other.saved();
-  assert.deepEqual(codesIn(other), ["a = 5", "a = 3", "a = 1"]);
+  assert.deepEqual(codesIn(other), ["a = 5", "a = 3"]); // of each tab the last text
+});
+
+test("two tabs in which somebody writes by turns do not push older programs out of the last ones", () => {
+  const { session: one, storage } = workspace();
+  const { session: other } = workspace(storage);
+  one.fileStore.addRecent({ name: "older.aesl", text: "older", time: 1, unsaved: true });
+  for (let turn = 0; turn < MAX_FILES; turn++) {
+    one.edit(`a = ${turn}`);
+    other.edit(`b = ${turn}`);
+  }
+  const kept = [...one.fileStore.recent(), one.fileStore.draft(ALL)].map((file) => file?.text ?? "");
+  for (const text of ["older", "a = 9", "b = 9"]) assert.ok(kept.some((each) => each.includes(text)), text);
+  assert.equal(kept.length, 4); // and the text of the other tab before the last turn
 });
 
 test("two open editors of a browser know of each other", () => {

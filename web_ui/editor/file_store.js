@@ -7,6 +7,7 @@
  * @property {string} text
  * @property {number} time        milliseconds since 1970
  * @property {boolean} [unsaved]  not in any file: this is the only copy
+ * @property {string} [writer]    of a draft: the page that wrote it
  */
 /** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
 
@@ -20,6 +21,8 @@ export class FileStore {
   /** @param {KeyValueStore} storage */
   constructor(storage) {
     this.storage = storage;
+    /** Names this page among all that share the storage. */
+    this.writer = Math.random().toString(36).slice(2);
     /** @type {Map<string, string>} */ this.ownDrafts = new Map(); // as they were written here, by tab
   }
 
@@ -28,11 +31,18 @@ export class FileStore {
     return this.#read(RECENT_KEY) ?? [];
   }
 
-  /** @param {StoredFile} file  replaces an older file of the same name, but no unsaved text */
+  /**
+   * @param {StoredFile} file  replaces an older file of the same name, but no unsaved text, except that of a draft which
+   *   the same page went on writing
+   */
   addRecent(file) {
     let room = MAX_CHARACTERS;
+    /** @param {StoredFile} other */
+    const isContinued = ({ writer }) => writer !== undefined && writer === file.writer;
     const others = this.recent().filter(
-      ({ name, text, unsaved }) => name !== file.name || (text !== file.text && (unsaved || file.unsaved)),
+      (other) =>
+        other.name !== file.name ||
+        (other.text !== file.text && (other.unsaved || file.unsaved) && !isContinued(other)),
     );
     const kept = [file, ...others].slice(0, MAX_FILES).filter(({ text }) => (room -= text.length) >= 0);
     while (!this.#write(RECENT_KEY, kept) && kept.length > 0) kept.pop(); // storage full: drop the oldest
@@ -51,7 +61,7 @@ export class FileStore {
       if (other !== null && other.text !== draft?.text) this.addRecent({ ...other, unsaved: true });
     }
     if (draft === null) this.storage.removeItem(key);
-    else this.#write(key, draft);
+    else this.#write(key, { ...draft, writer: this.writer });
     this.#own(tab);
   }
 

@@ -2,6 +2,10 @@
 
 /** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
 /** @typedef {{ id: string, title: string, inFile: boolean }} Draft   inFile: whether a file has the same content */
+/**
+ * @typedef {Draft & { writer?: string, of?: string }} Entry
+ *   writer: the page that wrote it; of: the draft of which it is the version of this writer
+ */
 
 const INDEX_KEY = "creator.drafts";
 /** @param {string} id */
@@ -16,6 +20,8 @@ export class Drafts {
   /** @param {KeyValueStore} storage */
   constructor(storage) {
     this.storage = storage;
+    /** Names this page among all that share the storage. */
+    this.writer = Math.random().toString(36).slice(2);
     /** @type {Map<string, string>} */ this.known = new Map(); // as they were read or kept here, by id
     /** Number of changes, so that a list knows when it is outdated. */
     this.version = 0;
@@ -24,6 +30,11 @@ export class Drafts {
 
   /** All drafts, the one that was changed last first. @returns {Draft[]} */
   list() {
+    return this.#entries().map(({ id, title, inFile }) => ({ id, title, inFile }));
+  }
+
+  /** @returns {Entry[]} */
+  #entries() {
     try {
       const listed = JSON.parse(this.storage.getItem(INDEX_KEY) ?? "[]");
       return Array.isArray(listed) ? listed.filter(isDraft) : [];
@@ -61,7 +72,8 @@ export class Drafts {
       if (present !== null && present !== text && present !== this.known.get(id)) this.#split(id, present);
       this.known.set(id, text);
       this.storage.setItem(textKey(id), text);
-      this.#write([{ id, title: title.slice(0, LONGEST_TITLE), inFile }, ...this.#others(id)]);
+      const entry = { id, title: title.slice(0, LONGEST_TITLE), inFile, writer: this.writer };
+      this.#write([entry, ...this.#others(id)]);
     } catch (error) {
       this.remove(id);
       throw error;
@@ -78,23 +90,25 @@ export class Drafts {
     } else this.#write(others);
   }
 
-  /** @param {string} id @param {string} text  of another tab */
+  /** Keep the version of another tab, in place of its earlier one. @param {string} id @param {string} text */
   #split(id, text) {
-    const draft = this.list().find((one) => one.id === id);
+    const entries = this.#entries();
+    const draft = entries.find((one) => one.id === id);
     if (draft === undefined) return;
-    const other = this.newId();
+    const earlier = entries.find(({ of, writer }) => of === id && writer !== undefined && writer === draft.writer);
+    const other = earlier?.id ?? this.newId();
     this.storage.setItem(textKey(other), text);
-    this.#write([{ ...draft, id: other }, ...this.list()]);
+    this.#write([{ ...draft, id: other, of: id }, ...this.#others(other)]);
   }
 
   /** @param {string} id */
   #others(id) {
-    return this.list().filter((one) => one.id !== id);
+    return this.#entries().filter((one) => one.id !== id);
   }
 
-  /** @param {Draft[]} drafts */
-  #write(drafts) {
-    this.storage.setItem(INDEX_KEY, JSON.stringify(drafts));
+  /** @param {Entry[]} entries */
+  #write(entries) {
+    this.storage.setItem(INDEX_KEY, JSON.stringify(entries));
     this.version += 1;
   }
 
