@@ -3,8 +3,8 @@ import { test } from "node:test";
 
 import { newFile, readFile } from "../../web_ui/blockly/file.js";
 import { generate } from "../../web_ui/blockly/generator.js";
-import { importProject, importSb3 } from "../../web_ui/scratch/import_sb3.js";
-import { ZipError, readZip } from "../../web_ui/scratch/zip.js";
+import { importProject, importSb3 } from "../../web_ui/blockly/scratch/import_sb3.js";
+import { ZipError, readZip } from "../../web_ui/blockly/scratch/zip.js";
 import { zip } from "./blockly_support.js";
 
 /** A project with one sprite. @param {Record<string, any>} blocks @param {Record<string, any>} [variables] */

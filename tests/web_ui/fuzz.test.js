@@ -15,7 +15,7 @@ import { readToolbox } from "../../web_ui/program_tab/toolbox_file.js";
 import { CdrError, decode } from "../../web_ui/protocol/cdr.js";
 import { FrameError, parseFrame } from "../../web_ui/protocol/frames.js";
 import { parseSchema, SchemaError } from "../../web_ui/protocol/ros2msg.js";
-import { importProject, importSb3 } from "../../web_ui/scratch/import_sb3.js";
+import { importProject, importSb3 } from "../../web_ui/blockly/scratch/import_sb3.js";
 import { VplError } from "../../web_ui/vpl/errors.js";
 import { readVpl } from "../../web_ui/vpl/file.js";
 import { zip } from "./blockly_support.js";

@@ -3,14 +3,14 @@
 import { readFileSync } from "node:fs";
 
 import { decodedOrMarked } from "../browser/text_file.js";
-import { LANGUAGES, translator } from "../i18n/index.js";
 import texts from "../i18n/blockly.texts.js";
+import { LANGUAGES, translator } from "../i18n/index.js";
 import { parseArguments, runAsCommand } from "../program_tab/command_line.js";
-import { importSb3 } from "../scratch/import_sb3.js";
 import { difference } from "./compare.js";
 import { readFile } from "./file.js";
 import { generate } from "./generator.js";
 import { fileProblemText, problemText, scratchText } from "./messages.js";
+import { importSb3 } from "./scratch/import_sb3.js";
 
 /** @typedef {import("../program_tab/command_line.js").Answer} Answer */
 /** @typedef {import("./state.js").WorkspaceState} WorkspaceState */

@@ -3,15 +3,15 @@
 // The parts of a program: declarations, statements without a hat (they run at the start), subroutines, event handlers.
 // Several hats of one event become one handler, because Aseba allows one.
 
-import { LIBRARY_NAMES } from "../scratch/library.js";
-import { Script, ScriptRunner } from "../scratch/script.js";
 import { BLOCKS } from "./blocks/index.js";
-import { DEFINITIONS, LIST_BLOCKS, listSize } from "./blocks/variables.js";
-import { numberValue } from "./blocks/spec.js";
 import { FALSE } from "./blocks/logic.js";
+import { numberValue } from "./blocks/spec.js";
+import { DEFINITIONS, LIST_BLOCKS, listSize } from "./blocks/variables.js";
 import { indented, joined, plain } from "./lines.js";
 import { Names } from "./names.js";
 import { COMPARE, NONE, operand } from "./precedence.js";
+import { LIBRARY_NAMES } from "./scratch/library.js";
+import { Script, ScriptRunner } from "./scratch/script.js";
 import { allBlocks, blocksFrom, following, isDisabled, plugged, topBlocks, variableName } from "./state.js";
 import { Subroutines } from "./subroutines.js";
 

@@ -1,10 +1,10 @@
 // Files of other programs that become programs of blocks: Scratch 3 projects, and workspaces that are XML alone. Pure.
 
 import { decoded } from "../browser/text_file.js";
-import { importSb3 } from "../scratch/import_sb3.js";
 import { readFile, newFile } from "./file.js";
 import { generate } from "./generator.js";
 import { fileProblemText, problemText, scratchText } from "./messages.js";
+import { importSb3 } from "./scratch/import_sb3.js";
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 /** @typedef {import("./state.js").WorkspaceState} WorkspaceState */

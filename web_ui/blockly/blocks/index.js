@@ -1,6 +1,6 @@
 // All blocks by type.
 
-import { SCRATCH } from "../../scratch/blocks/index.js";
+import { SCRATCH } from "../scratch/blocks/index.js";
 import { ACTUATORS } from "./actuators.js";
 import { EVENTS } from "./events.js";
 import { LED_BLOCKS } from "./leds.js";

@@ -5,8 +5,8 @@ import { ATOM } from "../precedence.js";
 
 /** @typedef {import("../state.js").BlockState} BlockState */
 /** @typedef {import("../generator.js").Generator} Generator */
-/** @typedef {import("../../scratch/script.js").ScriptRunner} ScriptRunner */
-/** @typedef {(script: import("../../scratch/script.js").Script, block: BlockState) => void} Step */
+/** @typedef {import("../scratch/script.js").ScriptRunner} ScriptRunner */
+/** @typedef {(script: import("../scratch/script.js").Script, block: BlockState) => void} Step */
 /**
  * @typedef {{ code: string, order: number, type: "Number" | "Boolean" }} Value  an expression, how strongly it binds
  */

@@ -1,10 +1,10 @@
 // Imports a Scratch 3 project (.sb3): what the robot can do becomes a workspace, the rest is listed.
 
-import { emptyState } from "../blockly/state.js";
+import { emptyState } from "../state.js";
 import { Converter } from "./convert.js";
 import { ZipError, readZip } from "./zip.js";
 
-/** @typedef {import("../blockly/state.js").WorkspaceState} WorkspaceState */
+/** @typedef {import("../state.js").WorkspaceState} WorkspaceState */
 /** @typedef {{ key: string, values: Record<string, string | number> }} LeftOut  `scratch.<key>` in the texts */
 /**
  * @typedef {object} Imported

@@ -5,5 +5,5 @@ import { LIGHTS } from "./lights.js";
 import { MOTION } from "./motion.js";
 import { SENSING } from "./sensing.js";
 
-/** @type {readonly import("../../blockly/blocks/spec.js").BlockSpec[]} */
+/** @type {readonly import("../../blocks/spec.js").BlockSpec[]} */
 export const SCRATCH = [...CONTROL, ...MOTION, ...LIGHTS, ...SENSING];

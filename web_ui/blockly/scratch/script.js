@@ -4,14 +4,14 @@
 // a timer calls all machines every 10 ms. The states stand in order as `if at == 1 … end if at == 2 … end`. A jump
 // forward therefore acts at once, a jump backward with the next call: as in Scratch, a loop does one round per step.
 
-import { indented, plain } from "../blockly/lines.js";
-import { BLOCKS, bodies } from "../blockly/blocks/index.js";
-import { MULTIPLY } from "../blockly/precedence.js";
-import { following, isDisabled, plugged } from "../blockly/state.js";
+import { BLOCKS, bodies } from "../blocks/index.js";
+import { indented, plain } from "../lines.js";
+import { MULTIPLY } from "../precedence.js";
+import { following, isDisabled, plugged } from "../state.js";
 import { LIBRARY } from "./library.js";
 
-/** @typedef {import("../blockly/state.js").BlockState} BlockState */
-/** @typedef {import("../blockly/blocks/spec.js").Line} Line */
+/** @typedef {import("../state.js").BlockState} BlockState */
+/** @typedef {import("../blocks/spec.js").Line} Line */
 /** @typedef {{ state: State | null }} Label  the place where a script goes on; no state until it is placed */
 /**
  * @typedef {object} Exit
@@ -207,7 +207,7 @@ function textsOf({ condition, stay }, to, next) {
 
 /** All scripts of a program, the timer that runs them, and the subroutines that they share. */
 export class ScriptRunner {
-  /** @param {import("../blockly/generator.js").Generator} g */
+  /** @param {import("../generator.js").Generator} g */
   constructor(g) {
     this.g = g;
     /** @type {Script[]} */ this.scripts = [];

@@ -2,13 +2,13 @@
 // shadow block with one field; a primitive is [kind, value]. Operators and variables become blocks that Blockly
 // programs have.
 
-import { BLOCKS } from "../blockly/blocks/index.js";
+import { BLOCKS } from "../blocks/index.js";
 import { numbered, OPERATORS } from "./operators.js";
 
-/** @typedef {import("../blockly/state.js").BlockState} BlockState */
-/** @typedef {import("../blockly/state.js").Socket} Socket */
-/** @typedef {import("../blockly/state.js").WorkspaceState} WorkspaceState */
-/** @typedef {import("../blockly/blocks/spec.js").Arg} Arg */
+/** @typedef {import("../state.js").BlockState} BlockState */
+/** @typedef {import("../state.js").Socket} Socket */
+/** @typedef {import("../state.js").WorkspaceState} WorkspaceState */
+/** @typedef {import("../blocks/spec.js").Arg} Arg */
 /** @typedef {import("./import_sb3.js").LeftOut} LeftOut */
 /**
  * @typedef {object} ScratchBlock

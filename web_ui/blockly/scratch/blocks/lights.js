@@ -1,12 +1,12 @@
 // Blocks for lights and sound.
 
-import { ADD, UNARY } from "../../blockly/precedence.js";
-import { SYSTEM_SOUNDS } from "../../blockly/blocks/actuators.js";
-import { call, choice, number, renamed, seconds } from "../../blockly/blocks/spec.js";
+import { SYSTEM_SOUNDS } from "../../blocks/actuators.js";
+import { call, choice, number, renamed, seconds } from "../../blocks/spec.js";
+import { ADD, UNARY } from "../../precedence.js";
 import { COLOR_LIGHTS } from "../library.js";
 
-/** @typedef {import("../../blockly/blocks/spec.js").BlockSpec} BlockSpec */
-/** @typedef {import("../../blockly/blocks/spec.js").Arg} Arg */
+/** @typedef {import("../../blocks/spec.js").BlockSpec} BlockSpec */
+/** @typedef {import("../../blocks/spec.js").Arg} Arg */
 
 /** @param {string} type @param {Arg[]} args @param {BlockSpec["statement"]} statement @returns {BlockSpec} */
 const light = (type, args, statement) => ({ type, shape: "statement", style: "looks_blocks", args, statement });

@@ -1,12 +1,12 @@
 // Blocks that move the robot. `move`, `turn` and `arc` go on with the next block when the move is over.
 
-import { UNARY } from "../../blockly/precedence.js";
-import { choice, number, numberValue, renamed, seconds } from "../../blockly/blocks/spec.js";
+import { choice, number, numberValue, renamed, seconds } from "../../blocks/spec.js";
+import { UNARY } from "../../precedence.js";
 import { HALF_TRACK } from "../library.js";
 
-/** @typedef {import("../../blockly/blocks/spec.js").BlockSpec} BlockSpec */
-/** @typedef {import("../../blockly/blocks/spec.js").Arg} Arg */
-/** @typedef {import("../../blockly/state.js").BlockState} BlockState */
+/** @typedef {import("../../blocks/spec.js").BlockSpec} BlockSpec */
+/** @typedef {import("../../blocks/spec.js").Arg} Arg */
+/** @typedef {import("../../state.js").BlockState} BlockState */
 /** @typedef {import("../script.js").Script} Script */
 
 /** The robot's units per mm/s, and the highest speed of `setMotor`. */

@@ -1,12 +1,12 @@
 // Values of the sensors.
 
-import { MULTIPLY } from "../../blockly/precedence.js";
-import { choice, numberValue } from "../../blockly/blocks/spec.js";
+import { choice, numberValue } from "../../blocks/spec.js";
+import { MULTIPLY } from "../../precedence.js";
 
-/** @typedef {import("../../blockly/blocks/spec.js").BlockSpec} BlockSpec */
-/** @typedef {import("../../blockly/blocks/spec.js").Arg} Arg */
-/** @typedef {import("../../blockly/blocks/spec.js").Option} Option */
-/** @typedef {import("../../blockly/blocks/spec.js").Value} Value */
+/** @typedef {import("../../blocks/spec.js").BlockSpec} BlockSpec */
+/** @typedef {import("../../blocks/spec.js").Arg} Arg */
+/** @typedef {import("../../blocks/spec.js").Option} Option */
+/** @typedef {import("../../blocks/spec.js").Value} Value */
 
 /** Aseba's word for a button, Scratch's value. @type {readonly Option[]} */
 export const BUTTON_MENU = [

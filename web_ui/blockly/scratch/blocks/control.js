@@ -1,14 +1,14 @@
 // Hats of scripts, waiting, loops and messages.
 
-import { NONE, UNARY } from "../../blockly/precedence.js";
-import { body, choice, condition, number, seconds, text } from "../../blockly/blocks/spec.js";
+import { body, choice, condition, number, seconds, text } from "../../blocks/spec.js";
+import { NONE, UNARY } from "../../precedence.js";
 import { BUTTON_MENU } from "./sensing.js";
 
-/** @typedef {import("../../blockly/blocks/spec.js").BlockSpec} BlockSpec */
-/** @typedef {import("../../blockly/blocks/spec.js").Arg} Arg */
-/** @typedef {import("../../blockly/blocks/spec.js").Line} Line */
-/** @typedef {import("../../blockly/blocks/spec.js").Generator} Generator */
-/** @typedef {import("../../blockly/state.js").BlockState} BlockState */
+/** @typedef {import("../../blocks/spec.js").BlockSpec} BlockSpec */
+/** @typedef {import("../../blocks/spec.js").Arg} Arg */
+/** @typedef {import("../../blocks/spec.js").Line} Line */
+/** @typedef {import("../../blocks/spec.js").Generator} Generator */
+/** @typedef {import("../../state.js").BlockState} BlockState */
 
 /**
  * @param {string} type

@@ -1,7 +1,7 @@
 // Scratch's operators, conditions and variables as blocks that Blockly programs have.
 
-/** @typedef {import("../blockly/state.js").BlockState} BlockState */
-/** @typedef {import("../blockly/state.js").Socket} Socket */
+/** @typedef {import("../state.js").BlockState} BlockState */
+/** @typedef {import("../state.js").Socket} Socket */
 /** @typedef {import("./convert.js").Converter} Converter */
 /** @typedef {import("./convert.js").ScratchBlock} ScratchBlock */
 /**
