@@ -126,6 +126,7 @@ PARTS = {
     "creator": "creator",
     "editor": "editor",
     "examples": "examples",
+    "playground/labels.js": "creator",
     "playground_tab/reasons.js": "creator",
     "playground_tab/refusal.js": "creator",
     "playground_tab": "playground",
@@ -184,7 +185,7 @@ def test_the_page_uses_every_text(file: str) -> None:
     """A key occurs as a string, or fits a template string such as `button.${name}`."""
     everything = "\n".join(source for _, source in sources())
     names = set(re.findall(r"""["'`]([\w.]+)["'`]""", everything))
-    skeletons = "".join(path.read_text() for path in PAGE.glob("program_tab/skeletons/*"))
+    skeletons = "".join(path.read_text() for path in PAGE.glob("editor/skeletons/*"))
     names |= set(re.findall(r"\{([\w.]+)\}", skeletons))
     templates = {
         template for template in re.findall(r"`([\w.${}]+)`", everything) if re.search(r"\w\.\$|\}\.\w", template)

@@ -7,7 +7,7 @@ import { freeName, newPlayground } from "../../web_ui/creator/commands.js";
 import { History } from "../../web_ui/creator/history.js";
 import { middleOf, moved, pointsOf, turned, withPoint } from "../../web_ui/creator/place.js";
 import { rounded, snapped } from "../../web_ui/creator/snap.js";
-import { toDisplay, toFile } from "../../web_ui/creator/units.js";
+import { toDisplay, toFile } from "../../web_ui/playground/units.js";
 import { WheelSteps } from "../../web_ui/creator/wheel.js";
 import { placeOver } from "../../web_ui/creator/context_bar.js";
 import { slidingWord } from "../../web_ui/creator/load.js";

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { firstFault } from "../../web_ui/editor/checking.js";
+import { firstFault } from "../../web_ui/input/check_service.js";
 import { HelpTexts } from "../../web_ui/editor/help_texts.js";
 import { RuntimeClient } from "../../web_ui/input/runtime_client.js";
 

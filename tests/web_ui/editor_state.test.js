@@ -3,7 +3,8 @@ import { test } from "node:test";
 
 import { meetOtherTabs } from "../../web_ui/browser/other_tabs.js";
 import { newAesl } from "../../web_ui/editor/aesl.js";
-import { firstFault, marks, notesOf, readVerdict } from "../../web_ui/editor/checking.js";
+import { marks } from "../../web_ui/editor/marks.js";
+import { firstFault, notesOf, readVerdict } from "../../web_ui/input/check_service.js";
 import { EditorSession, eventKey } from "../../web_ui/editor/editor_session.js";
 import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";

@@ -11,7 +11,7 @@ import { decoded } from "../../web_ui/browser/text_file.js";
 import { AeslError, readAesl } from "../../web_ui/editor/aesl.js";
 import { parse } from "../../web_ui/playground/document.js";
 import { Fault } from "../../web_ui/playground/rules.js";
-import { readToolbox } from "../../web_ui/program_tab/toolbox_file.js";
+import { readToolbox } from "../../web_ui/editor/toolbox_file.js";
 import { CdrError, decode } from "../../web_ui/protocol/cdr.js";
 import { FrameError, parseFrame } from "../../web_ui/protocol/frames.js";
 import { parseSchema, SchemaError } from "../../web_ui/protocol/ros2msg.js";

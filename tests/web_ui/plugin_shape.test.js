@@ -4,7 +4,7 @@ import { test } from "node:test";
 
 import { CreatorModel } from "../../web_ui/creator/creator_model.js";
 import { newPlayground } from "../../web_ui/creator/commands.js";
-import { Labels } from "../../web_ui/creator/labels.js";
+import { Labels } from "../../web_ui/playground/labels.js";
 import WORDS from "../../web_ui/i18n/creator.texts.js";
 import { translator } from "../../web_ui/i18n/index.js";
 import { BUILT_IN, fetchShapes } from "../../web_ui/playground/declarations.js";

@@ -8,7 +8,7 @@ import editorTexts from "../../web_ui/i18n/editor.texts.js";
 import exampleTexts from "../../web_ui/i18n/examples.texts.js";
 import { translator } from "../../web_ui/i18n/index.js";
 import { instructionsOf } from "../../web_ui/program_tab/foreign_bar.js";
-import { SKELETONS, skeletonText } from "../../web_ui/program_tab/skeletons.js";
+import { SKELETONS, skeletonText } from "../../web_ui/editor/skeletons.js";
 
 const en = translator("en", exampleTexts);
 

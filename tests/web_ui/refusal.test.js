@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
-import { Labels } from "../../web_ui/creator/labels.js";
+import { Labels } from "../../web_ui/playground/labels.js";
 import creatorTexts from "../../web_ui/i18n/creator.texts.js";
 import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
 import { BUILT_IN } from "../../web_ui/playground/declarations.js";

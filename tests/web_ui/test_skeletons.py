@@ -12,7 +12,7 @@ from tests.tracks import assert_avoids
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.testing import Classroom, followed_line
 
-FOLDER = Path(__file__).parents[2] / "web_ui" / "program_tab" / "skeletons"
+FOLDER = Path(__file__).parents[2] / "web_ui" / "editor" / "skeletons"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.aseba"))
 
 

@@ -8,7 +8,7 @@ import {
   unknownNames,
   WHOLE,
   writeToolbox,
-} from "../../web_ui/program_tab/toolbox_file.js";
+} from "../../web_ui/editor/toolbox_file.js";
 
 test("a file hides blocks and limits modes, and is written and read back", () => {
   const text = '{ "toolbox": 1, "hide": ["sound", "category:loops"], "modes": ["basic"] }';

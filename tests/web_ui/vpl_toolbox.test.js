@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { WHOLE } from "../../web_ui/program_tab/toolbox_file.js";
+import { WHOLE } from "../../web_ui/editor/toolbox_file.js";
 import { NAMES, offered, offeredModes } from "../../web_ui/vpl/toolbox.js";
 
 test("a teacher's file hides blocks and limits the modes", () => {

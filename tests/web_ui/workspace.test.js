@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { isLow, layoutOf, workRange, workWidth } from "../../web_ui/shell/layout.js";
+import { isLow, layoutOf, workRange, workWidth } from "../../web_ui/ui/layout.js";
 import { Workspace } from "../../web_ui/shell/workspace.js";
 import { newStorage } from "./support.js";
 

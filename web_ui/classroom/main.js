@@ -2,12 +2,12 @@
 
 import { resolveToken } from "../browser/access_token.js";
 import { localStore, tabStore } from "../browser/local_storage.js";
+import { PageLanguage } from "../browser/page_language.js";
 import { Theme } from "../browser/theme.js";
 import { languageChoice } from "../header/language.js";
 import { themeSwitch } from "../header/theme_switch.js";
 import texts from "../i18n/classroom.texts.js";
 import { translator } from "../i18n/index.js";
-import { PageLanguage } from "../i18n/page_language.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { ClassApi, TokenError } from "./api.js";

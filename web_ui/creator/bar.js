@@ -4,7 +4,7 @@ import { h, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { snapMenu } from "./snap_menu.js";
 
-/** @param {import("./labels.js").Labels} labels @param {import("./creator_model.js").CreatorModel} model */
+/** @param {import("../playground/labels.js").Labels} labels @param {import("./creator_model.js").CreatorModel} model */
 export function bar({ t }, model) {
   /** @param {"undo" | "redo"} name @param {() => void} act */
   const button = (name, act) =>

@@ -1,10 +1,10 @@
 // The bar over the selected item: turn, copy, remove.
 
+import { valuesOf } from "../playground/parts.js";
 import { h, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
-import { valuesOf } from "../playground/parts.js";
-import { canTurn, middleOf, reachOf } from "./place.js";
 import { hasKnob, RING_BEYOND_M } from "./pick.js";
+import { canTurn, middleOf, reachOf } from "./place.js";
 
 /** @typedef {{ x: number, y: number }} Spot   CSS pixels of the scene */
 /** @typedef {{ width: number, height: number }} Size */
@@ -36,7 +36,7 @@ export function placeOver(bar, spots, scene, top) {
 
 /**
  * @param {object} options
- * @param {import("./labels.js").Labels} options.labels
+ * @param {import("../playground/labels.js").Labels} options.labels
  * @param {import("./creator_model.js").CreatorModel} options.model
  * @param {import("../scene/index.js").SceneView} options.scene
  */

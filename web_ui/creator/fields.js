@@ -1,8 +1,8 @@
 // Form controls, one per kind of field. Each has an element and updates it when values change elsewhere.
 
+import { toDisplay, toFile, unitOf } from "../playground/units.js";
 import { h, renew, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
-import { toDisplay, toFile, unitOf } from "./units.js";
 
 /** @typedef {import("../playground/declarations.js").DeclaredField} Field */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
@@ -10,7 +10,7 @@ import { toDisplay, toFile, unitOf } from "./units.js";
 /** @typedef {{ element: HTMLElement, update: (values: Record<string, any>) => void }} Control */
 /**
  * @typedef {object} Setting
- * @property {import("./labels.js").Labels} labels
+ * @property {import("../playground/labels.js").Labels} labels
  * @property {string} [kind]   of the edited item
  * @property {Commit} commit
  * @property {() => readonly string[]} doors   names of the doors that a plate can open

@@ -1,11 +1,11 @@
 // The head of the creator: back, title, where it is kept, more, "Try it"; below them why a file was rejected.
 
+import { download } from "../browser/download.js";
 import { textOf } from "../browser/text_file.js";
 import { BUILT_IN } from "../playground/declarations.js";
 import { parse } from "../playground/document.js";
 import { Fault, fits } from "../playground/rules.js";
 import { reasonOfFault, refusalView } from "../playground_tab/refusal.js";
-import { download } from "../editor/download.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
@@ -16,7 +16,7 @@ import { newPlayground, titled } from "./commands.js";
 /**
  * @param {object} options
  * @param {import("./creator_session.js").CreatorSession} options.session
- * @param {import("./labels.js").Labels} options.labels
+ * @param {import("../playground/labels.js").Labels} options.labels
  * @param {import("../shell/context.js").Context} options.context
  * @param {(phrase: import("../playground/rules.js").Phrase) => void} options.report
  * @param {() => void} options.tryIt

@@ -5,6 +5,7 @@ import "./creator.css";
 
 import WORDS from "../i18n/creator.texts.js";
 import { translator } from "../i18n/index.js";
+import { Labels } from "../playground/labels.js";
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { bar } from "./bar.js";
@@ -16,7 +17,6 @@ import { groundWarnings } from "./ground_warnings.js";
 import { head } from "./head.js";
 import { itemList } from "./item_list.js";
 import { watchCreatorKeys } from "./keys.js";
-import { Labels } from "./labels.js";
 import { palette } from "./palette.js";
 import { placingHint } from "./placing_hint.js";
 import { playgroundForm } from "./playground_form.js";

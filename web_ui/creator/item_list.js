@@ -3,7 +3,7 @@
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 
-/** @param {import("./labels.js").Labels} labels @param {import("./creator_model.js").CreatorModel} model */
+/** @param {import("../playground/labels.js").Labels} labels @param {import("./creator_model.js").CreatorModel} model */
 export function itemList(labels, model) {
   const { t } = labels;
   const count = h("span", { class: "small muted" });

@@ -1,8 +1,8 @@
 // The tools in named groups: each places a kind of item. Those of plug-ins have a group of their own.
 
+import { kindNamed, shapeKinds } from "../playground/kinds/index.js";
 import { h, setAttribute } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
-import { kindNamed, shapeKinds } from "../playground/kinds/index.js";
 import { readPicture } from "./read_picture.js";
 
 /** The groups in display order, their tools, and the icon of each tool. */
@@ -14,7 +14,7 @@ const GROUPS = /** @type {const} */ ({
 
 /**
  * @param {object} options
- * @param {import("./labels.js").Labels} options.labels
+ * @param {import("../playground/labels.js").Labels} options.labels
  * @param {import("./creator_model.js").CreatorModel} options.model
  * @param {HTMLElement} options.canvas   gets the focus so that keys act on the view
  */

@@ -9,7 +9,7 @@ import { canTurn } from "./place.js";
 
 /**
  * @param {object} options
- * @param {import("./labels.js").Labels} options.labels
+ * @param {import("../playground/labels.js").Labels} options.labels
  * @param {import("./creator_model.js").CreatorModel} options.model
  * @param {HTMLElement} options.canvas   gets the focus back, so that keys act on the view
  */

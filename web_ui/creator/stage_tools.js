@@ -5,7 +5,7 @@ import { icon } from "../ui/icons.js";
 
 /**
  * @param {object} options
- * @param {import("./labels.js").Labels} options.labels
+ * @param {import("../playground/labels.js").Labels} options.labels
  * @param {import("./creator_model.js").CreatorModel} options.model
  * @param {HTMLElement} options.canvas   gets the focus so that keys act on the view
  */

@@ -2,10 +2,10 @@
 // variables.
 
 import { trySetItem } from "../browser/local_storage.js";
-import { readToolbox, WHOLE, writeToolbox } from "../program_tab/toolbox_file.js";
+import { FileStore } from "./file_store.js";
 import { History } from "./history.js";
 import { INITIAL, reduce } from "./state.js";
-import { FileStore } from "./file_store.js";
+import { readToolbox, WHOLE, writeToolbox } from "./toolbox_file.js";
 import { Workspace } from "./workspace.js";
 
 const WATCHED_KEY = "editor.watched";
@@ -34,7 +34,7 @@ export class EditorSession {
       written: (text) => this.onWritten(text),
     });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));
-    /** @type {import("../program_tab/toolbox_file.js").Toolbox} what a teacher's file hides */
+    /** @type {import("./toolbox_file.js").Toolbox} what a teacher's file hides */
     this.toolbox = readToolbox(storage.getItem(TOOLBOX_KEY) ?? "").toolbox ?? WHOLE;
     /** @type {import("../blockly/view/document.js").KeptBlocks | null} of the last view of blocks */
     this.blocks = null;
@@ -78,7 +78,7 @@ export class EditorSession {
   /**
    * Limit the blocks, in this browser, until that is taken back.
    *
-   * @param {import("../program_tab/toolbox_file.js").Toolbox} toolbox
+   * @param {import("./toolbox_file.js").Toolbox} toolbox
    */
   setToolbox(toolbox) {
     this.toolbox = toolbox;

@@ -7,23 +7,23 @@
 //   debugRow, toolbox, foot   line by line, values beside the text, room left
 
 import PHRASES from "../i18n/codemirror.texts.js";
-import { skeletonText } from "../program_tab/skeletons.js";
+import { mistakesIn } from "../input/check_service.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { faultMessage } from "../state/program_status.js";
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { allEvents } from "./aesl.js";
-import { mistakesIn } from "./checking.js";
 import { DebugMarkers } from "./debug_markers.js";
 import { debugRow } from "./debug_row.js";
 import { footOf } from "./foot.js";
+import { isTaken } from "./help.js";
 import { mistakeCard } from "./mistake_card.js";
 import { MistakeGuide } from "./mistake_guide.js";
 import { repairLabel } from "./mistakes.js";
-import { isTaken } from "./help.js";
 import { navigation } from "./navigation.js";
 import { ProgramChecker } from "./program_checker.js";
 import { signatureHelp } from "./signature.js";
+import { skeletonText } from "./skeletons.js";
 import { createText } from "./text.js";
 import { toolbox } from "./tools/index.js";
 import { ALL } from "./workspace.js";
@@ -273,7 +273,7 @@ class TextView {
  * Memory in use: of the shown text if it compiles, else what the robot reports.
  *
  * @param {Readonly<Record<string, string>>} values   status that the runtime reports
- * @param {import("./checking.js").Use | null | undefined} use
+ * @param {import("../input/check_service.js").Use | null | undefined} use
  * @returns {Record<"variables" | "bytecode" | "stack", import("./foot.js").Share | null>}
  */
 function memoriesOf(values, use) {

@@ -1,20 +1,21 @@
 // Leads the user to mistakes: marks in the text, the card below the line, the words at the foot.
 
-import { marks, mistakesIn } from "./checking.js";
+import { mistakesIn } from "../input/check_service.js";
+import { marks } from "./marks.js";
 import { showCard } from "./mistake_card.js";
 import { countMistakes, explainMistake, sentence } from "./mistakes.js";
 
 /** While the user types, a card waits for a pause: a word that is not finished is no mistake yet. */
 const PAUSE_MS = 900;
 
-/** @typedef {import("./checking.js").Remark} Remark */
+/** @typedef {import("../input/check_service.js").Remark} Remark */
 /** @typedef {import("./mistake_card.js").Placed} Placed */
 
 export class MistakeGuide {
   /** @type {Placed | null} the card for the checked text */ #card = null;
   /** @type {Placed | null} the card for a fault of the running program */ #faultCard = null;
   #isShown = false;
-  /** @type {{ text: string, repair: import("./checking.js").Repair } | null} */ #correction = null;
+  /** @type {{ text: string, repair: import("./marks.js").Repair } | null} */ #correction = null;
   /** @type {Remark | null} the first error, else the first warning */ #first = null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #timer;
   #announced = "";
@@ -63,7 +64,7 @@ export class MistakeGuide {
     this.#reportVerdict(verdict);
   }
 
-  /** @param {import("./checking.js").Verdict} verdict */
+  /** @param {import("../input/check_service.js").Verdict} verdict */
   #reportVerdict(verdict) {
     const { t } = this;
     const first = this.#first;

@@ -1,7 +1,7 @@
 // What a mistake in the text means: a title, a sentence, how it would be right, and the word on the button. Pure.
 
-/** @typedef {import("./checking.js").Repair} Repair */
-/** @typedef {import("./checking.js").Mark} Mark */
+/** @typedef {import("./marks.js").Repair} Repair */
+/** @typedef {import("./marks.js").Mark} Mark */
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 /** @typedef {{ before: string, old: string, now: string, after: string }} Change   a line, before and after a repair */
 /**

@@ -1,11 +1,11 @@
 // Checks the shown text with the compiler of the runtime, some time after the last change.
 
+import { CHECK_SERVICE } from "../input/check_service.js";
 import { allEvents } from "./aesl.js";
-import { CHECK_SERVICE } from "./checking.js";
 
 const CHECK_DELAY_MS = 300;
 
-/** @typedef {import("./checking.js").Verdict} Verdict */
+/** @typedef {import("../input/check_service.js").Verdict} Verdict */
 /**
  * @typedef {object} Finding
  * @property {string} source            the checked text

@@ -64,7 +64,7 @@ const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldS
  * @param {() => boolean} options.isReadOnly         whether the text that is shown next cannot be changed
  * @param {(code: string) => void} options.changed   called when the user changed the text
  * @param {(line: number) => void} options.toggleBreakpoint
- * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairLabel  label of a repair button
+ * @param {(text: string, repair: import("./marks.js").Repair) => string} options.repairLabel  label of a repair button
  * @param {() => void} options.correct               called when the user asks for the first repair
  * @param {import("@codemirror/state").Extension[]} options.extensions   of other modules
  */
@@ -178,7 +178,7 @@ export function createText(options) {
     find() {
       openSearchPanel(view);
     },
-    /** @param {import("./checking.js").Mark[]} marks */
+    /** @param {import("./marks.js").Mark[]} marks */
     mark(marks) {
       const { doc } = view.state;
       const end = doc.length;
@@ -197,7 +197,7 @@ export function createText(options) {
      * Apply a repair if the text is still the checked one; returns whether it is.
      *
      * @param {string} checked
-     * @param {import("./checking.js").Repair} repair
+     * @param {import("./marks.js").Repair} repair
      */
     repair(checked, { from, to, insert }) {
       if (view.state.readOnly || view.state.doc.toString() !== checked) return false;

@@ -7,11 +7,11 @@
 // which one: a picture or blocks in it belong to their language, every other file is text.
 
 import { BLOCKS, looksLikeBlocks } from "../blockly/language.js";
-import { textOf } from "../browser/text_file.js";
 import { localStore } from "../browser/local_storage.js";
 import { meetOtherTabs } from "../browser/other_tabs.js";
+import { textOf } from "../browser/text_file.js";
+import { looksLikeToolbox } from "../editor/toolbox_file.js";
 import { importerOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
-import { looksLikeToolbox } from "../program_tab/toolbox_file.js";
 import { CONNECTION } from "../state/index.js";
 import { holdsVpl } from "../vpl/holds.js";
 

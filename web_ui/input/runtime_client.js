@@ -1,7 +1,7 @@
 // Requests to the Aseba runtime: service calls, parameters and messages (docs/aseba_ros.md).
 
 import { robotTopic } from "../state/names.js";
-import { CHECK_SERVICE, checkRequest, firstFault, notesOf, readVerdict, targetRequest } from "../editor/checking.js";
+import { CHECK_SERVICE, checkRequest, firstFault, notesOf, readVerdict, targetRequest } from "./check_service.js";
 
 /** @typedef {import("../protocol/client.js").Client} Client */
 /** @typedef {{ ok: boolean, message: string }} Answer */
@@ -39,7 +39,7 @@ export class RuntimeClient {
     }
   }
 
-  /** @param {Parameters<typeof checkRequest>[0]} what @returns {Promise<import("../editor/checking.js").Verdict | null>} */
+  /** @param {Parameters<typeof checkRequest>[0]} what @returns {Promise<import("./check_service.js").Verdict | null>} */
   async check(what) {
     const { ok, value } = await this.client.call(CHECK_SERVICE, checkRequest(what));
     return ok && value !== undefined ? readVerdict(value) : null;

@@ -1,6 +1,7 @@
 // Footprints of all bodies of the world: which can be moved, and which are in the way. Pure.
 // Only a preview for the user: the simulator decides whether a position is free.
 
+import { ROBOT_HEIGHT_M, ROBOT_OUTLINE } from "../playground/robot_outline.js";
 import { MARKER } from "../state/markers.js";
 import { yawOf } from "../state/robot.js";
 
@@ -17,22 +18,10 @@ import { yawOf } from "../state/robot.js";
  * @property {number} height
  */
 
-/** Outline of the robot (docs/spec/thymio-robot.md section 1.1). */
-const ROBOT = { radius: 0.08, half: 0.055, rear: -0.03, height: 0.053 };
 const ROUND = 20;
 /** Footprints that overlap by less than this only touch. */
 const TOUCHING_M = 0.0005;
 const STEPS_OF_HEIGHT = 24;
-
-/** @type {Point[][]} */
-export const ROBOT_OUTLINE = (() => {
-  const corner = Math.asin(ROBOT.half / ROBOT.radius);
-  const front = Array.from({ length: 11 }, (_, step) => {
-    const angle = -corner + (corner * step) / 5;
-    return /** @type {Point} */ ([ROBOT.radius * Math.cos(angle), ROBOT.radius * Math.sin(angle)]);
-  });
-  return [[...front, [ROBOT.rear, ROBOT.half], [ROBOT.rear, -ROBOT.half]]];
-})();
 
 /** Bodies that can be moved: robots and movable objects. @param {State} state @returns {PlacedBody[]} */
 export function movables(state) {
@@ -111,7 +100,7 @@ function robots({ robots: known, simulator }) {
     if (latest === null) return [];
     const { x, y, yaw } = latest.pose;
     const name = simulator?.worldNames?.[robot] ?? robot;
-    return [{ name, robot, pose: { x, y, yaw }, outline: ROBOT_OUTLINE, height: ROBOT.height }];
+    return [{ name, robot, pose: { x, y, yaw }, outline: [ROBOT_OUTLINE], height: ROBOT_HEIGHT_M }];
   });
 }
 

@@ -1,15 +1,15 @@
 // The pose for returning a fallen robot: its start, or the nearest free position. No DOM, no 3D scene.
 
-import { isOnGround } from "../playground/validation.js";
 import { parse } from "../playground/document.js";
-import { blocker, obstacles, ROBOT_OUTLINE } from "./placed_bodies.js";
+import { ROBOT_HEIGHT_M, ROBOT_OUTLINE } from "../playground/robot_outline.js";
+import { isOnGround } from "../playground/validation.js";
+import { blocker, obstacles } from "./placed_bodies.js";
 
 /** @typedef {import("./placed_bodies.js").Pose} Pose */
 
 /** Distances and number of directions that are tried around the start, in this order. */
 const DISTANCES_M = [0.15, 0.3, 0.45];
 const DIRECTIONS = 8;
-const HEIGHT_M = 0.053;
 
 /**
  * The pose for a robot; its start if no other position is free.
@@ -24,7 +24,7 @@ export function startOf(state, text, name) {
   const robots = items.filter(({ kind }) => kind === "robot");
   const own = robots.find((robot) => robot.name === name) ?? robots[0]; // a robot that was added later has no start pose
   const start = { x: own?.x_m ?? 0, y: own?.y_m ?? 0, yaw: own?.yaw_rad ?? 0 };
-  const body = { name, robot: name, pose: start, outline: ROBOT_OUTLINE, height: HEIGHT_M };
+  const body = { name, robot: name, pose: start, outline: [ROBOT_OUTLINE], height: ROBOT_HEIGHT_M };
   const others = obstacles(state, name);
   const shapes = items.filter(({ kind }) => kind !== "robot");
   /** @param {Pose} pose */

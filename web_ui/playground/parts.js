@@ -3,7 +3,7 @@
 import { circle, placed, rectangle } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
 import { footprintOf, poseOf } from "./primitives.js";
-import { ROBOT_OUTLINE } from "../move/placed_bodies.js";
+import { ROBOT_HEIGHT_M, ROBOT_OUTLINE } from "./robot_outline.js";
 
 /** @typedef {Readonly<Record<string, any> & { kind: string, name: string }>} Item  a shape, or the start pose of a robot (kind "robot") */
 /** @typedef {import("./geometry.js").Footprint} Footprint */
@@ -59,7 +59,7 @@ function filled(fields, given) {
  * @returns {{ outline: Point[], height: number }[]}
  */
 export function outlinesOf(item) {
-  if (item.kind === "robot") return [{ outline: placed(poseOf(valuesOf(item)), ROBOT_OUTLINE[0]), height: 0.053 }];
+  if (item.kind === "robot") return [{ outline: placed(poseOf(valuesOf(item)), ROBOT_OUTLINE), height: ROBOT_HEIGHT_M }];
   return partsOf(item).primitives.flatMap((part) => {
     if (part.type === "floor" || part.type === "paint") return [{ outline: part.vertices, height: 0 }];
     if (part.type === "trigger") return [];
@@ -74,5 +74,5 @@ export function outlinesOf(item) {
 
 /** @param {Record<string, any>} values @returns {Footprint} */
 function robotFootprint(values) {
-  return { vertices: placed(poseOf(values), ROBOT_OUTLINE[0]) };
+  return { vertices: placed(poseOf(values), ROBOT_OUTLINE) };
 }

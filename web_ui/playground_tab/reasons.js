@@ -1,8 +1,8 @@
 // Why a playground was rejected, as phrases for the page's languages. There are two sources: the Fault of the page's own
 // reader, and the English message of the simulator, which reads other formats too. Pure.
 
-import { Fault } from "../playground/rules.js";
 import { parse } from "../playground/document.js";
+import { Fault } from "../playground/rules.js";
 
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /**
@@ -122,7 +122,7 @@ export function reasonOfFault(fault, text) {
 /**
  * A reason in one sentence.
  *
- * @param {import("../creator/labels.js").Labels} labels
+ * @param {import("../playground/labels.js").Labels} labels
  * @param {Reason} reason
  */
 export function sentenceOf(labels, { phrase, place }) {

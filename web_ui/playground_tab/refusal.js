@@ -2,8 +2,8 @@
 // Loaded when it is needed: it has the names of all fields.
 
 import WORDS from "../i18n/creator.texts.js";
-import { Labels } from "../creator/labels.js";
 import { translator } from "../i18n/index.js";
+import { Labels } from "../playground/labels.js";
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { sentenceOf } from "./reasons.js";

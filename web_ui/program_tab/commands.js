@@ -1,14 +1,14 @@
 // What the user does with programs and robots: begin, open, save, load, run and control. All languages share it.
 
+import { download } from "../browser/download.js";
 import { kindOf, sentenceOf } from "../browser/foreign_files.js";
 import { textOf } from "../browser/text_file.js";
 import { readAesl } from "../editor/aesl.js";
-import { download } from "../editor/download.js";
+import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "../editor/toolbox_file.js";
 import { LARGEST_PROGRAM } from "../input/actions.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
 import { importerOf } from "./language_choice.js";
-import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "./toolbox_file.js";
 
 const THYMIO = "thymio-II";
 /** Kinds of files that become programs of blocks, whatever their name is, and a name with their ending. */

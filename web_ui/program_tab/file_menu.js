@@ -1,9 +1,9 @@
 // The file of the program: its name, new, open, save, load, and what the language adds. A sheet beside its button.
 
+import { WHOLE } from "../editor/toolbox_file.js";
 import { buttonOf, fileButton, h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { makeSheet } from "../ui/sheet.js";
-import { WHOLE } from "./toolbox_file.js";
 
 /** Files of programs and of what languages import, as a file dialog offers them. @param {import("./commands.js").ProgramCommands} commands */
 export const acceptedFiles = ({ imports }) => [".aesl", ".aseba", ".txt", ".json", ...imports].join();

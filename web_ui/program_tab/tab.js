@@ -1,14 +1,14 @@
 // What all languages of programs share: the head with run and stop, the menu of the file, the badge, drafts, and the
 // ways to begin a program. The language itself is a view (hosts/program_host.js).
 
-import WORDS from "../i18n/editor.texts.js";
-import { translator } from "../i18n/index.js";
-import { CHECK_SERVICE } from "../editor/checking.js";
 import { isInRobot, isUnsaved } from "../editor/documents.js";
 import { HelpTexts } from "../editor/help_texts.js";
 import { RobotSelection } from "../editor/robot_selection.js";
 import { ALL } from "../editor/workspace.js";
 import { exampleTitle, isExample, NO_PROGRAM, WELCOME } from "../examples/index.js";
+import WORDS from "../i18n/editor.texts.js";
+import { translator } from "../i18n/index.js";
+import { CHECK_SERVICE } from "../input/check_service.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { h, setAttribute } from "../ui/dom.js";
 import { isSomethingOpen } from "../ui/sheet.js";
@@ -16,8 +16,8 @@ import { ProgramCommands } from "./commands.js";
 import { draftBar } from "./draft_bar.js";
 import { fileMenu } from "./file_menu.js";
 import { foreignBar, instructionsOf } from "./foreign_bar.js";
-import { languageBar } from "./language_bar.js";
 import { watchKeys } from "./keys.js";
+import { languageBar } from "./language_bar.js";
 import { programBadge } from "./program_badge.js";
 import { programHead } from "./program_head.js";
 import { startPage } from "./start_page.js";

@@ -3,11 +3,12 @@
 
 import * as THREE from "three";
 
+import { placed } from "../move/placed_bodies.js";
+import { ROBOT_OUTLINE } from "../playground/robot_outline.js";
 import { hasPicture, MARKER } from "../state/markers.js";
 import { yawOf } from "../state/robot.js";
 import { DESK, groundColor, wallColor } from "./colors.js";
 import { LIGHT } from "./lights.js";
-import { placed, ROBOT_OUTLINE } from "../move/placed_bodies.js";
 import { poseAt } from "./motion.js";
 import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
 import { MAX_RANGE_M } from "./rays.js";
@@ -210,14 +211,13 @@ function drawRobot(context, robot, sensors, color) {
       context.fill();
     }
   }
-  const [outline] = ROBOT_OUTLINE;
   const lit = robot.leds.top ?? [0, 0, 0];
   const most = Math.max(...lit);
   const [r, g, b] = lit.map((level, at) => WHITE[at] + (most > 0 ? 0.45 * most * (255 * (level / most) - WHITE[at]) : 0));
   context.fillStyle = `rgb(${r} ${g} ${b})`;
   context.strokeStyle = color;
   context.lineWidth = 0.004;
-  fill(context, outline);
+  fill(context, ROBOT_OUTLINE);
   context.stroke();
   context.fillStyle = "#45403b";
   for (const side of [1, -1]) context.fillRect(-0.022, side * 0.047 - 0.0075, 0.044, 0.015);

@@ -3,7 +3,7 @@
 
 import * as THREE from "three";
 
-import { onShiftRelease } from "../input/sticky_press.js";
+import { onShiftRelease } from "../ui/sticky_press.js";
 
 /** @typedef {{ robot: string, button: string }} Target */
 

@@ -1,10 +1,10 @@
 // Applies layout and workspace to the page: which panel is shown, how wide the workspace is, what a phone shows. The
 // style sheets do the rest, by `data-layout`, `data-work` and `data-screen` of the body.
 
-import { isLow, layoutOf, workWidth } from "./layout.js";
+import { isLow, layoutOf, workWidth } from "../ui/layout.js";
 import { TABS } from "./workspace.js";
 
-/** @typedef {import("./layout.js").Layout} Layout */
+/** @typedef {import("../ui/layout.js").Layout} Layout */
 
 export class Frame {
   /**

@@ -1,7 +1,7 @@
 // The grip between stage and workspace: dragged, or moved by arrow keys; a double click gives the usual width.
 
 import { setAttribute } from "../ui/dom.js";
-import { workRange } from "./layout.js";
+import { workRange } from "../ui/layout.js";
 
 const STEP_PX = 16;
 

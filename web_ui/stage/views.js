@@ -1,11 +1,11 @@
 // Over the view: cameras at the left, tools at the right; on phones each group has one button that opens the others.
 
 import { VIEWS } from "../scene/camera.js";
-import { isTiny } from "../shell/layout.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";
 import { foldedList } from "../ui/folded_list.js";
 import { icon } from "../ui/icons.js";
+import { isTiny } from "../ui/layout.js";
 import { fitNames, NAMES } from "../ui/names_fit.js";
 import { lookMenu } from "./look_menu.js";
 import { savePicture } from "./picture.js";

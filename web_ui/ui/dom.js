@@ -1,7 +1,7 @@
 // Helpers to create and update elements. Panels write to the DOM only where a value changed.
 
-import { onShiftRelease } from "../input/sticky_press.js";
 import { icon } from "./icons.js";
+import { onShiftRelease } from "./sticky_press.js";
 
 /**
  * @template {keyof HTMLElementTagNameMap} Tag

@@ -1,10 +1,10 @@
-// What a teacher's file (program_tab/toolbox_file.js) leaves of VPL. Blocks that a program has stay in it.
+// What a teacher's file (editor/toolbox_file.js) leaves of VPL. Blocks that a program has stay in it.
 
 import { BLOCKS, MODES } from "./kinds.js";
 import { palette } from "./mode.js";
 
 /** @typedef {import("./kinds.js").Mode} Mode */
-/** @typedef {import("../program_tab/toolbox_file.js").Toolbox} Toolbox */
+/** @typedef {import("../editor/toolbox_file.js").Toolbox} Toolbox */
 
 /** What a file can name. */
 export const NAMES = [...BLOCKS.keys(), ...MODES];

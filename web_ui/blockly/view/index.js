@@ -9,17 +9,17 @@ import { localStore, trySetItem } from "../../browser/local_storage.js";
 import { ProgramChecker } from "../../editor/program_checker.js";
 import WORDS from "../../i18n/blockly.texts.js";
 import { translator } from "../../i18n/index.js";
-import { CONNECTION } from "../../state/index.js";
 import { disabledReason } from "../../state/disabled_reason.js";
+import { CONNECTION } from "../../state/index.js";
 import { setAttribute } from "../../ui/dom.js";
 import { withoutBlocks } from "../file.js";
 import { importFile as importBlocks } from "../import.js";
 import { lookOf, offeredLooks } from "../looks.js";
 import { isEmpty } from "../state.js";
-import { blocksFrame } from "./frame.js";
 import { BlocksField } from "./blocks_field.js";
 import { ask } from "./dialogs.js";
 import { BlocksDocument } from "./document.js";
+import { blocksFrame } from "./frame.js";
 import { blockMistakes, summary } from "./mistakes.js";
 import { NOWHERE, runPlace } from "./run_place.js";
 
@@ -39,7 +39,7 @@ const TEXT_KEY = "program.blocksText";
 class BlocksView {
   /** @type {BlocksDocument} */ #document;
   /** The look that the user has chosen for the open document. @type {Look | null} */ #chosen = null;
-  /** @type {import("../../program_tab/toolbox_file.js").Toolbox} what Blockly offers */ #toolbox;
+  /** @type {import("../../editor/toolbox_file.js").Toolbox} what Blockly offers */ #toolbox;
   /** @type {import("./mistakes.js").BlockMistake[]} */ #mistakes = [];
   /** The selected block. @type {string | null} */ #selected = null;
   #place = NOWHERE;

@@ -1,11 +1,11 @@
 // What is wrong with blocks: what the generator finds, and what the compiler says about the line of a block. Pure.
 
-import { mistakesIn } from "../../editor/checking.js";
 import { sentence } from "../../editor/mistakes.js";
+import { mistakesIn } from "../../input/check_service.js";
 import { problemText } from "../messages.js";
 
 /** @typedef {import("../../i18n/index.js").Translate} Translate */
-/** @typedef {import("../../editor/checking.js").Verdict} Verdict */
+/** @typedef {import("../../input/check_service.js").Verdict} Verdict */
 /** @typedef {import("./document.js").BlocksDocument} BlocksDocument */
 /** @typedef {{ id: string | null, text: string, isError: boolean }} BlockMistake */
 

@@ -1,11 +1,11 @@
 // The program's events: send, add, remove, plot; and the log of received events.
 
+import { download } from "../../browser/download.js";
 import { h, lock, renew, setText } from "../../ui/dom.js";
+import { icon } from "../../ui/icons.js";
 import { LARGEST_EVENT } from "../aesl.js";
 import { eventKey } from "../editor_session.js";
-import { download } from "../download.js";
 import { csv, parseNumbers } from "../numbers.js";
-import { icon } from "../../ui/icons.js";
 import { entryForm } from "./entry_form.js";
 import { pinButton, showPin } from "./pin.js";
 

@@ -1,7 +1,7 @@
 // The plot of watched values: a canvas with one line per value, and CSV export.
 
+import { download } from "../../browser/download.js";
 import { h, setText } from "../../ui/dom.js";
-import { download } from "../download.js";
 import { csv } from "../numbers.js";
 import { drawPlot, STYLES } from "../plot.js";
 

@@ -1,9 +1,9 @@
 // Live values: the watched ones, those of the program, those of the robot, and the constants of the file. A click edits
 // a value, a pin watches and plots it.
 
+import { download } from "../../browser/download.js";
 import { h, setAttribute, setText } from "../../ui/dom.js";
 import { icon } from "../../ui/icons.js";
-import { download } from "../download.js";
 import { csv, parseNumbers } from "../numbers.js";
 import { constantsPart } from "./constants.js";
 import { pinButton, showPin } from "./pin.js";

@@ -1,10 +1,10 @@
 // Names of kinds and fields as people read them: from the page's texts, from the declaration of a plug-in, or made of
 // the name in files.
 
-import { kindNamed } from "../playground/kinds/index.js";
+import { kindNamed } from "./kinds/index.js";
 import { toDisplay, unitOf } from "./units.js";
 
-/** @typedef {import("../playground/rules.js").Phrase} Phrase */
+/** @typedef {import("./rules.js").Phrase} Phrase */
 
 /** The unit at the end of a field's name. */
 const UNIT = /_(m|rad|kg|s)$/;

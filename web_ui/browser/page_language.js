@@ -1,11 +1,11 @@
 // The language of the page: the chosen one, else the browser's. The browser remembers the choice.
 
-import { localStore, trySetItem } from "../browser/local_storage.js";
-import { chooseLanguage, translator } from "./index.js";
-import { TEXTS } from "./page_texts.js";
+import { chooseLanguage, translator } from "../i18n/index.js";
+import { TEXTS } from "../i18n/page_texts.js";
+import { localStore, trySetItem } from "./local_storage.js";
 
-/** @typedef {import("./page_texts.js").TextFile} TextFile */
-/** @typedef {import("./index.js").Translate} Translate */
+/** @typedef {import("../i18n/page_texts.js").TextFile} TextFile */
+/** @typedef {import("../i18n/index.js").Translate} Translate */
 
 const KEY = "language";
 
