@@ -35,7 +35,7 @@ export class VplCommands {
    * @param {object} options
    * @param {import("../../i18n/index.js").Translate} options.t
    * @param {import("./editing.js").VplEditing} options.editing
-   * @param {ReturnType<typeof import("./rows.js").rowList>} options.rows
+   * @param {import("./rows.js").RowList} options.rows
    * @param {(text: string, kind: "good" | "warning") => void} options.say   "": nothing
    * @param {(text: string) => void} options.announce
    * @param {() => void} options.redraw   with the next frame

@@ -2,8 +2,8 @@
 //
 //   VplEditing        the program, its history, its file (no DOM)
 //   VplCommands       what the user does with it
-//   rowList, palette  the rows, and the blocks to choose from
-//   blockSheet        the editor of a block; rowMenu: what can be done with a row
+//   RowList, palette  the rows, and the blocks to choose from
+//   BlockSheet        the editor of a block; rowMenu: what can be done with a row
 //   textPane          the text that is made from the blocks
 //   noticeList        what the user must know or decide
 
@@ -19,7 +19,7 @@ import { withoutVpl } from "../file.js";
 import { reportedRow } from "../generator.js";
 import { offeredModes } from "../toolbox.js";
 import { vplBar } from "./bar.js";
-import { blockSheet } from "./block_sheet.js";
+import { BlockSheet } from "./block_sheet.js";
 import { VplCommands } from "./commands.js";
 import { dragBlocks } from "./drag_blocks.js";
 import { VplEditing } from "./editing.js";
@@ -29,7 +29,7 @@ import { palette } from "./palettes.js";
 import { isSlot, placeOf, spotOf, written } from "./place.js";
 import { questionNotices } from "./questions.js";
 import { rowMenu } from "./row_menu.js";
-import { rowList } from "./rows.js";
+import { RowList } from "./rows.js";
 import { sampleText } from "./samples.js";
 
 import "./vpl.css";
@@ -57,7 +57,7 @@ class VplView {
     this.t = t;
     this.editing = new VplEditing({ workspace: session.workspace, kept: session.texts });
 
-    this.rows = rowList({ t });
+    this.rows = new RowList({ t });
     this.commands = new VplCommands({
       t,
       editing: this.editing,
@@ -74,7 +74,7 @@ class VplView {
     this.actions = palette({ t, types: ["action"], add });
     /** @param {(spot: Spot) => void} act */
     const onEdited = (act) => this.#edited && act(this.#edited);
-    this.sheet = blockSheet({
+    this.sheet = new BlockSheet({
       t,
       change: (block, series) =>
         onEdited((spot) => commands.edit(changeBlock(editing.program, placeOf(spot), block), series)),

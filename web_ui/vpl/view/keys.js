@@ -6,7 +6,7 @@ import { isSlot, spotOf, written } from "./place.js";
 
 /**
  * @param {HTMLElement} element   the view
- * @param {ReturnType<typeof import("./rows.js").rowList>} rows
+ * @param {import("./rows.js").RowList} rows
  * @param {import("./commands.js").VplCommands} commands
  */
 export function watchKeys(element, rows, commands) {
