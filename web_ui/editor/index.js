@@ -20,11 +20,11 @@ import { isTaken } from "./help.js";
 import { mistakeCard } from "./mistake_card.js";
 import { MistakeGuide } from "./mistake_guide.js";
 import { repairLabel } from "./mistakes.js";
-import { navigation } from "./navigation.js";
+import { Navigation } from "./navigation.js";
 import { ProgramChecker } from "./program_checker.js";
 import { signatureHelp } from "./signature.js";
 import { skeletonText } from "./skeletons.js";
-import { createText } from "./text.js";
+import { TextField } from "./text.js";
 import { toolbox } from "./tools/index.js";
 import { ALL } from "./workspace.js";
 
@@ -37,7 +37,7 @@ import "./editor.css";
 class TextView {
   /** @param {Parts} parts */
   constructor(parts) {
-    const { t, context, session, choice, selection, commands, redraw } = parts;
+    const { t, context, session, choice, selection, redraw } = parts;
     const { workspace } = session;
     const { announce, language } = context;
     const { runtime } = context.actions;
@@ -55,12 +55,12 @@ class TextView {
         redraw();
       },
     });
-    this.navigation = navigation({
+    this.navigation = new Navigation({
       t,
       isTaken: (name, kind) => isTaken(name, kind, this.#vocabulary()),
       report: (text, kind) => this.report(text, kind),
     });
-    this.text = createText({
+    this.text = new TextField({
       parent: code,
       kept: session.texts,
       label: t("editor.code"),
@@ -89,35 +89,8 @@ class TextView {
       placed: (place) => this.#placed(place),
     }); // prettier-ignore
 
-    const { markers } = this;
-    this.debug = debugRow({
-      t,
-      commands,
-      mark: {
-        get isMarked() {
-          return markers.lines.includes(view.state.doc.lineAt(view.state.selection.main.head).number);
-        },
-        toggle: () => void markers.toggle(view.state.doc.lineAt(view.state.selection.main.head).number),
-      },
-    });
-    this.tools = toolbox({
-      t,
-      session,
-      announce,
-      redraw,
-      insert(words) {
-        if (view.state.readOnly) return;
-        view.dispatch(view.state.replaceSelection(words));
-        view.focus();
-      },
-      setVariable: (variable, values) => runtime.setVariable(selection.robot, variable, values),
-      emit: (event, values) => runtime.emit(selection.robot, event, values),
-      define: (kind, entry, value) => {
-        workspace.define(kind, entry, value);
-        this.checker.checkSoon();
-        redraw();
-      },
-    });
+    this.debug = this.#debugRow();
+    this.tools = this.#toolbox();
     this.bar = this.debug.element;
     this.entries = this.#entries();
     this.element = h(
@@ -213,6 +186,47 @@ class TextView {
     return this.parts.selection.target?.natives.find((each) => each.name === name) ?? null;
   }
 
+  /** Line by line, and a halt mark in the line of the cursor. */
+  #debugRow() {
+    const { view } = this.text;
+    const { markers } = this;
+    const line = () => view.state.doc.lineAt(view.state.selection.main.head).number;
+    return debugRow({
+      t: this.parts.t,
+      commands: this.parts.commands,
+      mark: {
+        get isMarked() {
+          return markers.lines.includes(line());
+        },
+        toggle: () => void markers.toggle(line()),
+      },
+    });
+  }
+
+  #toolbox() {
+    const { t, context, session, selection, redraw } = this.parts;
+    const { runtime } = context.actions;
+    const { view } = this.text;
+    return toolbox({
+      t,
+      session,
+      announce: context.announce,
+      redraw,
+      insert(words) {
+        if (view.state.readOnly) return;
+        view.dispatch(view.state.replaceSelection(words));
+        view.focus();
+      },
+      setVariable: (variable, values) => runtime.setVariable(selection.robot, variable, values),
+      emit: (event, values) => runtime.emit(selection.robot, event, values),
+      define: (kind, entry, value) => {
+        session.workspace.define(kind, entry, value);
+        this.checker.checkSoon();
+        redraw();
+      },
+    });
+  }
+
   /** What the text adds to the menu of the file. */
   #entries() {
     const { t, session, redraw } = this.parts;
@@ -235,12 +249,12 @@ class TextView {
       );
       return button;
     };
-    const { openOutline, goToDefinition, rename } = this.navigation.commands;
+    const { navigation } = this;
     const entries = [
       entry("find", "search", "Ctrl+F", () => this.text.find()),
-      entry("outline", "list", "Ctrl+Shift+O", () => openOutline(this.text.view)),
-      entry("definition", "text", "F12", () => goToDefinition(this.text.view)),
-      entry("rename", "pen", "F2", () => rename(this.text.view)),
+      entry("outline", "list", "Ctrl+Shift+O", () => navigation.openOutline(this.text.view)),
+      entry("definition", "text", "F12", () => navigation.goToDefinition(this.text.view)),
+      entry("rename", "pen", "F2", () => navigation.rename(this.text.view)),
     ];
     /** @param {string} name @param {string} sign @param {number} step */
     const sizer = (name, sign, step) =>

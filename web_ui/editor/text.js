@@ -53,38 +53,117 @@ const TAB_COLUMNS = 2;
 
 /** State of a text that outlives its field, beside content and cursor. */
 const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldState };
+const READ_ONLY = [EditorState.readOnly.of(true), EditorView.editorAttributes.of({ class: "cm-read-only" })];
 
 /**
- * @param {object} options
- * @param {HTMLElement} options.parent
- * @param {Map<string, any>} options.kept            stored states of texts, by key
- * @param {string} options.label
- * @param {Record<string, string>} options.phrases   CodeMirror's own texts, translated
- * @param {() => Omit<Vocabulary, "definitions">} options.vocabulary
- * @param {() => boolean} options.isReadOnly         whether the text that is shown next cannot be changed
- * @param {(code: string) => void} options.changed   called when the user changed the text
- * @param {(line: number) => void} options.toggleBreakpoint
- * @param {(text: string, repair: import("./marks.js").Repair) => string} options.repairLabel  label of a repair button
- * @param {() => void} options.correct               called when the user asks for the first repair
- * @param {import("@codemirror/state").Extension[]} options.extensions   of other modules
+ * @typedef {object} TextOptions
+ * @property {HTMLElement} parent
+ * @property {Map<string, any>} kept            stored states of texts, by key
+ * @property {string} label
+ * @property {Record<string, string>} phrases   CodeMirror's own texts, translated
+ * @property {() => Omit<Vocabulary, "definitions">} vocabulary
+ * @property {() => boolean} isReadOnly         whether the text that is shown next cannot be changed
+ * @property {(code: string) => void} changed   called when the user changed the text
+ * @property {(line: number) => void} toggleBreakpoint
+ * @property {(text: string, repair: import("./marks.js").Repair) => string} repairLabel  label of a repair button
+ * @property {() => void} correct               called when the user asks for the first repair
+ * @property {import("@codemirror/state").Extension[]} extensions   of other modules
  */
-export function createText(options) {
-  const { parent, kept, label, phrases, vocabulary, isReadOnly, changed, toggleBreakpoint, repairLabel, correct } = options;
+
+export class TextField {
+  /** Of the shown text. @type {string | null} */ #key = null;
+
+  /** @param {TextOptions} options */
+  constructor(options) {
+    this.options = options;
+    this.extensions = extensionsOf(options);
+    this.view = new EditorView({
+      parent: options.parent,
+      state: EditorState.create({ extensions: this.extensions }),
+    });
+  }
+
+  /**
+   * Show another text. Each key has its own undo history, which is kept as long as the text is the same.
+   *
+   * @param {string} next
+   * @param {string} code
+   */
+  show(next, code) {
+    this.#keep();
+    this.#key = next;
+    const known = this.options.kept.get(next);
+    const same = known !== undefined && known.doc === code;
+    const extensions = [this.extensions, this.options.isReadOnly() ? READ_ONLY : []];
+    this.view.setState(
+      same ? EditorState.fromJSON(known, { extensions }, KEPT) : EditorState.create({ doc: code, extensions }),
+    );
+    if (same) this.view.dispatch({ scrollIntoView: true });
+  }
+
+  destroy() {
+    this.#keep();
+    this.view.destroy();
+  }
+
+  find() {
+    openSearchPanel(this.view);
+  }
+
+  /** @param {import("./marks.js").Mark[]} marks */
+  mark(marks) {
+    const { doc } = this.view.state;
+    const end = doc.length;
+    const text = doc.toString();
+    const fitting = marks.map(({ from, to, severity, message, hint, repair }) => ({
+      from: Math.min(from, end),
+      to: Math.min(to, end),
+      severity,
+      message: hint === undefined ? message : `${message}\n${hint}`,
+      actions: repair
+        ? [{ name: this.options.repairLabel(text, repair), apply: () => void this.repair(text, repair) }]
+        : [],
+    }));
+    this.view.dispatch(setDiagnostics(this.view.state, fitting));
+  }
+
+  /**
+   * Apply a repair if the text is still the checked one; returns whether it is.
+   *
+   * @param {string} checked
+   * @param {import("./marks.js").Repair} repair
+   */
+  repair(checked, { from, to, insert }) {
+    const { view } = this;
+    if (view.state.readOnly || view.state.doc.toString() !== checked) return false;
+    const anchor = from + insert.length;
+    view.dispatch({
+      changes: { from, to, insert },
+      selection: { anchor },
+      scrollIntoView: true,
+      userEvent: "input.correct",
+    });
+    view.focus();
+    return true;
+  }
+
+  #keep() {
+    if (this.#key !== null) this.options.kept.set(this.#key, this.view.state.toJSON(KEPT));
+  }
+}
+
+/**
+ * How the text looks, and what it does. The order decides where gutters are, and which key comes first.
+ *
+ * @param {TextOptions} options
+ */
+function extensionsOf({ label, phrases, vocabulary, changed, toggleBreakpoint, correct, extensions }) {
   /** @param {EditorState} state @returns {Vocabulary} */
   const words = (state) => ({
     ...vocabulary(),
     definitions: outline(syntaxTree(state), (from, to) => state.sliceDoc(from, to)),
   });
-
-  /** @param {import("@codemirror/autocomplete").CompletionContext} context */
-  const complete = ({ state, pos, explicit }) => {
-    const line = state.doc.lineAt(pos);
-    const { from, items } = suggestions(state.sliceDoc(line.from, pos), words(state));
-    if (items.length === 0 || (!explicit && line.from + from === pos)) return null;
-    return { from: line.from + from, options: items.map(option), validFor: /^[\p{L}\p{N}_.]*$/u };
-  };
-
-  const extensions = [
+  return [
     breakpointGutter(toggleBreakpoint),
     lineNumbers({
       domEventHandlers: {
@@ -95,7 +174,7 @@ export function createText(options) {
       },
     }),
     lintGutter(),
-    options.extensions,
+    extensions,
     codeFolding(),
     foldGutter({ openText: "▾", closedText: "▸" }),
     highlightActiveLineGutter(),
@@ -106,18 +185,12 @@ export function createText(options) {
     EditorState.tabSize.of(TAB_COLUMNS),
     bracketMatching(),
     closeBrackets(),
-    autocompletion({ override: [complete], icons: false, defaultKeymap: false }),
+    autocompletion({ override: [completion(words)], icons: false, defaultKeymap: false }),
     completionKeys,
     highlightActiveLine(),
     highlightSelectionMatches(),
     search({ top: true }),
-    hoverTooltip((view, pos) => {
-      const line = view.state.doc.lineAt(pos);
-      const found = explain(line.text, pos - line.from, words(view.state));
-      if (found === null || found.item.kind === "keyword") return null;
-      const { from, to, item } = found;
-      return { pos: line.from + from, end: line.from + to, above: true, create: () => ({ dom: helpOf(item) }) };
-    }),
+    helpTooltip(words),
     aseba(),
     EditorState.phrases.of(phrases),
     EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
@@ -126,95 +199,58 @@ export function createText(options) {
     EditorView.updateListener.of((update) => {
       if (update.docChanged) changed(update.state.doc.toString());
     }),
-    keymap.of([
-      {
-        key: "Mod-b",
-        run: ({ state }) => {
-          toggleBreakpoint(state.doc.lineAt(state.selection.main.head).number);
-          return true;
-        },
-      },
-      { key: "Mod-g", run: gotoLine },
-      { key: "Mod-.", run: () => (correct(), true) },
-      { key: "Mod-d", run: toggleLineComment },
-      ...closeBracketsKeymap,
-      ...defaultKeymap,
-      ...searchKeymap,
-      ...historyKeymap,
-      ...foldKeymap,
-      ...lintKeymap,
-      indentWithTab,
-    ]),
+    keys(toggleBreakpoint, correct),
   ];
-  const readOnly = [EditorState.readOnly.of(true), EditorView.editorAttributes.of({ class: "cm-read-only" })];
-  const all = () => [extensions, isReadOnly() ? readOnly : []];
-  /** @type {string | null} */ let key = null;
-  const view = new EditorView({ parent, state: EditorState.create({ extensions }) });
-  const keep = () => {
-    if (key !== null) kept.set(key, view.state.toJSON(KEPT));
-  };
-  return {
-    view,
-    /**
-     * Show another text. Each key has its own undo history, which is kept as long as the text is the same.
-     *
-     * @param {string} next
-     * @param {string} code
-     */
-    show(next, code) {
-      keep();
-      key = next;
-      const known = kept.get(next);
-      const same = known !== undefined && known.doc === code;
-      view.setState(
-        same ? EditorState.fromJSON(known, { extensions: all() }, KEPT) : EditorState.create({ doc: code, extensions: all() }),
-      );
-      if (same) view.dispatch({ scrollIntoView: true });
+}
+
+/** @param {TextOptions["toggleBreakpoint"]} toggleBreakpoint @param {() => void} correct */
+function keys(toggleBreakpoint, correct) {
+  return keymap.of([
+    {
+      key: "Mod-b",
+      run: ({ state }) => {
+        toggleBreakpoint(state.doc.lineAt(state.selection.main.head).number);
+        return true;
+      },
     },
-    destroy() {
-      keep();
-      view.destroy();
-    },
-    find() {
-      openSearchPanel(view);
-    },
-    /** @param {import("./marks.js").Mark[]} marks */
-    mark(marks) {
-      const { doc } = view.state;
-      const end = doc.length;
-      const fitting = marks.map(({ from, to, severity, message, hint, repair }) => ({
-        from: Math.min(from, end),
-        to: Math.min(to, end),
-        severity,
-        message: hint === undefined ? message : `${message}\n${hint}`,
-        actions: repair
-          ? [{ name: repairLabel(doc.toString(), repair), apply: () => void this.repair(doc.toString(), repair) }]
-          : [],
-      }));
-      view.dispatch(setDiagnostics(view.state, fitting));
-    },
-    /**
-     * Apply a repair if the text is still the checked one; returns whether it is.
-     *
-     * @param {string} checked
-     * @param {import("./marks.js").Repair} repair
-     */
-    repair(checked, { from, to, insert }) {
-      if (view.state.readOnly || view.state.doc.toString() !== checked) return false;
-      const anchor = from + insert.length;
-      view.dispatch({
-        changes: { from, to, insert },
-        selection: { anchor },
-        scrollIntoView: true,
-        userEvent: "input.correct",
-      });
-      view.focus();
-      return true;
-    },
+    { key: "Mod-g", run: gotoLine },
+    { key: "Mod-.", run: () => (correct(), true) },
+    { key: "Mod-d", run: toggleLineComment },
+    ...closeBracketsKeymap,
+    ...defaultKeymap,
+    ...searchKeymap,
+    ...historyKeymap,
+    ...foldKeymap,
+    ...lintKeymap,
+    indentWithTab,
+  ]);
+}
+
+/**
+ * Suggestions for the word at the cursor.
+ *
+ * @param {(state: EditorState) => Vocabulary} words
+ * @returns {import("@codemirror/autocomplete").CompletionSource}
+ */
+function completion(words) {
+  return ({ state, pos, explicit }) => {
+    const line = state.doc.lineAt(pos);
+    const { from, items } = suggestions(state.sliceDoc(line.from, pos), words(state));
+    if (items.length === 0 || (!explicit && line.from + from === pos)) return null;
+    return { from: line.from + from, options: items.map(option), validFor: /^[\p{L}\p{N}_.]*$/u };
   };
 }
 
-/** @typedef {ReturnType<typeof createText>} TextField */
+/** Help for the word below the pointer. @param {(state: EditorState) => Vocabulary} words */
+function helpTooltip(words) {
+  return hoverTooltip((view, pos) => {
+    const line = view.state.doc.lineAt(pos);
+    const found = explain(line.text, pos - line.from, words(view.state));
+    if (found === null || found.item.kind === "keyword") return null;
+    const { from, to, item } = found;
+    return { pos: line.from + from, end: line.from + to, above: true, create: () => ({ dom: helpOf(item) }) };
+  });
+}
 
 /** @param {Item} item @param {number} place  index in the list @returns {import("@codemirror/autocomplete").Completion} */
 function option(item, place) {
