@@ -107,179 +107,231 @@ function watchSubscriptions(store, client) {
   });
 }
 
-async function main() {
-  const token = readToken();
-  const [address, shapes] = await Promise.all([bridgeAddress(), fetchShapes()]);
-  if (shapes !== null) registerShapes(shapes); // before the first playground is read
-  const store = new Store();
-  const pageLanguage = new PageLanguage(navigator.languages);
-  const { text } = pageLanguage;
-  const redraw = () => scene.invalidate();
-  const root = document.documentElement;
-  const theme = new Theme({ storage: localStore, systemIsDark: matchMedia("(prefers-color-scheme: dark)"), root });
-  const systemIsCalm = matchMedia("(prefers-reduced-motion: reduce)");
-  const motion = new MotionSetting({ storage: localStore, systemIsCalm, root });
-  const workspace = new Workspace(localStore);
-  const frame = new Frame({ element, workspace });
-  const opened = new OpenedFile();
-  const messageAt = new MessageAt(document.body);
+/** The objects of the page. Each exists once, as long as the page; texts are created anew in each language. */
+class Page {
+  #showTabs = () => {};
+  #showBar = () => {};
 
-  const program = new ProgramHost({ slot: element("#panel-program"), client: () => client });
-  const creator = new CreatorHost({ element, scene: () => scene });
-  const tour = new TourHost();
-  const welcome = new WelcomeHost(element('[data-slot="welcome"]'));
-  const panels = new PanelHost(element, workspace);
-  const client = new Client({
-    address,
-    token,
-    emit: (event) => {
-      store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event);
-      program.receive(event, store.state.selected);
-    },
-    wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
-    urgency: (topic) => urgencyOf(store.state, topic),
-    parameters: [
-      PARAMETERS.playground,
-      PARAMETERS.factor,
-      PARAMETERS.notice,
-      PARAMETERS.noticeLink,
-      PARAMETERS.pupil,
-      PARAMETERS.pausedByTeacher,
-    ],
-  });
-  const actions = new Actions({
-    client,
-    store,
-    t: (key, values) => text("page")(key, values),
-    language: () => pageLanguage.language,
-  });
-  const speaker = new Speaker({
-    createContext: "AudioContext" in window ? () => new AudioContext() : null,
-    muted: localStore.getItem(MUTED_KEY) === "true",
-    changed: redraw,
-  });
-  const dragController = new DragController({
-    state: () => store.state,
-    place: (name, pose) => actions.place(name, pose),
-    changed: redraw,
-    report: (key, values) => announce(text("page")(key, values)),
-  });
-  const graphics = new GraphicsNotice(element("#trouble"), (key) => text("page")(key));
-  const scene = new SceneView({
-    canvas: canvasElement("#view"),
-    flatCanvas: canvasElement("#flat"),
-    labels: element("#labels"),
-    state: () => creator.world ?? store.state,
-    sketch: () => creator.sketch,
-    beforeDraw: () => {
-      creator.render();
-      tour.render();
-      welcome.render(store.state);
-      panels.render(store.state);
-    },
-    press: ({ robot, button }, pressed) => {
-      store.dispatch({ type: "select", robot });
-      actions.press(robot, button, pressed);
-    },
-    dragController,
-    robotTitle: (name) => robotNames.title(name) || text("page")("app.robot"),
-    select: (robot) => store.dispatch({ type: "select", robot }),
-    contextLost: (trouble) => graphics.set(trouble),
-    flatInsets: () => coveredEdges(element(".views"), element("#trouble")),
-  });
-  const followTheme = () => scene.setTheme(theme.isDark ? "dark" : "light");
-  const followMotion = () => scene.setCalm(motion.isCalm);
-  theme.subscribe(followTheme);
-  motion.subscribe(followMotion);
-  followTheme();
-  followMotion();
-  const thumbnails = new ThumbnailCache((world) => scene.photographer.request(world));
+  /** @param {{ token: string | undefined, address: string }} bridge */
+  constructor({ token, address }) {
+    const root = document.documentElement;
+    const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
+    const systemIsCalm = matchMedia("(prefers-reduced-motion: reduce)");
+    this.address = address;
+    this.visit = visitOptions(location.search);
+    this.store = new Store();
+    this.pageLanguage = new PageLanguage(navigator.languages);
+    this.theme = new Theme({ storage: localStore, systemIsDark, root });
+    this.motion = new MotionSetting({ storage: localStore, systemIsCalm, root });
+    this.workspace = new Workspace(localStore);
+    this.frame = new Frame({ element, workspace: this.workspace });
+    this.opened = new OpenedFile();
+    this.messageAt = new MessageAt(document.body);
+    this.graphics = new GraphicsNotice(element("#trouble"), (key) => this.#pageText(key));
 
-  const visit = visitOptions(location.search);
-  if (!visit.scene) document.body.dataset.scene = "off";
-  let showTabs = () => {};
-  let showBar = () => {};
-  /** Create all texts in the current language. */
-  const build = () => {
-    const context = {
-      text,
-      language: pageLanguage.language,
-      setLanguage,
+    this.program = new ProgramHost({ slot: element("#panel-program"), client: () => this.client });
+    this.creator = new CreatorHost({ element, scene: () => this.scene });
+    this.tour = new TourHost();
+    this.welcome = new WelcomeHost(element('[data-slot="welcome"]'));
+    this.panels = new PanelHost(element, this.workspace);
+
+    this.client = this.#createClient(address, token);
+    this.actions = new Actions({
+      client: this.client,
+      store: this.store,
+      t: (key, values) => this.#pageText(key, values),
+      language: () => this.pageLanguage.language,
+    });
+    this.speaker = new Speaker({
+      createContext: "AudioContext" in window ? () => new AudioContext() : null,
+      muted: localStore.getItem(MUTED_KEY) === "true",
+      changed: this.redraw,
+    });
+    this.dragController = new DragController({
+      state: () => this.store.state,
+      place: (name, pose) => this.actions.place(name, pose),
+      changed: this.redraw,
+      report: (key, values) => announce(this.#pageText(key, values)),
+    });
+    this.scene = this.#createScene();
+    this.thumbnails = new ThumbnailCache((world) => this.scene.photographer.request(world));
+  }
+
+  start() {
+    this.#followSettings();
+    if (!this.visit.scene) document.body.dataset.scene = "off";
+    this.#build();
+    watchGrip(element("#grip"), this.workspace, this.frame);
+    this.frame.subscribe(this.#followWorkspace);
+    this.#followStore();
+    this.#watchInput();
+    this.client.start();
+    this.#followWorkspace();
+    this.tour.start();
+    const { store, scene, dragController, creator } = this;
+    exposeForTests({ store, scene, dragController, creator });
+  }
+
+  redraw = () => this.scene.invalidate();
+
+  /** @param {string} language */
+  setLanguage = (language) => {
+    this.pageLanguage.choose(language);
+    this.#build();
+  };
+
+  /** @type {import("./i18n/index.js").Translate} */
+  #pageText = (key, values) => this.pageLanguage.text("page")(key, values);
+
+  /** @param {string} address @param {string | undefined} token */
+  #createClient(address, token) {
+    const { store, program } = this;
+    return new Client({
       address,
+      token,
+      emit: (event) => {
+        store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event);
+        program.receive(event, store.state.selected);
+      },
+      wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
+      urgency: (topic) => urgencyOf(store.state, topic),
+      parameters: [
+        PARAMETERS.playground,
+        PARAMETERS.factor,
+        PARAMETERS.notice,
+        PARAMETERS.noticeLink,
+        PARAMETERS.pupil,
+        PARAMETERS.pausedByTeacher,
+      ],
+    });
+  }
+
+  #createScene() {
+    const { store, creator, tour, welcome, panels, actions, graphics } = this;
+    return new SceneView({
+      canvas: canvasElement("#view"),
+      flatCanvas: canvasElement("#flat"),
+      labels: element("#labels"),
+      state: () => creator.world ?? store.state,
+      sketch: () => creator.sketch,
+      beforeDraw: () => {
+        creator.render();
+        tour.render();
+        welcome.render(store.state);
+        panels.render(store.state);
+      },
+      press: ({ robot, button }, pressed) => {
+        store.dispatch({ type: "select", robot });
+        actions.press(robot, button, pressed);
+      },
+      dragController: this.dragController,
+      robotTitle: (name) => robotNames.title(name) || this.#pageText("app.robot"),
+      select: (robot) => store.dispatch({ type: "select", robot }),
+      contextLost: (trouble) => graphics.set(trouble),
+      flatInsets: () => coveredEdges(element(".views"), element("#trouble")),
+    });
+  }
+
+  /** Create all texts in the current language. */
+  #build() {
+    const { pageLanguage, program, creator, tour, welcome, scene, graphics } = this;
+    const context = {
+      text: pageLanguage.text,
+      language: pageLanguage.language,
+      setLanguage: this.setLanguage,
+      address: this.address,
       announce,
-      visit,
-      actions,
-      store,
+      visit: this.visit,
+      actions: this.actions,
+      store: this.store,
       scene,
-      dragController,
-      speaker,
-      workspace,
-      frame,
-      theme,
-      motion,
+      dragController: this.dragController,
+      speaker: this.speaker,
+      workspace: this.workspace,
+      frame: this.frame,
+      theme: this.theme,
+      motion: this.motion,
       program,
       creator,
       tour,
       welcome,
-      thumbnails,
-      opened,
-      messageAt,
+      thumbnails: this.thumbnails,
+      opened: this.opened,
+      messageAt: this.messageAt,
     };
     fillTexts(element, context);
-    showTabs = fillTabs(element("#tabs"), context);
-    showBar = fillBottomBar(element("#bar"), context);
-    panels.build(context);
+    this.#showTabs = fillTabs(element("#tabs"), context);
+    this.#showBar = fillBottomBar(element("#bar"), context);
+    this.panels.build(context);
     for (const host of [program, creator, tour, welcome]) host.setContext(context);
     if (!scene.painter.has3d) graphics.set("gone");
     else graphics.render();
-    redraw();
-  };
-  /** @param {string} language */
-  const setLanguage = (language) => {
-    pageLanguage.choose(language);
-    build();
-  };
+    this.redraw();
+  }
+
   /** Follow the workspace: hosts work only while their tab is shown. */
-  const followWorkspace = () => {
-    showTabs();
-    showBar();
-    void program.setVisible(workspace.tab === "program");
-    creator.setVisible(workspace.tab === "playground");
-    redraw();
+  #followWorkspace = () => {
+    const { tab } = this.workspace;
+    this.#showTabs();
+    this.#showBar();
+    void this.program.setVisible(tab === "program");
+    this.creator.setVisible(tab === "playground");
+    this.redraw();
   };
 
-  build();
-  watchGrip(element("#grip"), workspace, frame);
-  frame.subscribe(followWorkspace);
-  theme.subscribe(redraw);
-  motion.subscribe(redraw);
-  store.subscribe(redraw);
-  store.subscribe(() => program.redraw());
-  store.subscribe(() => speaker.update(store.state));
-  watchSubscriptions(store, client);
-  for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
-  watchKeyboard(scene.canvas, scene, dragController, (button, pressed) => actions.pressPad(button, pressed), {
-    useHand,
-    pause: () => element("#pause").click(),
-  });
-  watchDrops(element("#drop"), (file, place) => {
+  #followSettings() {
+    const { theme, motion, scene } = this;
+    const followTheme = () => scene.setTheme(theme.isDark ? "dark" : "light");
+    const followMotion = () => scene.setCalm(motion.isCalm);
+    theme.subscribe(followTheme);
+    motion.subscribe(followMotion);
+    followTheme();
+    followMotion();
+  }
+
+  #followStore() {
+    const { store, program, speaker, redraw } = this;
+    this.theme.subscribe(redraw);
+    this.motion.subscribe(redraw);
+    store.subscribe(redraw);
+    store.subscribe(() => program.redraw());
+    store.subscribe(() => speaker.update(store.state));
+    watchSubscriptions(store, this.client);
+  }
+
+  #watchInput() {
+    const { scene, dragController, actions, speaker, store } = this;
+    for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
+    watchKeyboard(scene.canvas, scene, dragController, (button, pressed) => actions.pressPad(button, pressed), {
+      useHand,
+      pause: () => element("#pause").click(),
+    });
+    watchDrops(element("#drop"), (file, place) => this.#open(file, place));
+    window.addEventListener("keydown", ({ key }) => {
+      if (key !== "Escape" || isSomethingOpen()) return; // it closes what is open first
+      if (dragController.mode) dragController.setMode(false);
+      else if (store.state.connection === "connected") void actions.stop();
+    });
+  }
+
+  /** Open a file that was dropped. @param {File} file @param {import("./browser/opened_file.js").Place} place */
+  #open(file, place) {
+    const { program, creator, actions, messageAt } = this;
     /** @param {string} words */
-    const refuse = (words) => messageAt.show(place, [h("p", {}, words)], text("page")("notice.dismiss"));
+    const refuse = (words) => messageAt.show(place, [h("p", {}, words)], this.#pageText("notice.dismiss"));
     messageAt.hide();
-    opened.note(file, place);
+    this.opened.note(file, place);
     if (creator.isOpen && !isProgram(file)) creator.openFile(file, place);
     else if (program.isOpen && isProgram(file)) void program.openFile(file);
     else void program.openOther(file).then((isOpened) => (isOpened ? undefined : actions.loadFile(file, refuse)));
-  });
-  window.addEventListener("keydown", ({ key }) => {
-    if (key !== "Escape" || isSomethingOpen()) return; // it closes what is open first
-    if (dragController.mode) dragController.setMode(false);
-    else if (store.state.connection === "connected") void actions.stop();
-  });
-  client.start();
-  followWorkspace();
-  tour.start();
-  exposeForTests({ store, scene, dragController, creator });
+  }
+}
+
+async function main() {
+  const token = readToken();
+  const [address, shapes] = await Promise.all([bridgeAddress(), fetchShapes()]);
+  if (shapes !== null) registerShapes(shapes); // before the first playground is read
+  new Page({ token, address }).start();
 }
 
 void main();

@@ -12,22 +12,168 @@ import { menu } from "../ui/menu.js";
 import { newPlayground, titled } from "./commands.js";
 
 /** @typedef {import("../browser/opened_file.js").Place} Place */
+/** @typedef {import("../i18n/index.js").Translate} Translate */
+/** @typedef {import("../playground/rules.js").Phrase} Phrase */
+/**
+ * @typedef {object} HeadOptions
+ * @property {import("./creator_session.js").CreatorSession} session
+ * @property {import("../playground/labels.js").Labels} labels
+ * @property {import("../shell/context.js").Context} context
+ * @property {(phrase: Phrase) => void} report
+ * @property {() => void} tryIt
+ * @property {() => void} close
+ */
+
+export class Head {
+  /** @param {HeadOptions} options */
+  constructor(options) {
+    const { session, labels, tryIt, close } = options;
+    const { t } = labels;
+    this.options = options;
+    this.words = { fresh: t("file.fresh"), device: t("file.kept"), file: t("file.saved"), none: t("file.notKept") };
+    this.title = titleField(t, session.model);
+    this.kept = h("p", { class: "kept", role: "status" });
+    this.fault = h("div", { class: "fault", role: "alert", hidden: true });
+    this.attempt = h(
+      "button",
+      { type: "button", class: "btn you", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
+      icon("run"),
+      t("file.try"),
+    );
+    const leave = t("file.leave");
+    const back = h(
+      "button",
+      { type: "button", class: "btn icon leave", title: leave, "aria-label": leave, onclick: close },
+      icon("back"),
+    );
+    const file = this.#fileField();
+    const element = h(
+      "div",
+      { class: "creator-head" },
+      back,
+      h("div", { class: "creator-title" }, ...this.title.elements, this.kept),
+      this.#menu(file),
+      this.attempt,
+      file,
+    );
+    this.elements = [element, this.fault];
+  }
+
+  /** @param {string} offline  why the simulator cannot be reached, else empty */
+  render(offline) {
+    const { kept } = this.options.session;
+    lock(this.attempt, offline);
+    this.title.render();
+    setAttribute(this.kept, "data-kept", kept);
+    setText(this.kept, this.words[kept]);
+  }
+
+  /**
+   * Show why a file was rejected, at the place where it was dropped; null clears that.
+   *
+   * @param {Node[] | null} reasons
+   * @param {Place | null} [place]
+   */
+  refuse(reasons, place = null) {
+    const { messageAt, announce, text } = this.options.context;
+    messageAt.hide();
+    const isHere = reasons !== null && place === null;
+    this.fault.hidden = !isHere;
+    this.fault.replaceChildren(...(isHere ? reasons : []));
+    if (isHere) announce(this.fault.textContent ?? "");
+    else if (reasons !== null && place !== null) messageAt.show(place, reasons, text("page")("notice.dismiss"));
+  }
+
+  /** @param {File} chosen @param {Place | null} [place] */
+  async open(chosen, place = null) {
+    const { labels, context } = this.options;
+    const { language } = context;
+    this.refuse(null);
+    const content = await textOf(chosen);
+    const headline = labels.t("file.refused", { name: chosen.name });
+    if (content === null) {
+      const reason = { phrase: { word: "fault.json" }, place: null, technical: chosen.type };
+      return this.refuse(refusalView(language, headline, reason), place);
+    }
+    try {
+      this.#replace(parse(content), { word: "change.opened", values: { name: chosen.name } }, true);
+    } catch (error) {
+      if (!(error instanceof Fault)) throw error;
+      this.refuse(refusalView(language, headline, reasonOfFault(error, content)), place);
+    }
+  }
+
+  #fileField() {
+    const field = h("input", {
+      type: "file",
+      id: "creator-file",
+      accept: ".json",
+      hidden: true,
+      "aria-label": this.options.labels.t("file.openHelp"),
+    });
+    field.addEventListener("change", () => {
+      const chosen = field.files?.[0];
+      if (chosen !== undefined) void this.open(chosen);
+      field.value = ""; // so that the same file can be opened again
+    });
+    return field;
+  }
+
+  /** @param {HTMLInputElement} file */
+  #menu(file) {
+    const { t } = this.options.labels;
+    const label = t("file.more");
+    const button = h(
+      "button",
+      { type: "button", class: "btn line icon", id: "creator-more", title: label, "aria-label": label },
+      icon("more"),
+    );
+    return menu({
+      id: "creator-menu",
+      button,
+      label,
+      entries: () => [
+        { label: t("file.save"), icon: "save", act: () => this.#save(), attributes: { "data-verb": "save" } },
+        { label: t("file.open"), icon: "open", act: () => file.click(), attributes: { "data-verb": "open" } },
+        { label: t("file.new"), icon: "file", act: () => this.#create(), attributes: { "data-verb": "new" } },
+      ],
+    }).element;
+  }
+
+  #save() {
+    const { session, report } = this.options;
+    download(session.fileName, session.text, "application/json");
+    session.noteSaved();
+    report({ word: "status.saved", values: { name: session.fileName } });
+  }
+
+  #create() {
+    this.#replace(newPlayground(this.options.labels.t("new.title")), { word: "change.new" }, false);
+  }
+
+  /**
+   * @param {import("../playground/document.js").Playground} playground
+   * @param {Phrase} change
+   * @param {boolean} inFile
+   */
+  #replace(playground, change, inFile) {
+    const { session, context, report } = this.options;
+    session.replacePlayground(playground, change, inFile);
+    this.refuse(null);
+    context.scene.reframe();
+    context.scene.setView("home");
+    report(change);
+  }
+}
 
 /**
- * @param {object} options
- * @param {import("./creator_session.js").CreatorSession} options.session
- * @param {import("../playground/labels.js").Labels} options.labels
- * @param {import("../shell/context.js").Context} options.context
- * @param {(phrase: import("../playground/rules.js").Phrase) => void} options.report
- * @param {() => void} options.tryIt
- * @param {() => void} options.close
+ * The title of the playground, and what is wrong with a new one.
+ *
+ * @param {Translate} t
+ * @param {import("./creator_model.js").CreatorModel} model
  */
-export function head({ session, labels, context, report, tryIt, close }) {
-  const { t } = labels;
-  const { scene, announce, messageAt, language } = context;
-  const pageText = context.text("page");
-  const { model } = session;
-  const title = h("input", {
+function titleField(t, model) {
+  const field = h("input", {
     type: "text",
     class: "title",
     "data-field": "title",
@@ -35,135 +181,26 @@ export function head({ session, labels, context, report, tryIt, close }) {
     autocomplete: "off",
     spellcheck: "false",
   });
-  const kept = h("p", { class: "kept", role: "status" });
   const problem = h("small", { class: "problem", role: "alert", hidden: true });
-  const fault = h("div", { class: "fault", role: "alert", hidden: true });
-  const file = h("input", {
-    type: "file",
-    id: "creator-file",
-    accept: ".json",
-    hidden: true,
-    "aria-label": t("file.openHelp"),
-  });
-  const attempt = h(
-    "button",
-    { type: "button", class: "btn you", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
-    icon("run"),
-    t("file.try"),
-  );
-  const back = h(
-    "button",
-    { type: "button", class: "btn icon leave", title: t("file.leave"), "aria-label": t("file.leave"), onclick: close },
-    icon("back"),
-  );
-  const more = h(
-    "button",
-    { type: "button", class: "btn line icon", id: "creator-more", title: t("file.more"), "aria-label": t("file.more") },
-    icon("more"),
-  );
-  const list = menu({
-    id: "creator-menu",
-    button: more,
-    label: t("file.more"),
-    entries: () => [
-      { label: t("file.save"), icon: "save", act: save, attributes: { "data-verb": "save" } },
-      { label: t("file.open"), icon: "open", act: () => file.click(), attributes: { "data-verb": "open" } },
-      { label: t("file.new"), icon: "file", act: create, attributes: { "data-verb": "new" } },
-    ],
-  });
-  const element = h(
-    "div",
-    { class: "creator-head" },
-    back,
-    h("div", { class: "creator-title" }, title, problem, kept),
-    list.element,
-    attempt,
-    file,
-  );
   /** @type {string | null} */ let shown = null;
-
-  title.addEventListener("change", () => {
-    const fitting = fits(BUILT_IN.titles.title, title.value);
+  field.addEventListener("change", () => {
+    const fitting = fits(BUILT_IN.titles.title, field.value);
     problem.hidden = fitting;
     setText(problem, fitting ? "" : t("problem.line"));
-    title.setAttribute("aria-invalid", String(!fitting));
-    if (fitting) model.replacePlayground(titled(model.playground, { title: title.value }), { word: "change.titled" });
+    field.setAttribute("aria-invalid", String(!fitting));
+    if (fitting) model.replacePlayground(titled(model.playground, { title: field.value }), { word: "change.titled" });
   });
-  title.addEventListener("keydown", ({ key }) => {
-    if (key === "Enter") title.blur(); // a change, and the heading looks like one again
+  field.addEventListener("keydown", ({ key }) => {
+    if (key === "Enter") field.blur(); // a change, and the heading looks like one again
   });
-  file.addEventListener("change", () => {
-    const chosen = file.files?.[0];
-    if (chosen !== undefined) void open(chosen);
-    file.value = ""; // so that the same file can be opened again
-  });
-
-  /** Show why a file was rejected, at the place where it was dropped; null clears that. @param {Node[] | null} reasons @param {Place | null} [place] */
-  function refuse(reasons, place = null) {
-    messageAt.hide();
-    const isHere = reasons !== null && place === null;
-    fault.hidden = !isHere;
-    fault.replaceChildren(...(isHere ? reasons : []));
-    if (isHere) announce(fault.textContent ?? "");
-    else if (reasons !== null && place !== null) messageAt.show(place, reasons, pageText("notice.dismiss"));
-  }
-
-  /**
-   * @param {import("../playground/document.js").Playground} playground
-   * @param {import("../playground/rules.js").Phrase} change
-   * @param {boolean} inFile
-   */
-  function replace(playground, change, inFile) {
-    session.replacePlayground(playground, change, inFile);
-    refuse(null);
-    scene.reframe();
-    scene.setView("home");
-    report(change);
-  }
-
-  /** @param {File} chosen @param {Place | null} [place] */
-  async function open(chosen, place = null) {
-    refuse(null);
-    const content = await textOf(chosen);
-    const headline = t("file.refused", { name: chosen.name });
-    if (content === null) {
-      return refuse(refusalView(language, headline, { phrase: { word: "fault.json" }, place: null, technical: chosen.type }), place);
-    }
-    try {
-      replace(parse(content), { word: "change.opened", values: { name: chosen.name } }, true);
-    } catch (error) {
-      if (!(error instanceof Fault)) throw error;
-      refuse(refusalView(language, headline, reasonOfFault(error, content)), place);
-    }
-  }
-
-  function save() {
-    download(session.fileName, session.text, "application/json");
-    session.noteSaved();
-    report({ word: "status.saved", values: { name: session.fileName } });
-  }
-
-  function create() {
-    replace(newPlayground(t("new.title")), { word: "change.new" }, false);
-  }
-
-  const words = { fresh: t("file.fresh"), device: t("file.kept"), file: t("file.saved"), none: t("file.notKept") };
   return {
-    elements: [element, fault],
-    refuse,
-    open,
-    /** @param {string} offline  why the simulator cannot be reached, else empty */
-    render(offline) {
-      lock(attempt, offline);
+    elements: [field, problem],
+    render() {
       const now = model.playground.title;
-      if (now !== shown) {
-        shown = now;
-        title.value = now || t("new.title");
-        problem.hidden = true;
-      }
-      const state = session.kept;
-      setAttribute(kept, "data-kept", state);
-      setText(kept, words[state]);
+      if (now === shown) return;
+      shown = now;
+      field.value = now || t("new.title");
+      problem.hidden = true;
     },
   };
 }

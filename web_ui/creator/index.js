@@ -12,9 +12,9 @@ import { bar } from "./bar.js";
 import { newPlayground } from "./commands.js";
 import { contextBar } from "./context_bar.js";
 import { CreatorSession } from "./creator_session.js";
-import { itemForm } from "./form.js";
+import { ItemForm } from "./form.js";
 import { groundWarnings } from "./ground_warnings.js";
-import { head } from "./head.js";
+import { Head } from "./head.js";
 import { itemList } from "./item_list.js";
 import { watchCreatorKeys } from "./keys.js";
 import { palette } from "./palette.js";
@@ -54,9 +54,9 @@ export class Creator {
       readPicture,
     };
     const report = this.report.bind(this);
-    this.head = head({ session, labels, context, report, tryIt, close });
+    this.head = new Head({ session, labels, context, report, tryIt, close });
     this.bar = bar(labels, model);
-    const form = itemForm(setting, model);
+    const form = new ItemForm(setting, model);
     const whole = playgroundForm(setting, model);
     const list = itemList(labels, model);
     const warnings = groundWarnings(t, model);

@@ -33,7 +33,8 @@ class ValuesTool {
     const { t, session, define, redraw } = context;
     this.context = context;
     const word = t("filter");
-    this.filter = h("input", { type: "search", class: "input", placeholder: word, "aria-label": word, oninput: redraw });
+    const filtering = { type: "search", class: "input", placeholder: word, "aria-label": word, oninput: redraw };
+    this.filter = h("input", filtering);
     this.hidden = h("input", { type: "checkbox", onchange: redraw });
     this.errorText = h("p", { class: "fault", role: "alert", hidden: true });
     this.nothing = h("p", { class: "nothing" }, t("variables.none"));
