@@ -95,7 +95,7 @@ export class TourHost {
   #build() {
     if (this.module === null || this.context === null) return;
     this.tour?.destroy();
-    this.tour = this.module.createTour({
+    this.tour = new this.module.Tour({
       language: this.context.language,
       step: this.step,
       stepped: (step) => {

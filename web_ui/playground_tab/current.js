@@ -9,68 +9,126 @@ import { RefusalBox } from "./refusal_box.js";
 
 /** @typedef {import("../state/index.js").Upload} Upload */
 
-/** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
+/** @typedef {import("../shell/context.js").Context} Context */
+/** @typedef {import("../shell/context.js").Panel} Panel */
+/** @typedef {import("../state/index.js").State} State */
+
+/** @implements {Panel} */
+class CurrentPanel {
+  slot = /** @type {const} */ ("playground");
+  /** @type {Upload | null} the last upload, as it is shown */ #shown = null;
+
+  /** @param {Context} context */
+  constructor(context) {
+    const { text, opened, actions, store } = context;
+    const t = text("playground");
+    this.context = context;
+    this.t = t;
+    this.box = new RefusalBox(context);
+    this.box.closed = () => {
+      store.dispatch({ type: "forget", what: "playground" });
+      store.dispatch({ type: "solved", cause: uploadCause("playground") });
+    };
+    this.headline = headline(context);
+    this.remarks = remarks(t);
+    this.copy = this.#copyButton();
+    this.file = fileButton({
+      id: "playground-file",
+      label: t("open"),
+      help: t("open.help"),
+      accept: ".json,.playground,.xml,.zip",
+      open: (chosen) => {
+        opened.note(chosen);
+        this.box.hide();
+        void actions.loadFile(chosen);
+      },
+    });
+    this.choices = h("div", { class: "row" }, this.copy, this.#newButton(), this.file);
+    this.element = h(
+      "section",
+      { class: "current browse", "aria-label": t("current") },
+      h("p", { class: "cap" }, t("current")),
+      this.headline.element,
+      this.remarks.element,
+      this.choices,
+      this.box.element,
+    );
+  }
+
+  /** @param {State} state */
+  watch({ uploads }) {
+    const upload = uploads.playground;
+    if (upload === this.#shown) return;
+    this.#shown = upload;
+    if (upload?.phase === "refused") void this.box.showUpload(upload);
+    else this.box.hide();
+    if (upload?.phase === "accepted") this.context.opened.forget();
+  }
+
+  /** @param {State} state */
+  render(state) {
+    const { creator, text } = this.context;
+    if (creator.isOpen) return;
+    const reason = disabledReason(state, text("page"));
+    for (const control of [this.copy, buttonOf(this.file)]) lock(control, reason);
+    this.choices.hidden = state.robots[state.selected]?.isReal ?? false;
+    this.headline.render(state);
+    this.remarks.render(state.simulator?.notes ?? []);
+  }
+
+  #copyButton() {
+    const { t } = this;
+    return h(
+      "button",
+      {
+        type: "button",
+        class: "btn you",
+        id: "playground-change",
+        "data-edit": "",
+        title: t("edit.help"),
+        onclick: () => void this.#edit(),
+      },
+      icon("pen"),
+      t("edit"),
+    );
+  }
+
+  #newButton() {
+    const { t } = this;
+    const { creator } = this.context;
+    const act = () => void creator.openNew();
+    return h(
+      "button",
+      { type: "button", class: "btn line", "data-new": "", title: t("new.help"), onclick: act },
+      icon("blocks"),
+      t("new"),
+    );
+  }
+
+  /** Open a copy in the creator. */
+  async #edit() {
+    const { actions, creator } = this.context;
+    const content = await actions.playgroundText();
+    if (content === null) return;
+    this.box.hide();
+    const fault = await creator.openText(content);
+    if (fault !== null) await this.box.showFault(this.t("refused.edit"), fault, content);
+  }
+}
+
+/** @param {Context} context @returns {Panel} */
 export function currentPanel(context) {
-  const { text, language, actions, creator, opened, scene, store, thumbnails } = context;
+  return new CurrentPanel(context);
+}
+
+/** Picture, title and description. @param {Context} context */
+function headline({ text, language, scene, thumbnails }) {
   const t = text("playground");
-  const pageText = text("page");
-  const box = new RefusalBox(context);
   const picture = h("img", { alt: "", width: 240, height: 160, hidden: true });
   const title = h("h2");
   const description = h("p", { class: "description" });
-  const summary = h("summary");
-  const notes = h("ul");
-  const remarks = h("details", { class: "remarks", hidden: true }, summary, notes);
-  const edit = async () => {
-    const content = await actions.playgroundText();
-    if (content === null) return;
-    box.hide();
-    const fault = await creator.openText(content);
-    if (fault !== null) await box.showFault(t("refused.edit"), fault, content);
-  };
-  const copy = h(
-    "button",
-    {
-      type: "button",
-      class: "btn you",
-      id: "playground-change",
-      "data-edit": "",
-      title: t("edit.help"),
-      onclick: () => void edit(),
-    },
-    icon("pen"),
-    t("edit"),
-  );
-  const file = fileButton({
-    id: "playground-file",
-    label: t("open"),
-    help: t("open.help"),
-    accept: ".json,.playground,.xml,.zip",
-    open: (chosen) => {
-      opened.note(chosen);
-      box.hide();
-      void actions.loadFile(chosen);
-    },
-  });
-  const build = h(
-    "button",
-    { type: "button", class: "btn line", "data-new": "", title: t("new.help"), onclick: () => void creator.openNew() },
-    icon("blocks"),
-    t("new"),
-  );
-  const choices = h("div", { class: "row" }, copy, build, file);
-  const element = h(
-    "section",
-    { class: "current browse", "aria-label": t("current") },
-    h("p", { class: "cap" }, t("current")),
-    h("div", { class: "current-head" }, h("span", { class: "frame" }, icon("playground"), picture), h("div", {}, title, description)),
-    remarks,
-    choices,
-    box.element,
-  );
+  const frame = h("span", { class: "frame" }, icon("playground"), picture);
   let drawn = "";
-  let noted = "";
-  /** @type {Upload | null} */ let shown = null;
 
   /** Show the thumbnail of a shipped playground. @param {string} name  empty: it is none of them */
   const draw = async (name) => {
@@ -81,44 +139,38 @@ export function currentPanel(context) {
     if (sample !== null) picture.src = sample.picture;
     scene.invalidate();
   };
-  /** @param {Upload | null} upload */
-  const showUpload = (upload) => {
-    shown = upload;
-    if (upload?.phase === "refused") void box.showUpload(upload);
-    else box.hide();
-    if (upload?.phase === "accepted") opened.forget();
-  };
-  box.closed = () => {
-    store.dispatch({ type: "forget", what: "playground" });
-    store.dispatch({ type: "solved", cause: uploadCause("playground") });
-  };
-
   return {
-    slot: "playground",
-    element,
-    watch(state) {
-      const { playground } = state.uploads;
-      if (playground !== shown) showUpload(playground);
-    },
-    render(state) {
-      if (creator.isOpen) return;
-      const { playgrounds, simulator } = state;
-      const reason = disabledReason(state, pageText);
-      for (const control of [copy, buttonOf(file)]) lock(control, reason);
+    element: h("div", { class: "current-head" }, frame, h("div", {}, title, description)),
+    /** @param {State} state */
+    render({ playgrounds, simulator, robots, selected }) {
       const shipped = playgrounds.find(({ name }) => name === simulator?.playground);
-      const isReal = state.robots[state.selected]?.isReal ?? false;
-      choices.hidden = isReal;
       const titles = shipped === undefined ? null : translated(shipped, language);
+      const isReal = robots[selected]?.isReal ?? false;
       setText(title, titles?.title ?? simulator?.title ?? "");
-      setText(description, titles?.description ?? (isReal ? t("current.real") : simulator === null ? "" : t("current.file")));
-      if ((shipped?.name ?? "") !== drawn) void draw(shipped?.name ?? "");
-      const texts = simulator?.notes ?? [];
-      const notesJson = JSON.stringify(texts);
-      if (notesJson === noted) return;
-      noted = notesJson;
-      setText(summary, t("warnings", { count: texts.length }));
-      notes.replaceChildren(...texts.map((note) => h("li", { lang: "en" }, note)));
-      remarks.hidden = texts.length === 0;
+      const about = isReal ? t("current.real") : simulator === null ? "" : t("current.file");
+      setText(description, titles?.description ?? about);
+      const name = shipped?.name ?? "";
+      if (name !== drawn) void draw(name);
+    },
+  };
+}
+
+/** What the simulator remarks on the file. @param {import("../i18n/index.js").Translate} t */
+function remarks(t) {
+  const summary = h("summary");
+  const list = h("ul");
+  const element = h("details", { class: "remarks", hidden: true }, summary, list);
+  let shown = "";
+  return {
+    element,
+    /** @param {readonly string[]} notes */
+    render(notes) {
+      const now = JSON.stringify(notes);
+      if (now === shown) return;
+      shown = now;
+      setText(summary, t("warnings", { count: notes.length }));
+      list.replaceChildren(...notes.map((note) => h("li", { lang: "en" }, note)));
+      element.hidden = notes.length === 0;
     },
   };
 }

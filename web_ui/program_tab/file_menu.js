@@ -8,56 +8,23 @@ import { makeSheet } from "../ui/sheet.js";
 /** Files of programs and of what languages import, as a file dialog offers them. @param {import("./commands.js").ProgramCommands} commands */
 export const acceptedFiles = ({ imports }) => [".aesl", ".aseba", ".txt", ".json", ...imports].join();
 
+/** @typedef {import("../i18n/index.js").Translate} Translate */
+/** @typedef {import("../editor/workspace.js").Workspace} Workspace */
+
 /**
  * @param {object} options
- * @param {import("../i18n/index.js").Translate} options.t
+ * @param {Translate} options.t
  * @param {import("../editor/editor_session.js").EditorSession} options.session
  * @param {import("./commands.js").ProgramCommands} options.commands
  * @param {() => void} options.redraw
  */
 export function fileMenu({ t, session, commands, redraw }) {
   const { workspace } = session;
-  const shownName = h("span", { class: "name" });
-  const unsaved = h("i", {
-    class: "program-unsaved",
-    role: "img",
-    "aria-label": t("file.unsaved"),
-    title: t("file.unsaved"),
-  });
-  const button = h(
-    "button",
-    { type: "button", class: "select quiet", id: "file-menu" },
-    icon("file", { small: true }),
-    shownName,
-    unsaved,
-    icon("caretDown", { small: true }),
-  );
   const sheet = h("div", { id: "file-sheet", class: "program-sheet", role: "group", "aria-label": t("file") });
   const close = () => sheet.hidePopover();
-
-  /**
-   * @param {string} name @param {import("../ui/icons.js").IconName} sign @param {string} text @param {string} key
-   * @param {() => void} act
-   */
-  const entry = (name, sign, text, key, act) =>
-    h(
-      "button",
-      { type: "button", class: "btn", "data-verb": name, onclick: () => (close(), act()) },
-      icon(sign, { small: true }),
-      h("span", { class: "grow" }, t(text)),
-      ...(key === "" ? [] : [h("kbd", { class: "kbd" }, key)]),
-    );
-  const name = h("input", { class: "file-name input", spellcheck: "false", autocomplete: "off" });
-  name.addEventListener("change", () => {
-    workspace.rename(name.value);
-    redraw();
-  });
-  name.addEventListener("keydown", ({ key }) => key === "Enter" && close());
-  const nodes = h("select", {
-    class: "select",
-    "aria-label": t("editor.nodes"),
-    onchange: () => workspace.chooseNode(Number(nodes.value)),
-  });
+  const button = menuButton(t);
+  const name = nameField(workspace, redraw, close);
+  const nodes = nodeChoice(t, workspace);
   const open = fileButton({
     id: "editor-file",
     label: t("file.open"),
@@ -67,45 +34,113 @@ export function fileMenu({ t, session, commands, redraw }) {
     look: "btn",
   });
   buttonOf(open).addEventListener("click", close);
-  const load = entry("load", "give", "file.load", "", () => void commands.put());
-  const allBlocks = entry("all-blocks", "blocks", "toolbox.showAll", "", () => commands.showAllBlocks());
+  /**
+   * @param {string} verb
+   * @param {import("../ui/icons.js").IconName} sign
+   * @param {string} text   key of its text
+   * @param {() => void} act
+   * @param {string} [key]  of the keyboard
+   */
+  const entry = (verb, sign, text, act, key = "") =>
+    h(
+      "button",
+      { type: "button", class: "btn", "data-verb": verb, onclick: () => (close(), act()) },
+      icon(sign, { small: true }),
+      h("span", { class: "grow" }, t(text)),
+      ...(key === "" ? [] : [h("kbd", { class: "kbd" }, key)]),
+    );
+  const load = entry("load", "give", "file.load", () => void commands.put());
+  const allBlocks = entry("all-blocks", "blocks", "toolbox.showAll", () => commands.showAllBlocks());
   const own = h("div", { class: "program-entries" });
   sheet.append(
-    h("label", { class: "field" }, h("span", { class: "small muted" }, t("file.name")), name),
-    nodes,
-    entry("new", "file", "file.new", "", () => commands.newFile()),
+    h("label", { class: "field" }, h("span", { class: "small muted" }, t("file.name")), name.element),
+    nodes.element,
+    entry("new", "file", "file.new", () => commands.newFile()),
     open,
-    entry("save", "save", "file.save", "Ctrl+S", () => commands.save()),
+    entry("save", "save", "file.save", () => commands.save(), "Ctrl+S"),
     load,
-    entry("examples", "list", "file.examples", "", () => commands.newFile()),
+    entry("examples", "list", "file.examples", () => commands.newFile()),
     allBlocks,
     own,
   );
-  makeSheet(button, sheet);
-
-  let nodesShown = "";
+  makeSheet(button.element, sheet);
   return {
-    element: h("span", { class: "menu program-file" }, button, sheet),
+    element: h("span", { class: "menu program-file" }, button.element, sheet),
     /** Show what the language adds. @param {readonly HTMLElement[]} entries */
     setEntries(entries) {
       own.replaceChildren(...entries);
     },
     /** @param {{ reason: string, isUnsaved: boolean, hasMistake: boolean }} facts */
     render({ reason, isUnsaved, hasMistake }) {
-      const { current, file } = workspace;
-      setText(shownName, current.name);
-      setAttribute(button, "aria-label", `${t("file")}: ${current.name}`);
-      unsaved.hidden = !isUnsaved;
+      button.render(workspace.current.name, isUnsaved);
       allBlocks.hidden = session.toolbox === WHOLE;
       lock(load, reason || (hasMistake ? t("editor.runBlocked") : ""));
-      if (name !== document.activeElement && name.value !== current.name) name.value = current.name;
+      name.render();
+      nodes.render();
+    },
+  };
+}
+
+/** The button with the name of the file. @param {Translate} t */
+function menuButton(t) {
+  const name = h("span", { class: "name" });
+  const label = t("file.unsaved");
+  const unsaved = h("i", { class: "program-unsaved", role: "img", "aria-label": label, title: label });
+  const element = h(
+    "button",
+    { type: "button", class: "select quiet", id: "file-menu" },
+    icon("file", { small: true }),
+    name,
+    unsaved,
+    icon("caretDown", { small: true }),
+  );
+  return {
+    element,
+    /** @param {string} current @param {boolean} isUnsaved */
+    render(current, isUnsaved) {
+      setText(name, current);
+      setAttribute(element, "aria-label", `${t("file")}: ${current}`);
+      unsaved.hidden = !isUnsaved;
+    },
+  };
+}
+
+/** @param {Workspace} workspace @param {() => void} redraw @param {() => void} close */
+function nameField(workspace, redraw, close) {
+  const element = h("input", { class: "file-name input", spellcheck: "false", autocomplete: "off" });
+  element.addEventListener("change", () => {
+    workspace.rename(element.value);
+    redraw();
+  });
+  element.addEventListener("keydown", ({ key }) => key === "Enter" && close());
+  return {
+    element,
+    render() {
+      const { name } = workspace.current;
+      if (element !== document.activeElement && element.value !== name) element.value = name;
+    },
+  };
+}
+
+/** The node of the file that is shown, where there are several. @param {Translate} t @param {Workspace} workspace */
+function nodeChoice(t, workspace) {
+  const element = h("select", {
+    class: "select",
+    "aria-label": t("editor.nodes"),
+    onchange: () => workspace.chooseNode(Number(element.value)),
+  });
+  let shown = "";
+  return {
+    element,
+    render() {
+      const { current, file } = workspace;
       const names = file.nodes.map((node) => `${node.name} ${node.id}`);
-      nodes.hidden = names.length < 2;
-      if (names.join() !== nodesShown) {
-        nodesShown = names.join();
-        nodes.replaceChildren(...names.map((each, index) => h("option", { value: index }, each)));
+      element.hidden = names.length < 2;
+      if (names.join() !== shown) {
+        shown = names.join();
+        element.replaceChildren(...names.map((each, index) => h("option", { value: index }, each)));
       }
-      if (nodes.value !== String(current.node)) nodes.value = String(current.node);
+      if (element.value !== String(current.node)) element.value = String(current.node);
     },
   };
 }

@@ -20,7 +20,7 @@ import { watchKeys } from "./keys.js";
 import { languageBar } from "./language_bar.js";
 import { programBadge } from "./program_badge.js";
 import { programHead } from "./program_head.js";
-import { startPage } from "./start_page.js";
+import { StartPage } from "./start_page.js";
 
 import "./program.css";
 
@@ -107,7 +107,7 @@ export class ProgramTab {
     });
     const timeLabel = (/** @type {number} */ time) =>
       new Date(time).toLocaleString(language, { dateStyle: "short", timeStyle: "short" });
-    this.start = startPage({ t, exampleText: this.exampleText, draftLabel, timeLabel, commands, languages });
+    this.start = new StartPage({ t, exampleText: this.exampleText, draftLabel, timeLabel, commands, languages });
     this.bar = h("div", { class: "program-row" }, h("span", { class: "grow" }), this.badge.element);
     this.place = h("div", { class: "program-view" }, this.languageBar.element, this.bar);
     this.element = h(

@@ -2,7 +2,7 @@
 
 import { translator } from "../i18n/index.js";
 import welcomeTexts from "../i18n/welcome.texts.js";
-import { startsOver } from "./starts.js";
+import { Starts } from "./starts.js";
 import { tourOffer } from "./tour_offer.js";
 
 import "./welcome.css";
@@ -13,7 +13,7 @@ export { openKeys } from "./keys_dialog.js";
 
 /** @param {Context} context @param {HTMLElement} slot @param {() => void} close */
 export function createStarts(context, slot, close) {
-  return startsOver(context, translator(context.language, welcomeTexts), slot, close);
+  return new Starts(context, translator(context.language, welcomeTexts), slot, close);
 }
 
 /** @param {Context} context */

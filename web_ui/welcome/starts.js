@@ -9,6 +9,7 @@ import { menu } from "../ui/menu.js";
 import { offeredExamples } from "./offered_examples.js";
 import { rosSheet } from "./ros_sheet.js";
 
+/** @typedef {import("../i18n/index.js").Translate} Translate */
 /** @typedef {import("../shell/context.js").Context} Context */
 /** @typedef {import("../state/index.js").State} State */
 
@@ -23,110 +24,129 @@ const EDGE_PX = 12;
 /** Height of the greeting's tip above the robot's origin, in meters. */
 const OVER_ROBOT_M = 0.075;
 
-/**
- * @param {Context} context
- * @param {import("../i18n/index.js").Translate} t
- * @param {HTMLElement} slot
- * @param {() => void} close   hides the starts for good
- */
-export function startsOver(context, t, slot, close) {
-  const { actions, scene, store, text, workspace } = context;
+export class Starts {
+  #transform = "";
+  #topic = "";
+
+  /**
+   * @param {Context} context
+   * @param {Translate} t
+   * @param {HTMLElement} slot
+   * @param {() => void} close   hides the starts for good
+   */
+  constructor(context, t, slot, close) {
+    this.context = context;
+    this.t = t;
+    this.slot = slot;
+    this.close = close;
+    const ros = h("button", { type: "button", class: "btn line", "data-start": "ros" }, t("ros.do"));
+    this.sheet = rosSheet(context, t, ros, close);
+    this.rosText = h("p", { class: "muted" });
+    this.driveText = h("p", { class: "muted" });
+    const driving = { type: "button", class: "btn you", "data-start": "drive", onclick: () => this.#drive() };
+    const programText = h("p", { class: "muted" }, t("program.text"));
+    this.watch = h(
+      "button",
+      { type: "button", class: "btn welcome-watch", "data-start": "watch", onclick: () => void this.#load(WATCH) },
+      icon("eye", { small: true }),
+      h("span", {}, t("watch")),
+    );
+    this.element = h(
+      "section",
+      { class: "welcome-starts", "aria-label": t("start") },
+      h(
+        "ul",
+        { class: "welcome-cards" },
+        card("pad", "welcome-you", t("drive"), this.driveText, h("button", driving, t("drive.do"))),
+        card("program", "welcome-act", t("program"), programText, this.#programMenu()),
+        card("plug", "welcome-sense", t("ros"), this.rosText, ros),
+      ),
+      this.watch,
+    );
+    this.hello = h("p", { class: "welcome-hello" }, t("hello"));
+    slot.append(this.hello, this.element, this.sheet.element);
+    document.body.classList.add(OPEN);
+    this.size = new ResizeObserver(() => this.#leaveFree(this.element.offsetHeight + EDGE_PX));
+    this.size.observe(this.element);
+  }
+
+  /** @param {State} state */
+  render(state) {
+    const { t } = this;
+    const isReal = state.robots[state.selected]?.isReal ?? false;
+    this.watch.hidden = isReal; // a real robot has no line to follow here
+    setText(this.driveText, t(isReal ? "drive.real" : "drive.text"));
+    const topic = this.sheet.render(state);
+    if (topic !== this.#topic) {
+      this.#topic = topic;
+      const [before, after] = t("ros.text", { topic: "\n" }).split("\n");
+      this.rosText.replaceChildren(before, h("b", {}, topic), after);
+    }
+    const place = greetingPlace(this.context, state);
+    this.hello.hidden = place === null;
+    if (place !== null && place !== this.#transform) this.hello.style.transform = this.#transform = place;
+  }
+
+  destroy() {
+    this.size.disconnect();
+    this.#leaveFree(0);
+    document.body.classList.remove(OPEN);
+    keepFocus(this.slot, () => {
+      for (const each of [this.hello, this.element, this.sheet.element]) each.remove();
+    });
+    this.context.scene.invalidate();
+  }
 
   /** Start a behavior on the chosen robot; time runs, so that something moves. @param {string} name */
-  const load = async (name) => {
-    close();
+  async #load(name) {
+    const { actions, store } = this.context;
+    this.close();
     if (store.state.simulator?.paused) await actions.pause(false);
     await actions.loadExample(name);
-  };
-  const drive = () => {
-    void load(DRIVE);
+  }
+
+  #drive() {
+    void this.#load(DRIVE);
     unfoldTray(); // in a low window it is folded, and the arrows are in it
-    scene.canvas.focus(); // the arrow keys work at once
+    this.context.scene.canvas.focus(); // the arrow keys work at once
     pulse();
-  };
-  const example = h("button", { type: "button", class: "btn line", "data-start": "program" }, t("program.do"));
-  const { element: examples } = menu({
-    id: "welcome-examples",
-    button: example,
-    label: t("program.do"),
-    entries: () => [
-      ...offeredExamples(store.state.behaviors).map((name) => ({
-        label: titleOf(name, text("examples")),
-        attributes: { "data-example": name },
-        act: () => {
-          void load(name);
-          workspace.select("program");
+  }
+
+  /** A button with the examples, and the way to a program of one's own. */
+  #programMenu() {
+    const { t } = this;
+    const { store, text, workspace, program } = this.context;
+    return menu({
+      id: "welcome-examples",
+      button: h("button", { type: "button", class: "btn line", "data-start": "program" }, t("program.do")),
+      label: t("program.do"),
+      entries: () => [
+        ...offeredExamples(store.state.behaviors).map((name) => ({
+          label: titleOf(name, text("examples")),
+          attributes: { "data-example": name },
+          act: () => {
+            void this.#load(name);
+            workspace.select("program");
+          },
+        })),
+        {
+          label: t("program.own"),
+          icon: /** @type {const} */ ("text"),
+          attributes: { "data-example": "" },
+          act: () => {
+            this.close();
+            void program.openStart(); // the ways to begin, also when the robot runs an example
+          },
         },
-      })),
-      {
-        label: t("program.own"),
-        icon: /** @type {const} */ ("text"),
-        attributes: { "data-example": "" },
-        act: () => {
-          close();
-          void context.program.openStart(); // the ways to begin, also when the robot runs an example
-        },
-      },
-    ],
-  });
-  const ros = h("button", { type: "button", class: "btn line", "data-start": "ros" }, t("ros.do"));
-  const sheet = rosSheet(context, t, ros, close);
-  const rosText = h("p", { class: "muted" });
-  const driveText = h("p", { class: "muted" });
-  const driveButton = h("button", { type: "button", class: "btn you", "data-start": "drive", onclick: drive }, t("drive.do"));
-  const watch = h(
-    "button",
-    { type: "button", class: "btn welcome-watch", "data-start": "watch", onclick: () => void load(WATCH) },
-    icon("eye", { small: true }),
-    h("span", {}, t("watch")),
-  );
-  const element = h(
-    "section",
-    { class: "welcome-starts", "aria-label": t("start") },
-    h(
-      "ul",
-      { class: "welcome-cards" },
-      card("pad", "welcome-you", t("drive"), driveText, driveButton),
-      card("program", "welcome-act", t("program"), h("p", { class: "muted" }, t("program.text")), examples),
-      card("plug", "welcome-sense", t("ros"), rosText, ros),
-    ),
-    watch,
-  );
-  const hello = h("p", { class: "welcome-hello" }, t("hello"));
-  slot.append(hello, element, sheet.element);
-  document.body.classList.add(OPEN);
+      ],
+    }).element;
+  }
+
   /** Fit the playground into what the cards leave free. @param {number} bottom  CSS pixels */
-  const leaveFree = (bottom) => scene.setInsets({ ...scene.camera.insets, bottom });
-  const size = new ResizeObserver(() => leaveFree(element.offsetHeight + EDGE_PX));
-  size.observe(element);
-  let transform = "";
-  let topic = "";
-  return {
-    /** @param {State} state */
-    render(state) {
-      const isReal = state.robots[state.selected]?.isReal ?? false;
-      watch.hidden = isReal; // a real robot has no line to follow here
-      setText(driveText, t(isReal ? "drive.real" : "drive.text"));
-      const now = sheet.render(state);
-      if (now !== topic) {
-        topic = now;
-        const [before, after] = t("ros.text", { topic: "\n" }).split("\n");
-        rosText.replaceChildren(before, h("b", {}, topic), after);
-      }
-      const place = greetingPlace(context, state);
-      hello.hidden = place === null;
-      if (place !== null && place !== transform) hello.style.transform = transform = place;
-    },
-    destroy() {
-      size.disconnect();
-      leaveFree(0);
-      document.body.classList.remove(OPEN);
-      keepFocus(slot, () => {
-        for (const each of [hello, element, sheet.element]) each.remove();
-      });
-      scene.invalidate();
-    },
-  };
+  #leaveFree(bottom) {
+    const { scene } = this.context;
+    scene.setInsets({ ...scene.camera.insets, bottom });
+  }
 }
 
 /**
