@@ -1,10 +1,10 @@
 // Helpers of the tests of blocks: golden programs, small workspaces.
 
 import { readFileSync, readdirSync } from "node:fs";
-import { deflateRawSync } from "node:zlib";
 
 import { readFile } from "../../web_ui/blockly/file.js";
 import { generate } from "../../web_ui/blockly/generator.js";
+import { strToU8, zipSync } from "../../web_ui/node_modules/fflate/esm/index.mjs";
 
 /** @typedef {import("../../web_ui/blockly/state.js").BlockState} BlockState */
 
@@ -50,28 +50,6 @@ export function stack(...blocks) {
  * @param {boolean} [packed]
  */
 export function zip(files, packed = true) {
-  /** @type {Buffer[]} */ const locals = [];
-  /** @type {Buffer[]} */ const entries = [];
-  let at = 0;
-  for (const [name, text] of Object.entries(files)) {
-    const data = packed ? deflateRawSync(text) : Buffer.from(text);
-    const local = Buffer.alloc(30);
-    local.writeUInt32LE(0x04034b50, 0);
-    local.writeUInt16LE(name.length, 26);
-    const entry = Buffer.alloc(46);
-    entry.writeUInt32LE(0x02014b50, 0);
-    entry.writeUInt16LE(packed ? 8 : 0, 10);
-    entry.writeUInt32LE(data.length, 20);
-    entry.writeUInt32LE(Buffer.byteLength(text), 24);
-    entry.writeUInt16LE(name.length, 28);
-    entry.writeUInt32LE(at, 42);
-    locals.push(local, Buffer.from(name), data);
-    entries.push(entry, Buffer.from(name));
-    at += local.length + name.length + data.length;
-  }
-  const end = Buffer.alloc(22);
-  end.writeUInt32LE(0x06054b50, 0);
-  end.writeUInt16LE(Object.keys(files).length, 10);
-  end.writeUInt32LE(at, 16);
-  return new Uint8Array(Buffer.concat([...locals, ...entries, end]));
+  const contents = Object.entries(files).map(([name, text]) => [name, strToU8(text)]);
+  return zipSync(Object.fromEntries(contents), { level: packed ? 6 : 0, mtime: new Date(2026, 0, 1) });
 }
