@@ -1,4 +1,4 @@
-"""Entry point of ``python -m aseba_vm``, the same as the command ``aseba``."""
+"""Entry point of `python -m aseba_vm`, the same as the command `aseba`."""
 
 import sys
 

@@ -49,7 +49,7 @@ BINARY_NUMBER: Mapping[str, int] = {symbol: number for number, symbol in enumera
 UNARY_NUMBER: Mapping[str, int] = {symbol: number for number, symbol in enumerate(UNARY_OPERATORS)}
 
 EDGE = 0x100
-"""Flag of a BRANCH (``when``): branch only when the condition becomes true."""
+"""Flag of a BRANCH (`when`): branch only when the condition becomes true."""
 WAS_TRUE = 0x200
 """Flag of a BRANCH in bytecode memory: the condition was true when last evaluated."""
 
@@ -76,9 +76,9 @@ class Instruction:
 class Segment:
     """The code of an event or a subroutine.
 
-    ``number`` is the event number or the subroutine index, ``depth`` the estimated stack depth, ``row`` the row of
-    ``sub``. ``falls_through``: the last instruction may be skipped, so execution runs on into the next segment.
-    ``far_blocks``: starts of blocks too long for the 12 bits of a jump (docs/spec/aseba-language.md section 12).
+    `number` is the event number or the subroutine index, `depth` the estimated stack depth, `row` the row of
+    `sub`. `falls_through`: the last instruction may be skipped, so execution runs on into the next segment.
+    `far_blocks`: starts of blocks too long for the 12 bits of a jump (docs/spec/aseba-language.md section 12).
     """
 
     is_sub: bool
@@ -96,7 +96,7 @@ class Segment:
         return sum(LENGTH[instruction.op] for instruction in self.code)
 
     def dump(self) -> str:
-        """Return a heading and one line per instruction, with the row counted from 1."""
+        """A heading and one line per instruction, with the row counted from 1."""
         heading = f"{'sub' if self.is_sub else 'event'} {self.name or 'init'} ({self.number}), stack {self.depth}"
         rows = ("-" if code.row is None else code.row + 1 for code in self.code)
         return "\n".join([heading, *(f"  {row:>4}  {code}" for row, code in zip(rows, self.code, strict=True))])
@@ -157,17 +157,17 @@ def link(segments: Sequence[Segment]) -> Image:
 
 
 def signed(word: int) -> int:
-    """Return a word as a signed number."""
+    """A word as a signed number."""
     return word - 0x10000 if word & 0x8000 else word
 
 
 def signed12(word: int) -> int:
-    """Return the low 12 bits of a word as a signed number."""
+    """The low 12 bits of a word as a signed number."""
     return ((word & 0xFFF) ^ 0x800) - 0x800
 
 
 def instructions(words: Sequence[int], start: int = 0) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Yield address and words of each instruction from ``start`` to the end; the last may be cut short."""
+    """Address and words of each instruction from `start` to the end; the last may be cut short."""
     pc = start
     while pc < len(words):
         length = LENGTH[words[pc] >> 12 & 0xF]
@@ -176,7 +176,7 @@ def instructions(words: Sequence[int], start: int = 0) -> Iterator[tuple[int, tu
 
 
 def describe(words: Sequence[int]) -> str:
-    """Return one instruction as text; jump targets are relative."""
+    """One instruction as text; jump targets are relative."""
     op, operand = Op(words[0] >> 12), words[0] & 0xFFF
     more = [*words[1:], 0, 0]
     match op:
@@ -209,13 +209,13 @@ def describe(words: Sequence[int]) -> str:
 
 
 def disassemble(words: Sequence[int]) -> str:
-    """Return a program image as text: the event table, then one line per instruction with its address."""
+    """A program image as text: the event table, then one line per instruction with its address."""
     start = min(words[0], len(words)) if words else 0
     return "\n".join([*table_lines(words), *(line_of_code(pc, code) for pc, code in instructions(words, start))])
 
 
 def table_lines(words: Sequence[int]) -> list[str]:
-    """Return the event table of an image as lines of text."""
+    """The event table of an image as lines of text."""
     if not words:
         return []
     lines = [f"{0:5}  {words[0]:04X}            code at {words[0]}"]
@@ -226,7 +226,7 @@ def table_lines(words: Sequence[int]) -> list[str]:
 
 
 def line_of_code(pc: int, words: Sequence[int]) -> str:
-    """Return one instruction as a line of text: address, words, meaning."""
+    """One instruction as a line of text: address, words, meaning."""
     return f"{pc:5}  {' '.join(f'{word:04X}' for word in words):14}  {describe(words)}{_destination(pc, words)}"
 
 

@@ -33,7 +33,7 @@ class Debugger:
     """
 
     def __init__(self, machine: VirtualMachine, program: Program) -> None:
-        """Attach to a machine that has ``program`` loaded."""
+        """Attach to a machine that has `program` loaded."""
         self.machine = machine
         self.program = program
         start = 2 * len(program.events) + 1
@@ -81,9 +81,10 @@ class Debugger:
         return tuple(sorted(rows))
 
     def set_breakpoint(self, row: int) -> int | None:
-        """Set a breakpoint at ``row``, or at the next row that has code, and return that row.
+        """Set a breakpoint at `row`, or at the next row that has code. A row with a breakpoint keeps it.
 
-        Returns None if there is no such row, or if all 16 breakpoints are in use. A row with a breakpoint keeps it.
+        Returns:
+            The row of the breakpoint; None if no row has code there, or if all 16 breakpoints are in use.
         """
         found = min((place for place in self._places if place >= row), default=None)
         if found is None or found in self.breakpoints:
@@ -104,10 +105,16 @@ class Debugger:
     # -- execution
 
     def step_row(self, limit: int = MAX_STEPS) -> bool:
-        """Execute to the next row (stepping into subroutines) or the end of the event; return whether it was reached.
+        """Execute to the next row (stepping into subroutines) or to the end of the event.
 
         A fault ends the step too. Breakpoints are ignored. Of the execution states on the way only the last is
         reported.
+
+        Args:
+            limit: maximum number of instructions.
+
+        Returns:
+            Whether the step ended within the limit.
         """
         machine, first_row = self.machine, self.row
         if not machine.is_step_by_step:
@@ -127,7 +134,14 @@ class Debugger:
         return True
 
     def resume(self, limit: int = 0) -> bool:
-        """Continue from the current breakpoint, if any; return whether the machine stopped at another one."""
+        """Continue from the current breakpoint, if any.
+
+        Args:
+            limit: maximum number of instructions, 0 for no limit.
+
+        Returns:
+            Whether the machine stopped at another breakpoint.
+        """
         machine = self.machine
         if machine.is_active and machine.is_step_by_step and machine.pc in machine.breakpoints:
             machine.step()

@@ -2,7 +2,7 @@
 
 Source: docs/spec/aseba-bytecode-vm.md section 10.5.
 
-``raise_local(name)`` and ``receive(event, source, arguments)`` deliver events; ``run(limit)`` is one iteration of the
+`raise_local(name)` and `receive(event, source, arguments)` deliver events; `run(limit)` is one iteration of the
 main loop. On the robot a global event kills the active handler; FirmwareDispatch queues it instead, as pupils expect.
 """
 
@@ -34,17 +34,25 @@ class Dispatch(Protocol):
         """Raise a local event of the target. Raises KeyError for a name that the target lacks."""
 
     def receive(self, event: int, source: int = 0, arguments: Sequence[int] = ()) -> bool:
-        """Accept a global event from the network; return whether there was room for it."""
+        """Accept a global event from the network.
+
+        Returns:
+            Whether there was room for it.
+        """
 
     def run(self, limit: int = ...) -> bool:
-        """Execute at most ``limit`` instructions of each handler that is due; return whether any was executed."""
+        """Execute at most `limit` instructions of each handler that is due.
+
+        Returns:
+            Whether any instruction was executed.
+        """
 
 
 class FirmwareDispatch:
     """Dispatch of the robot: handlers are never interrupted. Local events are flags, global events are queued."""
 
     def __init__(self, machine: VirtualMachine) -> None:
-        """Dispatch events to a machine. Call :meth:`clear` when it is reset, as the robot does."""
+        """Dispatch events to a machine. Call `clear` when it is reset, as the robot does."""
         self.machine = machine
         self._pending: set[int] = set()
         self._incoming: deque[tuple[int, int, tuple[int, ...]]] = deque()
@@ -64,7 +72,11 @@ class FirmwareDispatch:
         self._pending.add(0xFFFE - self.machine.target.local_event_number(name))
 
     def receive(self, event: int, source: int = 0, arguments: Sequence[int] = ()) -> bool:
-        """Append a global event to the queue; return False if the queue is full."""
+        """Append a global event to the queue.
+
+        Returns:
+            False if the queue is full; the event is dropped then.
+        """
         if len(self._incoming) >= MAX_QUEUED_EVENTS:
             return False
         self._incoming.append((event, source, tuple(arguments)))
@@ -105,5 +117,5 @@ class PlaygroundDispatch:
         return True
 
     def run(self, limit: int = PLAYGROUND_BUDGET) -> bool:
-        """Execute at most ``limit`` instructions of the active handler."""
+        """Execute at most `limit` instructions of the active handler."""
         return self.machine.run(limit)

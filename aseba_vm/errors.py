@@ -1,6 +1,6 @@
 """Source positions, hints and the exceptions of this package.
 
-An error is data (kind, arguments, position); :mod:`aseba_vm.messages` has its text.
+An error is data (kind, arguments, position); `aseba_vm.messages` has its text.
 """
 
 from __future__ import annotations
@@ -28,29 +28,29 @@ class SourcePos:
         return f"{self.row + 1}:{self.col + 1}"
 
     def moved(self, row: int, col: int) -> SourcePos:
-        """Return the position in a file, given the row and column where the text begins in it."""
+        """The position in a file, given the row and column where the text begins in it."""
         return SourcePos(self.offset, self.row + row, self.col + col if self.row == 0 else self.col)
 
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace the characters of a program from offset ``start`` to ``end`` (exclusive) by ``text``."""
+    """Replace the characters of a program from offset `start` to `end` (exclusive) by `text`."""
 
     start: int
     end: int
     text: str
 
     def applied(self, source: str) -> str:
-        """Return the program with this edit applied."""
+        """The program with this edit applied."""
         return source[: self.start] + self.text + source[self.end :]
 
 
 @dataclass(frozen=True, slots=True)
 class Hint:
-    """What was probably meant by a rejected program, as data.
+    """A probable correction of a rejected program, as data.
 
-    ``kind`` is a stable identifier, ``arguments`` are its ordered values, ``edit`` is a change that corrects the
-    program. ``row`` is a row of the program, from 0; the message states it after the arguments.
+    `kind` is a stable identifier, `arguments` are its ordered values, `edit` is a change that corrects the
+    program. `row` is a row of the program, from 0; the message states it after the arguments.
     """
 
     kind: str
@@ -62,9 +62,9 @@ class Hint:
         return self.message()
 
     def message(self, messages: Mapping[str, str] = MESSAGES, rows: Sequence[int] = ()) -> str:
-        """Return the text of the hint in the language of ``messages``.
+        """The text of the hint in the language of `messages`.
 
-        ``rows`` maps rows of the program to rows of its file, both from 0; without it they are the same.
+        `rows` maps rows of the program to rows of its file, both from 0; without it they are the same.
         """
         lines = () if self.row is None else ((rows[self.row] if rows else self.row) + 1,)
         return format_message(self.kind, (*self.arguments, *lines), messages)
@@ -77,8 +77,8 @@ class AsebaError(Exception):
 class CompileError(AsebaError):
     """A rejected program: the first error in the order of docs/spec/aseba-language.md section 11.
 
-    ``kind`` is a stable identifier, ``arguments`` are its ordered values, ``pos`` is the position or None. ``hint``
-    suggests what was probably meant, if that is known (:mod:`aseba_vm.frontend.hints.finder`).
+    `kind` is a stable identifier, `arguments` are its ordered values, `pos` is the position or None. `hint`
+    suggests a correction, if one is known (`aseba_vm.frontend.hints.finder`).
     """
 
     def __init__(self, kind: str, arguments: tuple[Argument, ...] = (), pos: SourcePos | None = None) -> None:
@@ -92,12 +92,12 @@ class CompileError(AsebaError):
         return format_message(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
-        """Return the message with the file name and the position (from 1) in front."""
+        """The message with the file name and the position (from 1) in front."""
         return f"{name}: {self}" if self.pos is None else f"{name}:{self.pos}: {self}"
 
 
 class TextError(AsebaError):
-    """A file that is not text. ``line`` and ``column`` count from 1; kind and arguments as in CompileError."""
+    """A file that is not text. `line` and `column` count from 1; kind and arguments as in CompileError."""
 
     def __init__(self, kind: str, arguments: tuple[Argument, ...], line: int, column: int) -> None:
         super().__init__(kind, arguments, line, column)
@@ -110,7 +110,7 @@ class TextError(AsebaError):
         return format_message(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
-        """Return the message with the file name and the position in front."""
+        """The message with the file name and the position in front."""
         return f"{name}:{self.line}:{self.column}: {self}"
 
 

@@ -1,7 +1,7 @@
-"""Makes sentences of errors, warnings and hints, whose texts are in `languages/<code>/compiler.json`.
+"""Sentences for errors, warnings and hints, from the texts in `languages/<code>/compiler.json`.
 
-Kinds and arguments come from the errors. In a template, ``{0}`` is an argument, ``{t0}`` a token, ``{l0}`` a list of
-tokens, ``{v0}`` a token with its value.
+Kinds and arguments come from the errors. In a template, `{0}` is an argument, `{t0}` a token, `{l0}` a list of
+tokens, `{v0}` a token with its value.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _LONGEST = 60
 
 
 def format_message(kind: str, arguments: Sequence[object], messages: Mapping[str, str] = MESSAGES) -> str:
-    """Return the text of an error, warning or hint; for an unknown kind, the kind itself with its arguments."""
+    """The text of an error, warning or hint; for an unknown kind, the kind itself with its arguments."""
     template = messages.get(kind, MESSAGES.get(kind))
     if template is None:
         return " ".join([kind, *map(str, arguments)])

@@ -14,7 +14,7 @@ LARGEST_MEMORY = 65536
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A named range of variable memory, ``size`` in words. Its address follows from the order of declaration."""
+    """A named range of variable memory, `size` in words. Its address follows from the order of declaration."""
 
     name: str
     size: int
@@ -84,7 +84,7 @@ class TargetDescription:
         return found
 
     def local_event_number(self, name: str) -> int:
-        """Return the number of a local event, from 0xFFFE downwards. Raises KeyError for an unknown name."""
+        """The number of a local event, from 0xFFFE downwards. Raises KeyError for an unknown name."""
         for index in range(len(self.local_events) - 1, -1, -1):
             if self.local_events[index].name == name:
                 return 0xFFFE - index
@@ -92,7 +92,7 @@ class TargetDescription:
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> TargetDescription:
-        """Build a target from plain data as read from JSON: variables as pairs, events as names, natives with params.
+        """A target from plain data as read from JSON: variables as pairs, events as names, natives with params.
 
         Raises TargetError with the field that is missing or has a wrong type.
         """

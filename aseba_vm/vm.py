@@ -2,8 +2,8 @@
 
 Source: docs/spec/aseba-bytecode-vm.md section 10.
 
-A program can never make the machine raise: a fault stops it, is appended to ``outbox`` and kept in ``fault``.
-:mod:`aseba_vm.machine.interpreter` has the loop, :mod:`aseba_vm.jit.tiering` the faster translated execution.
+A program can never make the machine raise: a fault stops it, is appended to `outbox` and kept in `fault`.
+`aseba_vm.machine.interpreter` has the loop, `aseba_vm.jit.tiering` the faster translated execution.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _UNLIMITED = 1 << 62
 
 
 class VirtualMachine:
-    """The machine of one node. ``variables`` are signed words that the node may read and write between runs."""
+    """The machine of one node. `variables` are signed words that the node may read and write between runs."""
 
     def __init__(
         self,
@@ -65,10 +65,10 @@ class VirtualMachine:
                 implementation pops its arguments and leaves a NativeCalled message.
             node_id: number of the node.
             on_reset: called in each reset, for the node's own part of it.
-            kills_long_events: abandon an event that reaches the limit of ``run``, as the 2.x fork does, instead of
+            kills_long_events: abandon an event that reaches the limit of `run`, as the 2.x fork does, instead of
                 continuing it in the next run.
-            costs: what natives and events take of the limit and add to ``instructions``.
-            engine: one of :data:`aseba_vm.jit.tiering.ENGINES`. Engines differ in speed only.
+            costs: what natives and events take of the limit and add to `instructions`.
+            engine: one of `aseba_vm.jit.tiering.ENGINES`. Engines differ in speed only.
         """
         self.target = target
         self.node_id = node_id
@@ -81,7 +81,7 @@ class VirtualMachine:
         self.fault: Fault | None = None
         self.instructions = 0
         self.extra_cost = 0
-        """Cost of the native that is being called, until it is added to ``instructions``."""
+        """Cost of the native that is being called, until it is added to `instructions`."""
         self.random: MutableSequence[int] = [0]
         """The state of the random number generator, in whatever storage the active engine needs."""
         self.tracer: Callable[[int], None] | None = None
@@ -120,7 +120,7 @@ class VirtualMachine:
 
     @property
     def is_step_by_step(self) -> bool:
-        """Whether the machine is paused until ``step`` or ``resume``."""
+        """Whether the machine is paused until `step` or `resume`."""
         return bool(self.flags & STEP_BY_STEP)
 
     @property
@@ -129,7 +129,7 @@ class VirtualMachine:
         return tuple(self._breakpoints)
 
     def pop_messages(self) -> tuple[Message, ...]:
-        """Return the messages since the last call and clear the outbox."""
+        """The messages since the last call, in order. The outbox is empty afterwards."""
         messages = tuple(self.outbox)
         self.outbox.clear()
         return messages
@@ -144,7 +144,7 @@ class VirtualMachine:
         self.reset()
 
     def load(self, program: Program) -> None:
-        """Write a compiled program and resume: the next ``run`` executes its initialization.
+        """Write a compiled program and resume: the next `run` executes its initialization.
 
         Raises ValueError if the program does not fit into the memory.
         """
@@ -152,9 +152,9 @@ class VirtualMachine:
         self.resume()
 
     def reset(self) -> None:
-        """Stop, clear the state of ``when`` conditions, and start the initialization, paused.
+        """Stop, clear the state of `when` conditions, and start the initialization, paused.
 
-        The conditions are cleared as far as the reference clears them (:meth:`CodeMemory.clear_edges`).
+        The conditions are cleared as far as the reference clears them (`CodeMemory.clear_edges`).
         """
         self.flags = STEP_BY_STEP
         self.fault = None
@@ -173,7 +173,7 @@ class VirtualMachine:
         self.report_state()
 
     def pause(self) -> None:
-        """Execute nothing until ``step`` or ``resume``."""
+        """Execute nothing until `step` or `resume`."""
         self.flags |= STEP_BY_STEP
         self.report_state()
 
@@ -225,11 +225,15 @@ class VirtualMachine:
     # -- events (docs/spec/aseba-bytecode-vm.md sections 10.2 and 10.5)
 
     def address_of(self, event: int) -> int:
-        """Return the address of the code of an event, 0 if there is none."""
+        """The address of the code of an event, 0 if there is none."""
         return self.code.addresses.get(event, 0)
 
     def setup(self, event: int) -> int:
-        """Start an event; return the address of its code, or 0 if the program does not handle it."""
+        """Start an event.
+
+        Returns:
+            The address of its code; 0 if the program does not handle it.
+        """
         address = self.code.addresses.get(event, 0)
         if address == 0:
             return 0
@@ -255,7 +259,11 @@ class VirtualMachine:
         self.setup(event)
 
     def start_local(self, index: int) -> bool:
-        """Start local event ``index`` of the target; return False if another event is active. Raises no error."""
+        """Start local event `index` of the target. Raises no error.
+
+        Returns:
+            False if another event is active; the event was not started then.
+        """
         if self.flags & ACTIVE:
             return False
         self._write_source(self.node_id, ())
@@ -274,9 +282,13 @@ class VirtualMachine:
     # -- running (docs/spec/aseba-bytecode-vm.md section 10.3)
 
     def run(self, limit: int = 0) -> bool:
-        """Execute the active event up to ``limit`` instructions (0: no limit); return whether anything was executed.
+        """Execute the active event.
 
-        With ``costs``, the last operation may exceed the limit.
+        Args:
+            limit: maximum number of instructions, 0 for no limit. With `costs`, the last operation may exceed it.
+
+        Returns:
+            Whether anything was executed.
         """
         if self.flags & (ACTIVE | STEP_BY_STEP) != ACTIVE:
             return False
@@ -300,7 +312,11 @@ class VirtualMachine:
         return True
 
     def _run_watched(self, limit: int) -> tuple[int, bool]:
-        """Run instruction by instruction; return the number executed and whether a breakpoint ended the run."""
+        """Run instruction by instruction, and stop at breakpoints.
+
+        Returns:
+            The number of executed instructions, and whether a breakpoint ended the run.
+        """
         executed = 0
         running = ACTIVE | RUNNING
         while executed < limit and self.flags & running == running:
@@ -313,7 +329,7 @@ class VirtualMachine:
         return executed, False
 
     def _interpret_one(self) -> int:
-        """Execute one instruction as the reference does, which may change the bytecode; return its cost."""
+        """Execute one instruction as the reference does, which may change the bytecode, and return its cost."""
         try:
             return reference.step(self)
         finally:
@@ -327,7 +343,7 @@ class VirtualMachine:
     # -- execution engines (see aseba_vm.jit.tiering)
 
     def use_engine(self, name: str) -> None:
-        """Select how events are executed. Raises ValueError for a name that is not in ``ENGINES``."""
+        """Select how events are executed. Raises ValueError for a name that is not in `ENGINES`."""
         if self._tiering is not None:
             self._tiering.close()
         self._tiering = create_tiering(name, self)

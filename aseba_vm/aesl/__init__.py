@@ -1,10 +1,10 @@
 """The .aesl file: definitions and code of the nodes of one network (docs/spec/aseba-language.md section 13).
 
-``loads`` is as lenient as the reference; ``strict=True`` also rejects what would cause surprises later
+`loads` is as lenient as the reference; `strict=True` also rejects what would cause surprises later
 (docs/aseba_vm.md, "Files"). Declared entities and overlong files are always rejected, and no other document is ever
 read.
 
-``dumps`` reproduces the text that was read, byte for byte, except for what has been changed since.
+`dumps` reproduces the text that was read, byte for byte, except for what has been changed since.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ __all__ = ["MAX_CHARACTERS", "MAX_NODES", "Network", "Node", "Plugin", "bare", "
 
 
 def is_aesl(text: str) -> bool:
-    """Return whether a text is an .aesl file; the plain text of a program never starts with ``<``."""
+    """Whether a text is an .aesl file; the plain text of a program never starts with `<`."""
     return text.lstrip("\ufeff \t\r\n").startswith("<")
 
 
 def loads(text: str | bytes, *, strict: bool = False) -> Network:
     """Parse a file; bytes are decoded as they declare. Raises AeslError with line and column.
 
-    ``strict`` requires the root ``network``, 1 to MAX_NODES nodes with distinct names and numbers, names that a program
+    `strict` requires the root `network`, 1 to MAX_NODES nodes with distinct names and numbers, names that a program
     can use and that are defined once, events of 0 to 258 words, constants of 16 bits, and a keyword flag of true or
     false.
     """
@@ -42,7 +42,7 @@ def loads(text: str | bytes, *, strict: bool = False) -> Network:
 
 
 def bare(text: str, name: str) -> Network:
-    """Return the network of a plain program for nodes called ``name``.
+    """A network whose only program is this text, for nodes called `name`.
 
     Raises AeslError if it is too long, or the file of another program.
     """
@@ -51,5 +51,5 @@ def bare(text: str, name: str) -> Network:
 
 
 def dumps(network: Network) -> str:
-    """Return the text of a file: as it was read except for changes, or all in the format of the reference."""
+    """The text of a file: as it was read except for changes, or all in the format of the reference."""
     return write(network)

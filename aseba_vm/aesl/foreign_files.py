@@ -45,7 +45,7 @@ def refuse_foreign(text: str) -> None:
 
 
 def looks_like_network(text: str) -> bool:
-    """Return whether a text is meant as an .aesl file, whatever the name of its file is."""
+    """Whether a text is meant as an .aesl file, whatever the name of its file is."""
     return _NETWORK.match(_without_prologue(text)) is not None
 
 

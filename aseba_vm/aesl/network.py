@@ -30,7 +30,7 @@ class Plugin:
 class Node:
     """A program: name of the node type, number of the node (0: any; the 2.x fork writes a UUID), code, plug-in data.
 
-    ``anchors`` map the code to the file: an offset in the code with its row and column in the file, all from 0,
+    `anchors` map the code to the file: an offset in the code with its row and column in the file, all from 0,
     wherever the two stop being contiguous: after entities, CDATA marks, comments and child elements.
     """
 
@@ -41,7 +41,7 @@ class Node:
     anchors: tuple[tuple[int, int, int], ...] = field(default=(), compare=False, repr=False)
 
     def place(self, offset: int) -> tuple[int, int]:
-        """Return row and column in the file, from 0, of a character of the code (or of its end)."""
+        """Row and column in the file, from 0, of a character of the code (or of its end)."""
         offset = min(max(offset, 0), len(self.code))
         at = bisect_right(self.anchors, offset, key=lambda anchor: anchor[0])
         start, row, col = self.anchors[at - 1] if at else (0, 0, 0)
@@ -50,7 +50,7 @@ class Node:
         return (row + rows, len(between) - between.rfind("\n") - 1) if rows else (row, col + len(between))
 
     def rows_in_file(self) -> tuple[int, ...]:
-        """Return, for each row of the code, the row of the file in which it starts, from 0."""
+        """For each row of the code, the row of the file in which it starts, from 0."""
         ends = [at for at, letter in enumerate(self.code) if letter == "\n"]
         rows: list[int] = []
         for row, offset in enumerate((0, *(end + 1 for end in ends))):
@@ -64,9 +64,9 @@ class Node:
 class Piece:
     """A part of a file as it was written.
 
-    ``kind`` is ``event``, ``constant``, ``keywords`` or ``node``, with its ``value``, or ``text`` for everything
-    between them, including comments and unknown elements. For a node, ``opening`` is its tag, ``others`` its comments
-    and unknown elements, ``tools`` its plug-in element.
+    `kind` is `event`, `constant`, `keywords` or `node`, with its `value`, or `text` for everything
+    between them, including comments and unknown elements. For a node, `opening` is its tag, `others` its comments
+    and unknown elements, `tools` its plug-in element.
     """
 
     kind: str
@@ -81,7 +81,7 @@ class Piece:
 class Network:
     """A whole file: global events (name, words), constants (name, value), keyword flag, nodes.
 
-    ``pieces`` are the parts of the file that was read. They are ignored in comparisons; ``dumps`` uses them to change
+    `pieces` are the parts of the file that was read. They are ignored in comparisons; `dumps` uses them to change
     only the parts that differ.
     """
 
@@ -92,7 +92,7 @@ class Network:
     pieces: tuple[Piece, ...] = field(default=(), compare=False, repr=False)
 
     def node(self, name: str, node_id: int | str = 0) -> Node | None:
-        """Return the program for a node: with its number and name if there is one, else the first with its name."""
+        """The program for a node: with its number and name if there is one, else the first with its name."""
         same_name = [node for node in self.nodes if node.name == name]
         exact = [node for node in same_name if node.node_id == node_id]
         return next(iter(exact or same_name), None)
@@ -102,7 +102,7 @@ class Network:
 class Selection:
     """The nodes of a file that one kind of device can run.
 
-    ``named`` are named after the device. ``guessed`` have another name (that of one robot, or none). ``others`` are for
+    `named` are named after the device. `guessed` have another name (that of one robot, or none). `others` are for
     other devices.
     """
 
@@ -119,8 +119,8 @@ class Selection:
 def select(network: Network, names: Collection[str]) -> Selection:
     """Sort the nodes of a network for devices with these names.
 
-    Editors name a node after the device it was connected to (``Thymio_4 on LAPTOP``), so an unknown name says nothing
-    about the program. Only nodes named after another kind of device, such as ``e-puck``, are left out, and only if the
+    Editors name a node after the device it was connected to (`Thymio_4 on LAPTOP`), so an unknown name says nothing
+    about the program. Only nodes named after another kind of device, such as `e-puck`, are left out, and only if the
     file has other nodes.
     """
     named = tuple(node for node in network.nodes if node.name in names)
@@ -131,7 +131,7 @@ def select(network: Network, names: Collection[str]) -> Selection:
 
 
 def is_other_device(node: Node) -> bool:
-    """Return whether a node is named after a kind of device that is not a Thymio."""
+    """Whether a node is named after a kind of device that is not a Thymio."""
     return _OTHER_DEVICES.match(node.name.strip()) is not None
 
 

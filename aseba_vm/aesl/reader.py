@@ -29,7 +29,7 @@ _INSIDE_PLUGIN = 4
 
 
 def checked_length(text: str) -> str:
-    """Return the text. Raises AeslError if it is longer than MAX_CHARACTERS."""
+    """The same text. Raises AeslError if it is longer than MAX_CHARACTERS."""
     if len(text) > MAX_CHARACTERS:
         row = text.count("\n", 0, MAX_CHARACTERS)
         col = MAX_CHARACTERS - text.rfind("\n", 0, MAX_CHARACTERS) - 1
@@ -38,7 +38,7 @@ def checked_length(text: str) -> str:
 
 
 def read(text: str, *, is_strict: bool) -> Network:
-    """Parse a file; ``is_strict`` also rejects what the reference accepts. Raises AeslError."""
+    """Parse a file; `is_strict` also rejects what the reference accepts. Raises AeslError."""
     network = _Reader(checked_length(text.removeprefix(_MARK)), is_strict=is_strict).read()
     return replace(network, pieces=(Piece("text", _MARK), *network.pieces)) if text.startswith(_MARK) else network
 
@@ -259,7 +259,7 @@ class _Reader:
         return attributes[name]
 
     def number(self, attributes: Mapping[str, str], name: str) -> int:
-        """Return the value of an attribute; a missing one is 0, as in the reference."""
+        """The value of an attribute; a missing one is 0, as in the reference."""
         text = attributes.get(name, "0")
         if not _NUMBER.fullmatch(text):
             raise self.attribute_error("aesl-number", name, (name, text))
@@ -275,7 +275,7 @@ class _Reader:
         return found.end() if found else start
 
     def is_open(self, start: int) -> bool:
-        """Return whether the element that ends here has a closing tag."""
+        """Whether the element that ends here has a closing tag."""
         return not self.data.endswith(b"/>", start, self.tag_end(start))
 
     def element_end(self, start: int) -> int:
@@ -298,7 +298,7 @@ class _Reader:
         return AeslError(kind, arguments, row + 1, col + 1)
 
     def attribute_error(self, kind: str, attribute: str, arguments: tuple[Argument, ...]) -> AeslError:
-        """Return an error at the value of an attribute of the current element."""
+        """An error at the value of an attribute of the current element."""
         start = self.starts[-1]
         tag = self.data[start : self.tag_end(start)]
         found = re.search(rb"\s" + attribute.encode() + rb"\s*=\s*[\"']", tag)

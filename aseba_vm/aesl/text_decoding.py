@@ -26,12 +26,12 @@ class TextFile:
     encoding: str
 
     def encoded(self, text: str) -> bytes:
-        """Return another text in the same encoding."""
+        """Another text in the same encoding."""
         return text.encode(self.encoding)
 
 
 def decode(data: bytes) -> TextFile:
-    """Return the text of a file.
+    """The text of a file.
 
     Raises TextError with the position of the first invalid byte, or for a file of another program that is no text.
     """

@@ -17,7 +17,7 @@ _ORDER = tuple(_HEADINGS)
 
 
 def write(network: Network) -> str:
-    """Return the text of a file."""
+    """The text of a file."""
     return "".join(_edited(network)) if network.pieces else _new(network)
 
 
@@ -30,7 +30,7 @@ def _new(network: Network) -> str:
 
 
 def _values(network: Network) -> dict[str, Sequence[object]]:
-    """Return the contents of a network by kind of piece."""
+    """The contents of a network by kind of piece."""
     return {
         "event": network.events,
         "constant": network.constants,
@@ -40,7 +40,7 @@ def _values(network: Network) -> dict[str, Sequence[object]]:
 
 
 def _section(kind: str, values: Sequence[object]) -> list[str]:
-    """Return the lines of all elements of a kind with the comments that editors write."""
+    """The lines of all elements of a kind with the comments that editors write."""
     if kind != "node":
         return ["", "", _HEADINGS[kind], *(_element(value, kind) for value in values)]
     lines: list[str] = []
@@ -51,7 +51,7 @@ def _section(kind: str, values: Sequence[object]) -> list[str]:
 
 
 def _element(value: object, kind: str, was: Piece | None = None, line_end: str = "\n") -> str:
-    """Return the text of one element; unchanged parts of a node that was read are kept."""
+    """The text of one element; unchanged parts of a node that was read are kept."""
     match kind, value:
         case "event", (str(name), int(size)):
             return f"<event size={quoteattr(str(size))} name={_quoted(name)}/>"
@@ -82,7 +82,7 @@ def _node(node: Node, was: Piece | None, line_end: str) -> str:
 
 
 def _edited(network: Network) -> Iterator[str]:
-    """Yield the pieces of the file, each element unchanged, rewritten, omitted, or with new ones around it."""
+    """The pieces of the file in order; an element is unchanged, rewritten or omitted, and new ones are around it."""
     pieces = network.pieces
     line_end = "\r\n" if any("\r\n" in piece.xml for piece in pieces) else "\n"
     texts: dict[int, str] = {}
@@ -103,7 +103,7 @@ def _edited(network: Network) -> Iterator[str]:
 
 
 def _replaced(kind: str, old: list[tuple[int, Piece]], new: Sequence[object], line_end: str) -> dict[int, str]:
-    """Return the new texts of the pieces of a kind, by index; ``old`` are its pieces with their indexes.
+    """The new texts of the pieces of a kind, by index; `old` are its pieces with their indexes.
 
     Equal elements at the beginning and at the end stay unchanged.
     """
@@ -141,7 +141,7 @@ def _insert(
 
 
 def _opened(pieces: Sequence[Piece]) -> dict[int, str]:
-    """Return the texts that split an empty root tag into two, since it has content now."""
+    """The texts that split an empty root tag into two, since it has content now."""
     at = next(at for at, piece in enumerate(pieces) if piece.kind == "opening")
     tag, closing = pieces[at].xml, pieces[-1].xml
     if not tag.endswith("/>"):

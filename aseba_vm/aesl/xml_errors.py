@@ -26,15 +26,15 @@ _KINDS: Mapping[int, str] = {
 
 
 def position_at(data: bytes, at: int) -> tuple[int, int]:
-    """Return row and column, from 0, of a byte of UTF-8 text."""
+    """Row and column, from 0, of a byte of UTF-8 text."""
     before = data[: max(at, 0)]
     return before.count(b"\n"), len(before[before.rfind(b"\n") + 1 :].decode("utf-8", "replace"))
 
 
 def error_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[str, int]]) -> AeslError:
-    """Return the error for an expat error code at byte ``at``.
+    """The error for an expat error code at byte `at`.
 
-    ``open_elements`` are the name and the first byte of each element that is open there.
+    `open_elements` are the name and the first byte of each element that is open there.
     """
     kind = _KINDS.get(code, "xml-other")
     arguments: tuple[Argument, ...] = ()
@@ -56,7 +56,7 @@ def error_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[
 
 
 def _unexpected(kind: str, data: bytes, at: int) -> tuple[str, int, tuple[Argument, ...]]:
-    """Report the bare ``<`` or ``&`` before an invalid character, if there is one, instead of the character."""
+    """Report the bare `<` or `&` before an invalid character, if there is one, instead of the character."""
     if kind == "xml-character":
         before = data[max(at - 200, 0) : at]
         mark = max(before.rfind(b"<"), before.rfind(b"&"))

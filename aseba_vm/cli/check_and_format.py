@@ -1,4 +1,4 @@
-"""The commands ``check`` and ``fmt``: files and folders one by one, with one summary and one exit code."""
+"""The commands `check` and `fmt`: files and folders one by one, with one summary and one exit code."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class _Run:
             print(format_message(kind, (self.files, *numbers), self.messages), file=sys.stderr)
 
     def count(self, severity: str) -> int:
-        """Return the number of files with findings of a severity."""
+        """The number of files with findings of a severity."""
         return len({finding.file for finding in self.findings if finding.severity == severity})
 
 
@@ -105,7 +105,7 @@ class _Run:
 
 
 def check(options: argparse.Namespace, target: TargetDescription) -> int:
-    """Report the first error of each program, or its warnings; return the exit code."""
+    """Report the first error of each program, or its warnings, and return the exit code."""
     run = _Run(options, texts("compiler", options.language))
     run.each(lambda name, file: _check_file(run, name, file.text, target))
     if run.is_json:
@@ -150,7 +150,7 @@ def _check_source(run: _Run, source: Source, text: str, target: TargetDescriptio
 
 
 def format_files(options: argparse.Namespace) -> int:
-    """Format programs; return the exit code."""
+    """Format programs and return the exit code."""
     run = _Run(options, texts("compiler", options.language))
     changed: list[str] = []
     run.each(lambda name, file: _format_file(run, name, file, changed))
@@ -186,7 +186,7 @@ def _format_file(run: _Run, name: str, file: TextFile, changed: list[str]) -> No
 
 
 def _formatted(run: _Run, name: str, text: str) -> str | None:
-    """Return the text with formatted programs; None if one of them has an error."""
+    """The text with formatted programs; None if one of them has an error."""
     network = network_of(text, THYMIO_II.name)
     nodes = []
     for node in network.nodes:

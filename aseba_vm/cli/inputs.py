@@ -20,7 +20,7 @@ Definitions = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A program, its definitions and its file. ``is_guessed``: its node is not named after the target."""
+    """A program, its definitions and its file. `is_guessed`: its node is not named after the target."""
 
     name: str
     node: aesl.Node
@@ -40,7 +40,7 @@ class Source:
             raise SourceError(self, error) from error
 
     def place(self, offset: int) -> tuple[int, int]:
-        """Return row and column in the file, from 0."""
+        """Row and column in the file, from 0."""
         return self.node.place(offset)
 
 
@@ -54,14 +54,14 @@ class SourceError(Exception):
 
 
 def read_text(name: str) -> TextFile:
-    """Return the text of a file; ``-`` is the standard input. Raises OSError, TextError."""
+    """The text of a file; `-` is the standard input. Raises OSError, TextError."""
     with named_errors(name):
         data = sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes()
     return decode(data)
 
 
 def network_of(text: str, name: str) -> aesl.Network:
-    """Return the network of a text; a plain program becomes that of a node called ``name``. Raises AeslError."""
+    """The network of a text; a plain program becomes the program of a node called `name`. Raises AeslError."""
     return aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, name)
 
 
@@ -73,7 +73,7 @@ def sources_of(
     events: Sequence[tuple[str, int]],
     constants: Sequence[tuple[str, int]],
 ) -> list[Source]:
-    """Return the programs of a file for a kind of device, or those of the nodes called ``node``.
+    """The programs of a file for a kind of device, or those of the nodes called `node`.
 
     Raises AeslError if there is no such node.
     """

@@ -18,10 +18,10 @@ def listing(
     events: Sequence[tuple[str, int]] = (),
     lines: Sequence[int] | None = None,
 ) -> str:
-    """Return the event table, each segment with its instructions, and the memory use.
+    """The event table, each segment with its instructions, and the memory use.
 
-    After ``|`` there are the number and text of the source line, where the code of another line begins. ``lines`` are
-    the numbers of the rows of ``source`` in their file (from 1).
+    After `|` there are the number and text of the source line, where the code of another line begins. `lines` are
+    the numbers of the rows of `source` in their file (from 1).
     """
     rows = source.split("\n")
     numbers = range(1, len(rows) + 1) if lines is None else lines

@@ -1,4 +1,4 @@
-"""The command line: ``python -m aseba_vm check | compile | dis | run | fmt``, also installed as ``aseba``.
+"""The command line: `python -m aseba_vm check | compile | dis | run | fmt`, also installed as `aseba`.
 
 Exit codes: 0 done, 1 the program has an error or stopped with a fault, 2 wrong usage or unreadable file.
 """
@@ -193,7 +193,7 @@ def _trace(machine: VirtualMachine, program: Program, rows: Sequence[int], pc: i
 
 
 def _read(options: argparse.Namespace) -> list[Source]:
-    """Return the programs of the file for the selected node, or for the target."""
+    """The programs of the file for the selected node, or for the target."""
     options.text = read_text(options.file).text
     kind = _target(options).name
     network = network_of(options.text, options.node or kind)

@@ -24,7 +24,7 @@ ERROR, WARNING, NOTE = "error", "warning", "note"
 class Finding:
     """A message about a file: position from 1 or None, severity (error, warning, note), kind, text, hint and edit.
 
-    ``edit`` is (line, column, end line, end column, text), all from 1, the end exclusive; the text is program text.
+    `edit` is (line, column, end line, end column, text), all from 1, the end exclusive; the text is program text.
     """
 
     file: str
@@ -44,7 +44,7 @@ class Finding:
         return f"{place}: {severity}{self.message}"
 
     def text(self, source: str, *, label: str, is_colored: bool) -> str:
-        """Return the finding as text: the message, the line of the file with a caret, the hint."""
+        """The finding as text: the message, the line of the file with a caret, the hint."""
         lines = [self.located]
         if source and self.line is not None and self.column is not None and self.severity != NOTE:
             lines.append(source_snippet(source, self.line - 1, self.column - 1, is_colored=is_colored))
@@ -53,7 +53,7 @@ class Finding:
         return "\n".join(lines)
 
     def data(self) -> dict[str, object]:
-        """Return the finding as JSON data."""
+        """The finding as JSON data."""
         keys = ("line", "column", "end_line", "end_column", "text")
         return {
             "file": self.file,
@@ -68,7 +68,7 @@ class Finding:
 
 
 def finding_of_compile_error(source: Source, error: CompileError, messages: Mapping[str, str]) -> Finding:
-    """Return the finding for a program with an error."""
+    """The finding for a program with an error."""
     line, column = (None, None) if error.pos is None else _from_1(source.place(error.pos.offset))
     message = format_message(error.kind, error.arguments, messages)
     hint, edit = _hint(source, error.hint, messages)
@@ -76,7 +76,7 @@ def finding_of_compile_error(source: Source, error: CompileError, messages: Mapp
 
 
 def finding_of_text_error(file: str, error: TextError, messages: Mapping[str, str]) -> Finding:
-    """Return the finding for a file that cannot be read as text or as an .aesl file."""
+    """The finding for a file that cannot be read as text or as an .aesl file."""
     message = format_message(error.kind, error.arguments, messages)
     return Finding(file, error.line, error.column, ERROR, error.kind, message)
 
@@ -104,7 +104,7 @@ def _from_1(place: tuple[int, int]) -> tuple[int, int]:
 
 
 def files_in(name: str) -> Sequence[str]:
-    """Return the programs in a folder and its subfolders in order of path, or the name itself if it is no folder.
+    """The programs in a folder and its subfolders in order of path, or the name itself if it is no folder.
 
     Hidden folders are skipped and links to folders are not followed. Raises FileNotFoundError for a folder without
     programs.
@@ -121,7 +121,7 @@ def files_in(name: str) -> Sequence[str]:
 
 
 def user_language(environment: Mapping[str, str]) -> str:
-    """Return the language of messages from the locale variables; English if there is no translation."""
+    """The language of messages from the locale variables; English if there is no translation."""
     locale = next((value for key in ("LC_ALL", "LC_MESSAGES", "LANG") if (value := environment.get(key))), "")
     choices = environment.get("LANGUAGE", "").split(":") if locale not in ("", "C", "POSIX", "C.UTF-8") else []
     for choice in (*choices, locale):
@@ -132,5 +132,5 @@ def user_language(environment: Mapping[str, str]) -> str:
 
 
 def is_colored() -> bool:
-    """Return whether the standard error shows colors."""
+    """Whether the standard error shows colors."""
     return sys.stderr.isatty() and "NO_COLOR" not in os.environ

@@ -8,7 +8,7 @@ _PLAIN = "\x1b[0m"
 
 
 def source_snippet(text: str, row: int, col: int, *, is_colored: bool = False) -> str:
-    """Return a line of ``text`` and a caret under the column below it; row and column count from 0.
+    """A line of `text` and a caret under the column below it; row and column count from 0.
 
     A very long line is cut around the position; a position after the end of the text selects its last line.
     """

@@ -40,7 +40,7 @@ _MAX_JUMP = 2047
 
 
 def generate(tree: Tree) -> tuple[Segment, ...]:
-    """Return the terminated code of each event that has any, in source order, and of every subroutine."""
+    """The terminated code of each event that has any, in source order, and of every subroutine."""
     initial = _SegmentBuilder(is_sub=False, number=INIT_EVENT, name="", row=0)
     builders = [initial]
     numbers = {sub.name: sub.index for sub in tree.subs}
@@ -60,7 +60,7 @@ def generate(tree: Tree) -> tuple[Segment, ...]:
 
 
 def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
-    """Return the estimated maximum stack depth, including calls. Raises CompileError if it exceeds the stack.
+    """The estimated maximum stack depth, including calls. Raises CompileError if it exceeds the stack.
 
     Source: docs/spec/aseba-bytecode-vm.md section 8.
     """
@@ -219,7 +219,11 @@ class _SegmentBuilder:
         return depth
 
     def condition(self, condition: Expression, flags: int, row: int) -> Task[tuple[int, int]]:
-        """Append both operands and a BRANCH without offset; return the depth and the index of the BRANCH."""
+        """Append both operands and a BRANCH without offset.
+
+        Returns:
+            The stack depth, and the index of the BRANCH in the code.
+        """
         assert isinstance(condition, Binary)
         depth: int = yield self.expression(condition.left)
         depth += yield self.expression(condition.right)

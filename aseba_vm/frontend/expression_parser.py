@@ -24,7 +24,7 @@ _OPERATORS: Mapping[str, int] = {
     )
     for symbol in symbols.split()
 }
-"""Precedence of each binary operator, lowest first; ``not`` is between ``and`` and the comparisons."""
+"""Precedence of each binary operator, lowest first; `not` is between `and` and the comparisons."""
 
 _CONDITION = _OPERATORS["or"]
 _NOT = _OPERATORS["and"] + 1
@@ -36,7 +36,7 @@ _PRIMARY = ("(", "[", "-", "~", "abs", "identifier", "integer")
 class ExpressionParser:
     """Parses expressions from a token stream; shares stream and symbol table with the parser of statements.
 
-    A rule is a generator that the trampoline runs (:mod:`aseba_vm.frontend.trampoline`), so that deep nesting needs no
+    A rule is a generator that the trampoline runs (`aseba_vm.frontend.trampoline`), so that deep nesting needs no
     deep stack. Each rule raises CompileError at the first token that does not fit; its docstring is its grammar.
     """
 
@@ -136,14 +136,14 @@ class ExpressionParser:
 
 
 def literal(token: Token, value: int) -> Number:
-    """Return a number that was written with or without a minus sign. Raises CompileError if it is out of range."""
+    """A number that was written with or without a minus sign. Raises CompileError if it is out of range."""
     if not -32768 <= value <= 32767:
         raise CompileError("int16-range", (abs(value),), token.pos)
     return Number(value, token.pos)
 
 
 def constant_value(expression: Expression, pos: SourcePos) -> int:
-    """Return the value of a constant expression (docs/spec/aseba-language.md section 9.3). Raises CompileError."""
+    """The value of a constant expression (docs/spec/aseba-language.md section 9.3). Raises CompileError."""
     simple = simplify(first_constant(expression))
     if not isinstance(simple, Number):
         raise CompileError("not-constant", (), pos)
@@ -151,7 +151,7 @@ def constant_value(expression: Expression, pos: SourcePos) -> int:
 
 
 def _attempt(expression: Expression) -> tuple[int | None, CompileError | None]:
-    """Return the value of a constant index; else None, and the error if the evaluation failed."""
+    """The value of a constant index; else None, and the error if the evaluation failed."""
     try:
         simple = simplify(first_constant(expression))
     except CompileError as error:

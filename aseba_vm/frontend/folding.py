@@ -30,12 +30,12 @@ from aseba_vm.frontend.trampoline import Task, run
 
 
 def optimize(tree: Tree) -> Tree:
-    """Return the tree with constants folded and statements without effect removed. Raises CompileError."""
+    """The tree with constants folded and statements without effect removed. Raises CompileError."""
     return replace(tree, body=run(_block(tree.body)))
 
 
 def simplify(expression: Expression) -> Expression:
-    """Return a scalar expression, folded and simplified. Raises CompileError."""
+    """A scalar expression, folded and simplified. Raises CompileError."""
     return run(_expression(expression))
 
 
@@ -164,7 +164,7 @@ def _commutative(node: Binary, other: Expression, value: int) -> Expression:
 
 
 def _inverted(node: Expression) -> Task[Expression]:
-    """Move a ``not`` into a simplified operation (rule 7)."""
+    """Move a `not` into a simplified operation (rule 7)."""
     if not isinstance(node, Binary) or node.operator not in _OPPOSITE:
         raise CompileError("negated-number", (), node.pos)
     left, right = node.left, node.right
@@ -189,7 +189,7 @@ def _block(block: Block) -> Task[Block]:
 
 
 def _statement(statement: Statement) -> Task[Statement | None]:
-    """Return the simplified statement, or None if it is removed."""
+    """The simplified statement, or None if it is removed."""
     match statement:
         case Assignment():
             assignment: Assignment = yield _assignment(statement)

@@ -16,7 +16,7 @@ _BRACKETS = {"(": 1, "[": 1, ")": -1, "]": -1}
 
 
 def format_program(source: str, indent: str = "\t") -> str:
-    """Return a program with each line indented by its depth, normalized spaces, and no repeated empty lines.
+    """A program with each line indented by its depth, normalized spaces, and no repeated empty lines.
 
     The tokens and therefore the bytecode stay the same. Lines that start inside a block comment are kept. Raises
     CompileError if the text cannot be tokenized.
@@ -47,7 +47,7 @@ def format_program(source: str, indent: str = "\t") -> str:
 
 
 def _closers(kinds: list[str]) -> int:
-    """Return by how many levels the first words of a line reduce its indentation."""
+    """Number of levels by which the first words of a line reduce its indentation."""
     count = 0
     for kind in kinds:
         if kind != "end":
@@ -57,7 +57,7 @@ def _closers(kinds: list[str]) -> int:
 
 
 def _rows_inside_comments(text: str) -> set[int]:
-    """Return the rows that start inside a block comment."""
+    """The rows that start inside a block comment."""
     rows: set[int] = set()
     row = at = 0
     for comment in _COMMENT.finditer(text):

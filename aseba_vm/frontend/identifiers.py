@@ -1,6 +1,6 @@
 """Letters and digits of names: a fixed Unicode 15 table, independent of the version of Python.
 
-``str.isalnum`` differs from it (docs/spec/aseba-language.md section 3) and changes with the version.
+`str.isalnum` differs from it (docs/spec/aseba-language.md section 3) and changes with the version.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Pass 1: text to tokens (docs/spec/aseba-language.md sections 2 and 3).
 
 One regular expression matches the longest next token, including comments and white space. The column is the offset
-minus ``base``, which is the offset of column 0. Each of the irregular columns of section 2 is then one assignment to
-``base``.
+minus `base`, which is the offset of column 0. Each of the irregular columns of section 2 is then one assignment to
+`base`.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A word or symbol. ``kind`` is the keyword or symbol itself, ``identifier``, ``integer`` or ``end-of-input``."""
+    """A word or symbol. `kind` is the keyword or symbol itself, `identifier`, `integer` or `end-of-input`."""
 
     kind: str
     pos: SourcePos
@@ -64,7 +64,7 @@ class Token:
 
 
 def tokenize(text: str) -> tuple[Token, ...]:
-    """Return the tokens of a program, including the end of input. Raises CompileError."""
+    """The tokens of a program, including the end of input. Raises CompileError."""
     tokens: list[Token] = []
     match = _TOKEN.match
     length = len(text)
@@ -116,7 +116,7 @@ def tokenize(text: str) -> tuple[Token, ...]:
 
 
 def is_name(text: str) -> bool:
-    """Return whether a text can be an identifier in a program."""
+    """Whether a text can be an identifier in a program."""
     found = _TOKEN.fullmatch(text)
     return found is not None and found.lastgroup == "word" and not "0" <= text[0] <= "9" and text not in KEYWORDS
 
@@ -128,7 +128,7 @@ def _word(text: str, pos: SourcePos) -> Token:
 
 
 def _number(text: str, pos: SourcePos) -> int:
-    """Return the value of a number; hexadecimal and binary numbers above 32767 are negative. Raises CompileError."""
+    """The value of a number; hexadecimal and binary numbers above 32767 are negative. Raises CompileError."""
     prefix = text[1:2]
     if text[0] == "0" and prefix and not "0" <= prefix <= "9":
         if prefix not in "xb":

@@ -1,4 +1,4 @@
-"""Warnings: programs that compile but are probably not meant. Warnings never change the bytecode."""
+"""Warnings: constructs that compile but are probably mistakes. Warnings never change the bytecode."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ class CompileWarning:
         return format_message(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
-        """Return the message with the file name and the position (from 1) in front."""
+        """The message with the file name and the position (from 1) in front."""
         return f"{name}:{self.pos}: warning: {self}"
 
 
 def find_warnings(tree: Tree, segments: Sequence[Segment]) -> tuple[CompileWarning, ...]:
-    """Return the warnings about a program in order of position, from its parsed tree and its code."""
+    """The warnings about a program in order of position, from its parsed tree and its code."""
     found = [*_subroutines(tree, segments), *_far_blocks(segments)]
     for node in walk(tree.body):
         match node:
@@ -58,7 +58,7 @@ def find_warnings(tree: Tree, segments: Sequence[Segment]) -> tuple[CompileWarni
 
 
 def _unreachable(block: Block) -> Iterator[CompileWarning]:
-    """Warn about the first statement after a ``return`` in the same block."""
+    """Warn about the first statement after a `return` in the same block."""
     for before, after in zip(block.statements, block.statements[1:], strict=False):
         pos = position_of(after)
         if isinstance(before, Return) and not isinstance(after, OnEvent | Sub) and pos is not None:
@@ -66,7 +66,7 @@ def _unreachable(block: Block) -> Iterator[CompileWarning]:
 
 
 def _constant_when(node: If) -> Iterator[CompileWarning]:
-    """Warn about a ``when`` without variables, which has no edge (docs/spec/aseba-language.md section 7)."""
+    """Warn about a `when` without variables, which has no edge (docs/spec/aseba-language.md section 7)."""
     if not any(isinstance(part, Access | Subscript) for part in walk(node.condition)):
         yield CompileWarning("warning-constant-when", (), node.pos)
 

@@ -40,7 +40,7 @@ MAX_ELEMENTS = 300_000
 
 
 def lower(tree: Tree, memory_size: int) -> Tree:
-    """Return the scalar tree. Raises CompileError."""
+    """The scalar tree. Raises CompileError."""
     lowering = _Lowering(memory_size, tree.allocated, tree.temporaries)
     body: Block = run(lowering.block(tree.body))
     return replace(tree, body=body, temporaries=lowering.temporaries)
@@ -95,7 +95,7 @@ class _Lowering:
         return replace(statement, condition=condition, then=then, otherwise=otherwise)
 
     def loop(self, loop: For) -> Task[list[Statement]]:
-        """Lower a ``for`` (docs/spec/aseba-bytecode-vm.md section 6)."""
+        """Lower a `for` (docs/spec/aseba-bytecode-vm.md section 6)."""
         statements: list[Statement] = list(self.assign(loop.variable, loop.start, loop.start.pos))
         body: Block
         if loop.start.value == loop.end.value:
@@ -136,7 +136,7 @@ class _Lowering:
         return self.copy(temporary, right, pos) + self.copy(left, temporary, pos)
 
     def copy(self, left: Expression, right: Expression, pos: SourcePos) -> tuple[Assignment, ...]:
-        """Return one assignment per element. The right side of each is checked first, which fixes the error order."""
+        """One assignment per element. The right side of each is checked first, which fixes the error order."""
         size = size_of(right)
         self.budget -= size * run(_weight(right))
         if self.budget < 0:
@@ -156,7 +156,7 @@ class _Lowering:
 
 
 def _weight(expression: Expression) -> Task[int]:
-    """Return the maximum number of nodes in one element of the expression."""
+    """The maximum number of nodes in one element of the expression."""
     weight: int
     match expression:
         case Unary(_, operand, _):
@@ -175,7 +175,7 @@ def _weight(expression: Expression) -> Task[int]:
 
 
 def _occurs(name: str, expression: Expression) -> bool:
-    """Return whether a variable of this name is read anywhere, including inside indexes."""
+    """Whether a variable of this name is read anywhere, including inside indexes."""
     stack = [expression]
     while stack:
         match stack.pop():

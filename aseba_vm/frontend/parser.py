@@ -45,7 +45,7 @@ COMPOUND = frozenset(("+=", "-=", "*=", "/=", "%=", "|=", "^=", "&=", "<<=", ">>
 
 
 def parse(tokens: Sequence[Token], symbols: SymbolTable) -> Tree:
-    """Return the tree of a program, and add its names to the table. Raises CompileError."""
+    """Parse a program into its tree, and add its names to the table. Raises CompileError."""
     return run(_Parser(tokens, symbols).program())
 
 
@@ -334,7 +334,11 @@ class _Parser:
         return Argument(address, setup, start)
 
     def temporary(self, value: Expression, size: int, pos: SourcePos) -> tuple[int, tuple[Assignment, ...]]:
-        """Allocate words for a value; return their address and the assignments that compute them."""
+        """Allocate words for a value.
+
+        Returns:
+            Their address, and the assignments that compute them.
+        """
         address = self.symbols.allocate(size, pos)
         left = Access(Memory("", address, size), 0, size - 1, pos)
         return address, (Assignment(left, value, pos),)

@@ -33,7 +33,7 @@ class Stages:
     segments: tuple[Segment, ...]
 
     def dump(self, stage: str) -> str:
-        """Return a stage as text: ``tokens``, ``tree``, ``expanded``, ``optimized`` or ``code``. Raises ValueError."""
+        """A stage as text: `tokens`, `tree`, `expanded`, `optimized` or `code`. Raises ValueError."""
         match stage:
             case "tokens":
                 return "\n".join(map(str, self.tokens))
@@ -61,7 +61,7 @@ class Program:
         allocated: words of variable memory in use, including the variables of the target.
         stack: estimated depth of each event (in table order), then of each subroutine.
         stack_need: estimated depth of the deepest event with all its calls.
-        warnings: what compiles but is probably not meant.
+        warnings: suspicious constructs; they do not change the bytecode.
     """
 
     words: tuple[int, ...]
@@ -80,17 +80,17 @@ class Program:
         return {variable.name: (variable.address, variable.size) for variable in self.variables}
 
     def row_of(self, pc: int) -> int | None:
-        """Return the source row of a word of bytecode, None outside the code or where there is no row."""
+        """The source row of a word of bytecode, None outside the code or where there is no row."""
         first = 2 * len(self.events) + 1
         return self.lines[pc] if first <= pc < len(self.lines) else None
 
     def addresses_of(self, row: int) -> tuple[int, ...]:
-        """Return the addresses of the instructions of a source row in order; breakpoints use the first."""
+        """The addresses of the instructions of a source row in order; breakpoints use the first."""
         start = 2 * len(self.events) + 1
         return tuple(pc for pc, _ in instructions(self.words, start) if self.lines[pc] == row)
 
     def segment_of(self, pc: int) -> EventEntry | SubEntry | None:
-        """Return the event or subroutine whose code contains the address, None outside the code."""
+        """The event or subroutine whose code contains the address, None outside the code."""
         entries: list[EventEntry | SubEntry] = sorted((*self.events, *self.subs), key=lambda entry: entry.address)
         place = bisect_right([entry.address for entry in entries], pc)
         return entries[place - 1] if place and pc < len(self.words) else None
@@ -102,7 +102,7 @@ def compile_stages(
     events: Sequence[tuple[str, int]] = (),
     constants: Sequence[tuple[str, int]] = (),
 ) -> Stages:
-    """Run all passes and return their results. Raises CompileError, with a hint if there is one."""
+    """The results of all passes. Raises CompileError, with a hint if there is one."""
     result = _attempt(source, target, events, constants)
     if isinstance(result, Stages):
         return result
@@ -121,7 +121,7 @@ def _attempt(
     events: Sequence[tuple[str, int]],
     constants: Sequence[tuple[str, int]],
 ) -> Attempt | Stages:
-    """Run all passes; return their results, or the error and the pass that found it.
+    """The results of all passes, or the error and the pass that found it.
 
     Raises CompileError if the variables of the target do not fit into its memory.
     """
@@ -149,10 +149,16 @@ def compile(  # noqa: A001  # the standard term; shadows the built-in function i
     events: Sequence[tuple[str, int]] = (),
     constants: Sequence[tuple[str, int]] = (),
 ) -> Program:
-    """Compile a program for a target.
+    """The program of a source text for a target.
 
-    ``events`` are the global events (name, number of words) and ``constants`` the constants (name, value) that the
-    nodes of a network share. Raises CompileError for the first error.
+    Args:
+        source: text of one program, not of an `.aesl` file.
+        target: the kind of node that will execute it.
+        events: global events that the nodes of a network share: name, number of words.
+        constants: constants that they share: name, value.
+
+    Raises:
+        CompileError: The first error, with a hint if there is one.
     """
     return assemble(compile_stages(source, target, events, constants), target)
 

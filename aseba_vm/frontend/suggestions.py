@@ -10,13 +10,13 @@ _MAX_DISTANCE = 2
 
 
 def unknown_name_error(kind: str, name: str, known: Iterable[str], pos: SourcePos) -> CompileError:
-    """Return the error ``kind``, or ``kind-hint`` with the most similar known name."""
+    """The error `kind`, or `kind-hint` with the most similar known name."""
     hint = suggestion(name, known)
     return CompileError(kind, (name,), pos) if hint is None else CompileError(f"{kind}-hint", (name, hint), pos)
 
 
 def suggestion(name: str, known: Iterable[str], most: int = _MAX_DISTANCE) -> str | None:
-    """Return the known name at the smallest distance from 1 to ``most``, at most 2; the first in code point order."""
+    """The known name at the smallest distance from 1 to `most`, at most 2; the first in code point order."""
     best = None
     best_distance = min(most, _MAX_DISTANCE) + 1
     for candidate in sorted(known):
@@ -28,7 +28,7 @@ def suggestion(name: str, known: Iterable[str], most: int = _MAX_DISTANCE) -> st
 
 
 def _distance(one: str, two: str) -> int:
-    """Return the Levenshtein distance, or a larger number than the maximum.
+    """The Levenshtein distance, or a larger number than the maximum.
 
     Only a band around the diagonal of the matrix can stay below the maximum, so only that is computed.
     """

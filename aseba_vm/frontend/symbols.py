@@ -46,7 +46,7 @@ class SymbolTable:
         return tuple(self._declared)
 
     def check_new_variable(self, name: str, pos: SourcePos) -> None:
-        """Raise CompileError if the name is taken."""
+        """Raise CompileError if the name is already in use."""
         if name in self.variables:
             raise CompileError("duplicate-variable", (name,), pos)
         if name in self.constants:
@@ -63,7 +63,7 @@ class SymbolTable:
         return variable
 
     def allocate(self, size: int, pos: SourcePos) -> int:
-        """Return the address of temporary words. Raises CompileError if the memory is full."""
+        """Allocate temporary words and return their address. Raises CompileError if the memory is full."""
         address = self.memory_size - self.temporaries - size
         self.temporaries += size
         if self.allocated + self.temporaries > self.memory_size:
@@ -71,13 +71,13 @@ class SymbolTable:
         return address
 
     def variable(self, name: str, pos: SourcePos) -> Memory:
-        """Return a variable of the target or the program. Raises CompileError for an unknown name."""
+        """A variable of the target or the program. Raises CompileError for an unknown name."""
         if name not in self.variables:
             raise unknown_name_error("unknown-variable", name, self.variables, pos)
         return self.variables[name]
 
     def constant(self, name: str, pos: SourcePos) -> Number:
-        """Return the value of a constant. Raises CompileError if it is unknown or out of range."""
+        """The value of a constant. Raises CompileError if it is unknown or out of range."""
         if name not in self.constants:
             raise unknown_name_error("unknown-constant", name, self.constants, pos)
         value = self.constants[name]
@@ -86,14 +86,14 @@ class SymbolTable:
         return Number(value, pos)
 
     def native(self, name: str, pos: SourcePos) -> tuple[int, NativeFunction]:
-        """Return number and declaration of a native function. Raises CompileError for an unknown name."""
+        """Number and declaration of a native function. Raises CompileError for an unknown name."""
         if name not in self.natives:
             raise unknown_name_error("unknown-function", name, self.natives, pos)
         number = self.natives[name]
         return number, self.native_functions[number]
 
     def global_event(self, name: str, pos: SourcePos) -> tuple[int, int]:
-        """Return number and size of an event to emit. Raises CompileError for an unknown or local event."""
+        """Number and size of an event to emit. Raises CompileError for an unknown or local event."""
         if name in self.events:
             return self.events[name]
         if name in self.local_events:
@@ -101,7 +101,7 @@ class SymbolTable:
         raise unknown_name_error("unknown-event", name, self.events, pos)
 
     def open_event(self, name: str, pos: SourcePos) -> OnEvent:
-        """Return the marker of a new event handler. Raises CompileError for an unknown event or a second handler."""
+        """Begin an event handler: its marker. Raises CompileError for an unknown event or a second handler."""
         if name in self.local_events:
             number = self.local_events[name]
         elif name in self.events:
@@ -114,7 +114,7 @@ class SymbolTable:
         return OnEvent(number, name, pos)
 
     def open_sub(self, name: str, name_pos: SourcePos, pos: SourcePos) -> Sub:
-        """Return the marker of a new subroutine. Raises CompileError for a duplicate name."""
+        """Begin a subroutine: its marker. Raises CompileError for a duplicate name."""
         if name in self.subs:
             raise CompileError("duplicate-subroutine", (name,), name_pos)
         self.subs[name] = Sub(len(self.subs), name, pos)

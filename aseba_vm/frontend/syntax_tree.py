@@ -1,8 +1,8 @@
 """The syntax tree: immutable nodes, and their dump.
 
-In the tree of the parser, an expression is a vector. :mod:`aseba_vm.frontend.lowering` converts it to a tree of
-scalars: ``Assignment`` replaces ``Compound`` and the assignments of ``For``, ``Word`` replaces ``Access``, ``Element``
-replaces ``Subscript``, and ``ListLiteral`` disappears. Positions are those that errors and source rows need.
+In the tree of the parser, an expression is a vector. `aseba_vm.frontend.lowering` converts it to a tree of
+scalars: `Assignment` replaces `Compound` and the assignments of `For`, `Word` replaces `Access`, `Element`
+replaces `Subscript`, and `ListLiteral` disappears. Positions are those that errors and source rows need.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Access:
 
 @dataclass(frozen=True, slots=True)
 class Subscript:
-    """One word at an index computed at run time. ``fault`` is the error if constant evaluation of the index failed."""
+    """One word at an index computed at run time. `fault` is the error if constant evaluation of the index failed."""
 
     variable: Memory
     index: Expression
@@ -71,7 +71,7 @@ class ListLiteral:
 
 @dataclass(frozen=True, slots=True)
 class Unary:
-    """``-``, ``~``, ``abs`` or ``not`` of each word."""
+    """`-`, `~`, `abs` or `not` of each word."""
 
     operator: str
     operand: Expression
@@ -139,7 +139,7 @@ class Compound:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """``if`` or ``when``. An ``elseif`` is an If in ``otherwise``; ``end_row`` is known only without ``elseif``."""
+    """`if` or `when`. An `elseif` is an If in `otherwise`; `end_row` is known only without `elseif`."""
 
     is_edge: bool
     condition: Expression
@@ -151,7 +151,7 @@ class If:
 
 @dataclass(frozen=True, slots=True)
 class While:
-    """A loop; ``pos`` is the position of its keyword."""
+    """A loop; `pos` is the position of its keyword."""
 
     condition: Expression
     body: Block
@@ -172,7 +172,7 @@ class For:
 
 @dataclass(frozen=True, slots=True)
 class Emit:
-    """A global event with the words at an address, which ``setup`` computes."""
+    """A global event with the words at an address, which `setup` computes."""
 
     number: int
     address: int
@@ -183,7 +183,7 @@ class Emit:
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """An argument of a native: its address; ``setup`` computes the words."""
+    """An argument of a native: its address; `setup` computes the words."""
 
     address: int
     setup: tuple[Assignment, ...]
@@ -220,7 +220,7 @@ class CallSub:
 
 @dataclass(frozen=True, slots=True)
 class Return:
-    """``return`` from the handler or subroutine."""
+    """`return` from the handler or subroutine."""
 
     pos: SourcePos
 
@@ -257,8 +257,8 @@ _FIELDS: Mapping[type, tuple[str, ...]] = {
 class Tree:
     """A program between two passes.
 
-    ``variables`` are those of the program, ``allocated`` is the number of words in use including those of the target,
-    ``temporaries`` the number of words in use at the end of the memory, ``subs`` the markers of the subroutines in
+    `variables` are those of the program, `allocated` is the number of words in use including those of the target,
+    `temporaries` the number of words in use at the end of the memory, `subs` the markers of the subroutines in
     order.
     """
 
@@ -269,12 +269,12 @@ class Tree:
     subs: tuple[Sub, ...]
 
     def dump(self) -> str:
-        """Return one line per node, indented by depth, with the position (from 1) where there is one."""
+        """One line per node, indented by depth, with the position (from 1) where there is one."""
         return "\n".join(_lines(self.body))
 
 
 def children(node: Node) -> tuple[Node, ...]:
-    """Return the nodes directly below a node, in order."""
+    """The nodes directly below a node, in order."""
     found: list[Node] = []
     for name in _FIELDS[type(node)]:
         value = getattr(node, name)
@@ -286,7 +286,7 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def walk(root: Node) -> Iterator[Node]:
-    """Yield a node and all its descendants, parents first, in order."""
+    """A node and all its descendants in order, parents first."""
     stack = [root]
     while stack:
         node = stack.pop()
@@ -295,7 +295,7 @@ def walk(root: Node) -> Iterator[Node]:
 
 
 def position_of(node: Node) -> SourcePos | None:
-    """Return the position of a node; a block has none."""
+    """The position of a node; a block has none."""
     return None if isinstance(node, Block) else node.pos
 
 

@@ -19,7 +19,7 @@ _SHIFTS = frozenset(("<<", ">>", "<<=", ">>="))
 
 
 def space_line(text: str, start: int, end: int, tokens: Sequence[Token], first: int, last: int) -> str:
-    """Return the line text[start:end], which has the tokens first..last-1 of the program, with normalized spaces."""
+    """The line text[start:end], which has the tokens first..last-1 of the program, with normalized spaces."""
     parts: list[str] = []
     at = start
     for index in range(first, last):
@@ -38,7 +38,7 @@ def space_line(text: str, start: int, end: int, tokens: Sequence[Token], first: 
 
 
 def token_begin(token: Token) -> int:
-    """Return the start offset of a token; the position of a shift operator is its second character.
+    """The start offset of a token; the position of a shift operator is its second character.
 
     Source: docs/spec/aseba-language.md section 3.
     """
@@ -46,7 +46,7 @@ def token_begin(token: Token) -> int:
 
 
 def token_end(text: str, token: Token) -> int:
-    """Return the offset after the last character of a token."""
+    """The offset after the last character of a token."""
     begin = token_begin(token)
     word = _WORD.match(text, begin)
     return word.end() if word else begin + len(token.kind)
@@ -57,14 +57,14 @@ def _is_column(space: str) -> bool:
 
 
 def _kept(space: str, tokens: Sequence[Token], at: int) -> str:
-    """Return the space before a token if it aligns the token in a column, else nothing."""
+    """The space before a token if it aligns the token in a column, else nothing."""
     before, token = tokens[at - 1].kind, tokens[at].kind
     is_cell = before == "," or (before == "=" and token == "[")
     return space if is_cell and token not in _TIGHT_BEFORE and _is_column(space) else ""
 
 
 def _gap(tokens: Sequence[Token], at: int) -> str:
-    """Return the space between a token and the one before it."""
+    """The space between a token and the one before it."""
     before, token = tokens[at - 1].kind, tokens[at].kind
     if token in _TIGHT_BEFORE or before in _TIGHT_AFTER:
         return ""
@@ -76,10 +76,10 @@ def _gap(tokens: Sequence[Token], at: int) -> str:
 
 
 def _is_sign(tokens: Sequence[Token], at: int) -> bool:
-    """Return whether a ``-`` has no left operand."""
+    """Whether a `-` has no left operand."""
     return at == 0 or tokens[at - 1].kind not in _OPERANDS or _is_emitted(tokens, at - 1)
 
 
 def _is_emitted(tokens: Sequence[Token], at: int) -> bool:
-    """Return whether an identifier is the event of an ``emit``, which a value may follow."""
+    """Whether an identifier is the event of an `emit`, which a value may follow."""
     return at >= 1 and tokens[at - 1].kind in ("emit", "_emit")

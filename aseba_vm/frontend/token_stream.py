@@ -17,7 +17,7 @@ class TokenStream:
         self.token = tokens[0]
 
     def advance(self) -> Token:
-        """Return the current token and move to the next one."""
+        """Move to the next token and return the one before it."""
         token = self.token
         if self.at + 1 < len(self.tokens):
             self.at += 1
@@ -25,11 +25,11 @@ class TokenStream:
         return token
 
     def peek(self, distance: int) -> str:
-        """Return the kind of the token ``distance`` positions ahead."""
+        """The kind of the token `distance` positions ahead."""
         return self.tokens[min(self.at + distance, len(self.tokens) - 1)].kind
 
     def expect(self, kind: str) -> Token:
-        """Return the current token and move on. Raises CompileError if it is not of this kind."""
+        """Move to the next token and return the one before it. Raises CompileError if that is of another kind."""
         if self.token.kind != kind:
             raise CompileError("expected-token", (kind, self.token.kind), self.token.pos)
         return self.advance()

@@ -1,7 +1,7 @@
 """Recursion without the depth limit of Python: recursive functions are generators that run on an explicit stack.
 
-``child = yield self.rule()`` reads like a call. Only the length of the text limits the depth; the recursion limit of
-the process neither matters nor changes. A function without a ``yield`` must still contain one to be a generator.
+`child = yield self.rule()` reads like a call. Only the length of the text limits the depth; the recursion limit of
+the process neither matters nor changes. A function without a `yield` must still contain one to be a generator.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Task: TypeAlias = Generator["Task[Any]", Any, T]
 
 
 def run(task: Task[T]) -> T:
-    """Run a task and the tasks it yields; return its result. Exceptions propagate to the task that yielded."""
+    """Run a task and the tasks it yields, and return its result. Exceptions propagate to the task that yielded."""
     stack: list[Task[Any]] = [task]
     push, pop = stack.append, stack.pop
     value: Any = None

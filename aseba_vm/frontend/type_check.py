@@ -98,7 +98,7 @@ def _types(statement: Statement, subs: dict[str, Sub]) -> Task[None]:
 
 
 def _type_of(expression: Expression) -> Task[str]:
-    """Return ``integer`` or ``boolean``; indexes are not checked."""
+    """`integer` or `boolean`; indexes are not checked."""
     match expression:
         case Unary(operator, operand, pos):
             wanted = "boolean" if operator == "not" else "integer"

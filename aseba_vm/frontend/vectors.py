@@ -3,7 +3,7 @@
 Source: docs/spec/aseba-language.md sections 6 and 11.
 
 The parser (sizes of arguments, constants), the size check and lowering use this module. An element that does not exist
-is represented by ``MissingElement`` until a scalar assignment needs it, which preserves the order of errors.
+is represented by `MissingElement` until a scalar assignment needs it, which preserves the order of errors.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Scalar = Expression | MissingElement
 
 
 def size_of(expression: Expression) -> int:
-    """Return the number of words. Raises CompileError for operands of different sizes and for an invalid slice end."""
+    """The number of words. Raises CompileError for operands of different sizes and for an invalid slice end."""
     return run(_size(expression))
 
 
@@ -78,24 +78,24 @@ def check_address(expression: Expression) -> None:
 
 
 def out_of_bounds(access: Access) -> CompileError | None:
-    """Return the error of an access that starts outside its variable."""
+    """The error of an access that starts outside its variable."""
     if 0 <= access.first < access.variable.size:
         return None
     return CompileError("index-out-of-bounds", (access.variable.name, access.first, access.variable.size), access.pos)
 
 
 def elements(expression: Expression, count: int) -> list[Scalar]:
-    """Return the first ``count`` elements as scalar expressions, or all if there are fewer."""
+    """The first `count` elements as scalar expressions, or all if there are fewer."""
     return run(_elements(expression, count, False))
 
 
 def first_element(expression: Expression) -> Expression:
-    """Return element 0. Raises CompileError if it does not exist."""
+    """Element 0. Raises CompileError if it does not exist."""
     return require(elements(expression, 1)[0])
 
 
 def first_constant(expression: Expression) -> Expression:
-    """Return element 0, where each element at a computed index is replaced by a word that is never constant.
+    """Element 0, where each element at a computed index is replaced by a word that is never constant.
 
     Those indexes were evaluated when they were parsed; repeating it at each level would take quadratic time. Raises
     CompileError if the element does not exist or an index could not be evaluated.
@@ -104,7 +104,7 @@ def first_constant(expression: Expression) -> Expression:
 
 
 def require(scalar: Scalar) -> Expression:
-    """Return an element. Raises CompileError if it does not exist."""
+    """An element. Raises CompileError if it does not exist."""
     if isinstance(scalar, MissingElement):
         raise scalar.error
     return scalar

@@ -1,9 +1,9 @@
 """Bytecode as basic blocks of statements over expression trees: the input of the translator.
 
 Symbolic execution turns stack operations back into trees. A statement is the smallest unit with an effect. Between
-statements the state of the machine is known: ``pc``, and a stack that holds only ``pending``, constants and
+statements the state of the machine is known: `pc`, and a stack that holds only `pending`, constants and
 temporaries. Code that cannot be translated, or that fails at run time, therefore exits *before* its statement, and the
-interpreter repeats it exactly (see :mod:`aseba_vm.jit.tiering`). Only code that is reachable from the event table is
+interpreter repeats it exactly (see `aseba_vm.jit.tiering`). Only code that is reachable from the event table is
 decoded.
 """
 
@@ -46,7 +46,7 @@ _UNARY_COUNT = 3
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Statements in order, and how the block ends. ``depth`` is the maximum number of words it adds to the stack."""
+    """Statements in order, and how the block ends. `depth` is the maximum number of words it adds to the stack."""
 
     pc: int
     statements: tuple[Statement, ...]
@@ -69,7 +69,7 @@ class Memories:
 class Blocks:
     """The blocks of a program by address, and the addresses of its branches in ascending order.
 
-    ``jumps`` has the address and target of each JUMP, ``operands`` the words that are not instructions. ``is_fragile``:
+    `jumps` has the address and target of each JUMP, `operands` the words that are not instructions. `is_fragile`:
     one of the operands would modify itself if it were executed as an instruction.
     """
 
@@ -82,7 +82,7 @@ class Blocks:
 
 
 def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
-    """Return the blocks of a program, or None if a branch word, which changes, also has another meaning."""
+    """The blocks of a program, or None if a branch word, which changes, also has another meaning."""
     size = len(words)
     if not size:
         return None
@@ -108,7 +108,7 @@ def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
 
 
 def _reach(words: Sequence[int], leaders: set[int]) -> set[int]:
-    """Return the addresses of all reachable instructions, and add the starts of blocks to ``leaders``."""
+    """The addresses of all reachable instructions. The starts of blocks are added to `leaders`."""
     size = len(words)
     found: set[int] = set()
     waiting = sorted(leaders)
@@ -136,7 +136,7 @@ def _reach(words: Sequence[int], leaders: set[int]) -> set[int]:
 
 
 class _Builder:
-    """Executes blocks symbolically: ``stack`` holds expression trees instead of words."""
+    """Executes blocks symbolically: `stack` holds expression trees instead of words."""
 
     def __init__(self, words: Sequence[int], memories: Memories, leaders: set[int]) -> None:
         self.words = [*words, 0, 0]
@@ -166,7 +166,7 @@ class _Builder:
         return Block(start, tuple(self.statements), end, self.depth)
 
     def _instruction(self, pc: int) -> End | None:
-        """Execute one instruction; return the end of the block if it ends there."""
+        """Execute one instruction, and return the end of the block if the block ends there."""
         word, second, third = self.words[pc : pc + 3]
         op, operand = word >> 12, word & 0xFFF
         stack = self.stack
@@ -225,7 +225,7 @@ class _Builder:
         return None
 
     def _end(self, pc: int, op: int, word: int, second: int) -> End:
-        """Return the end of the block for a control-flow instruction, a bail-out if it cannot be translated."""
+        """The end of the block for a control-flow instruction, a bail-out if it cannot be translated."""
         stack, place, cost = self.stack, self.place, self.cost
         if op == Op.BRANCH and len(stack) == 2 and word & 0xFF < _BINARY_COUNT:
             left, right = stack
@@ -245,7 +245,7 @@ class _Builder:
         return BailOut(place, 0)
 
     def _spill(self) -> tuple[tuple[Temp, Expr], ...]:
-        """Replace expressions on the stack by temporaries and return their values; constants stay.
+        """Replace expressions on the stack by temporaries, and return their values; constants stay.
 
         A statement may change memory that the expressions read, so they must be evaluated before it.
         """
@@ -259,6 +259,6 @@ class _Builder:
         return tuple(kept)
 
     def _start_statement(self, pc: int) -> None:
-        """Start the next statement at ``pc``."""
+        """Start the next statement at `pc`."""
         self.place = ProgramPoint(pc, tuple(atom for atom in self.stack if isinstance(atom, Const | Temp)))
         self.cost = 0

@@ -1,6 +1,6 @@
 """Intermediate representation of basic blocks: expressions, statements, and the ends of blocks.
 
-A statement is the smallest unit with an effect; :mod:`aseba_vm.jit.basic_blocks` states what holds between two of them.
+A statement is the smallest unit with an effect; `aseba_vm.jit.basic_blocks` states what holds between two of them.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ class Index(NamedTuple):
 
 
 class Unary(NamedTuple):
-    """A unary operation; ``operator`` is its number."""
+    """A unary operation; `operator` is its number."""
 
     operator: int
     operand: Expr
 
 
 class Binary(NamedTuple):
-    """A binary operation; ``operator`` is its number. Division (5) and remainder (6) bail out if the divisor is 0."""
+    """A binary operation; `operator` is its number. Division (5) and remainder (6) bail out if the divisor is 0."""
 
     operator: int
     left: Expr
@@ -65,7 +65,7 @@ class ProgramPoint(NamedTuple):
 
 
 class Assign(NamedTuple):
-    """Store a value in a word. ``keep`` is evaluated first; ``cost`` is in instructions."""
+    """Store a value in a word. `keep` is evaluated first; `cost` is in instructions."""
 
     place: ProgramPoint
     cost: int
@@ -98,7 +98,7 @@ class Emit(NamedTuple):
 
 
 class Call(NamedTuple):
-    """Call native ``number`` with the popped words; ``pc`` is the address of the instruction."""
+    """Call native `number` with the popped words; `pc` is the address of the instruction."""
 
     place: ProgramPoint
     cost: int
@@ -110,7 +110,7 @@ class Call(NamedTuple):
 
 
 class KnownNative(NamedTuple):
-    """What the translator knows of a native: ``kernel`` is its definition if it is a standard native."""
+    """The translator's view of a native: `kernel` is its definition if it is a standard native."""
 
     signature: Signature
     kernel: Kernel | None
@@ -120,7 +120,7 @@ Statement = Assign | AssignIndex | Emit | Call
 
 
 class Branch(NamedTuple):
-    """Compare and continue at ``then`` or ``otherwise``; the word at ``pc`` holds the edge flag."""
+    """Compare and continue at `then` or `otherwise`; the word at `pc` holds the edge flag."""
 
     place: ProgramPoint
     cost: int
@@ -134,7 +134,7 @@ class Branch(NamedTuple):
 
 
 class Jump(NamedTuple):
-    """Continue at ``target``. ``pc`` is the address of the JUMP, or -1 (cost 0) if a block runs into the next one."""
+    """Continue at `target`. `pc` is the address of the JUMP, or -1 (cost 0) if a block runs into the next one."""
 
     place: ProgramPoint
     cost: int
@@ -143,7 +143,7 @@ class Jump(NamedTuple):
 
 
 class EnterSub(NamedTuple):
-    """Call the subroutine at ``target``, which returns to ``back``."""
+    """Call the subroutine at `target`, which returns to `back`."""
 
     place: ProgramPoint
     cost: int
@@ -152,7 +152,7 @@ class EnterSub(NamedTuple):
 
 
 class Return(NamedTuple):
-    """Return from a subroutine."""
+    """The end of a subroutine."""
 
     place: ProgramPoint
     cost: int
@@ -176,7 +176,7 @@ End = Branch | Jump | EnterSub | Return | Stop | BailOut
 
 
 def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
-    """Return the total number of words of all arguments of a native, None if a size is not constant."""
+    """The total number of words of all arguments of a native, None if a size is not constant."""
     total = 0
     for size in signature.sizes:
         length = Const(size) if size > 0 else popped[-size]
@@ -187,7 +187,7 @@ def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
 
 
 def arguments(popped: Sequence[Expr], signature: Signature) -> list[tuple[int, int]] | None:
-    """Return address and size of each argument of a native, None if not all are constant."""
+    """Address and size of each argument of a native, None if not all are constant."""
     found: list[tuple[int, int]] = []
     for place, size in enumerate(signature.sizes):
         address = popped[place]

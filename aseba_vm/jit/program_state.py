@@ -1,4 +1,4 @@
-"""What the tiering knows of the program in the bytecode memory: states and their transitions."""
+"""States of the program in the bytecode memory, as the tiering knows them, and their transitions."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import Enum, auto
 
 
 class State(Enum):
-    """What is known about the program in the bytecode memory."""
+    """The state of the program in the bytecode memory."""
 
     COLD = auto()
     """It is interpreted until a run is long, or runs often begin at one address."""
@@ -20,7 +20,7 @@ class State(Enum):
 
 
 class Change(Enum):
-    """What changes the state."""
+    """A cause of a transition."""
 
     TRANSLATED = auto()
     """A run was long, or at an address where runs often begin."""

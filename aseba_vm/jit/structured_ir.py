@@ -2,8 +2,8 @@
 
 Source: docs/spec/aseba-bytecode-vm.md section 6.
 
-Any other control flow becomes an :class:`Exit` to an address, where other translated code or the interpreter continues.
-So every program can be translated, though some gain less. The instruction budget is checked at each :class:`Check` and
+Any other control flow becomes an `Exit` to an address, where other translated code or the interpreter continues.
+So every program can be translated, though some gain less. The instruction budget is checked at each `Check` and
 at the head of each loop, for the longest path to the next check.
 """
 
@@ -28,7 +28,7 @@ CONTINUE = 2
 class Exit:
     """Leave translated code.
 
-    ``kind`` is STOPPED (the event has ended), INTERPRET (the interpreter must continue) or CONTINUE (other translated
+    `kind` is STOPPED (the event has ended), INTERPRET (the interpreter must continue) or CONTINUE (other translated
     code may continue).
     """
 
@@ -46,7 +46,7 @@ class Charge:
 
 @dataclass(slots=True)
 class Check:
-    """Exit unless ``need`` instructions are left."""
+    """Exit unless `need` instructions are left."""
 
     pc: int
     need: int
@@ -69,7 +69,7 @@ class If:
 
 @dataclass(slots=True)
 class Loop:
-    """``before``, the condition and ``body``, repeated while true; ``need`` is the budget of the longest iteration."""
+    """`before`, the condition and `body`, repeated while true; `need` is the budget of the longest iteration."""
 
     pc: int
     before: list[Node]
@@ -97,7 +97,7 @@ Node = Statement | Exit | Charge | Check | If | Loop | SubCall | SubReturn
 
 @dataclass(slots=True)
 class Routine:
-    """The code of a subroutine, or of an event (``is_sub`` is false), with the budget and stack depth it needs."""
+    """The code of a subroutine, or of an event (`is_sub` is false), with the budget and stack depth it needs."""
 
     pc: int
     is_sub: bool
@@ -108,7 +108,7 @@ class Routine:
 
 
 class StructuredProgram:
-    """The routine at ``entry`` (``main``) and the subroutines it calls (``subs``, by address)."""
+    """The routine at `entry` (`main`) and the subroutines it calls (`subs`, by address)."""
 
     def __init__(self, blocks: Blocks, entry: int) -> None:
         self.blocks = blocks
@@ -133,7 +133,7 @@ class StructuredProgram:
     def _sequence(
         self, routine: Routine, pc: int, end: int | None, jump: int | None, nesting: int
     ) -> tuple[list[Node], bool]:
-        """Return the nodes from ``pc`` to ``end`` (or to the JUMP at ``jump``), and whether control reaches it."""
+        """The nodes from `pc` to `end` (or to the JUMP at `jump`), and whether control reaches it."""
         nodes: list[Node] = []
         while pc != end:
             block = self.blocks.by_address.get(pc)
@@ -175,7 +175,11 @@ class StructuredProgram:
         return nodes, True
 
     def _prepare_sub(self, routine: Routine, target: int) -> bool:
-        """Translate the subroutine at ``target`` if necessary; return whether it can be called (not recursive)."""
+        """Translate the subroutine at `target` if necessary.
+
+        Returns:
+            Whether it can be called; a recursive one cannot.
+        """
         if target in self._open or len(self._open) > _MAX_CALLS:
             return False
         if target not in self.subs:
@@ -184,11 +188,11 @@ class StructuredProgram:
         return True
 
     def _condition(self, routine: Routine, nodes: list[Node], pc: int, end: int | None, nesting: int) -> int:
-        """Append the block at ``pc``, which ends in a branch, and its arms; return the address after them.
+        """Append the block at `pc`, which ends in a branch, and its arms, and return the address after them.
 
         The compiler emits three patterns (docs/spec/aseba-bytecode-vm.md section 6). The word before the branch target
-        tells them apart: a JUMP back to ``pc`` closes a loop, a JUMP forward ends a then-arm with an else-arm, anything
-        else is an ``if`` without ``else``.
+        tells them apart: a JUMP back to `pc` closes a loop, a JUMP forward ends a then-arm with an else-arm, anything
+        else is an `if` without `else`.
         """
         block = self.blocks.by_address[pc]
         branch = block.end
@@ -227,9 +231,9 @@ class StructuredProgram:
         return target
 
     def _need(self, routine: Routine, nodes: list[Node], after: int) -> int:
-        """Return the maximum number of instructions to the next check, and insert checks.
+        """Insert checks of the budget, and return the maximum number of instructions to the first one.
 
-        ``after`` is that number from the end of the nodes. The nodes are processed from last to first.
+        `after` is that number from the end of the nodes. The nodes are processed from last to first.
         """
         need = after
         for place in range(len(nodes) - 1, -1, -1):

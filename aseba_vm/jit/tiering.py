@@ -1,4 +1,4 @@
-"""Tiered execution: decides what is interpreted and what is translated.
+"""Tiered execution: selects the code that is translated; the interpreter executes the rest.
 
 Translated code executes whole statements on the state of the machine itself. It exits before a statement that cannot be
 translated, that would fail, or that the budget does not cover. The interpreter then executes that statement, so every
@@ -32,8 +32,8 @@ AUTO = "auto"
 INTERPRETER = "interpreter"
 WASM = "wasm"
 ENGINES = (AUTO, INTERPRETER, WASM)
-"""Names of engines: ``auto`` translates hot code to WebAssembly where wasmtime works, ``interpreter`` never translates,
-``wasm`` translates at once.
+"""Names of engines: `auto` translates hot code to WebAssembly where wasmtime works, `interpreter` never translates,
+`wasm` translates at once.
 """
 
 _WARM_RUNS = 2
@@ -47,7 +47,7 @@ _MAX_SLICE = 10_000_000
 
 
 class TieredMachine(InterpretedMachine, Protocol):
-    """What the tiering needs of a machine: its state, interpreter and natives."""
+    """The part of a machine that the tiering uses: state, interpreter and natives."""
 
     node_id: int
     random: MutableSequence[int]
@@ -68,7 +68,7 @@ class Tiering:
     """Executes the events of one machine."""
 
     def __init__(self, machine: TieredMachine, *, is_eager: bool) -> None:
-        """``is_eager``: translate at once."""
+        """`is_eager`: translate at once."""
         self.state = State.COLD
         self._machine = machine
         self._is_eager = is_eager
@@ -88,7 +88,7 @@ class Tiering:
         self._failure: BaseException | None = None
 
     def apply(self, change: Change) -> None:
-        """Change the state."""
+        """Make the transition of the state for a change."""
         self.state = TRANSITIONS[self.state, change]
         self._runnable = self._ready if self.state is State.TRANSLATED else {}
 
@@ -99,9 +99,11 @@ class Tiering:
             self._host = None
 
     def run(self, limit: int) -> int:
-        """Execute the active event up to ``limit``; return the budget used.
+        """Execute the active event up to `limit` instructions, and return the budget used.
 
-        Raises the exception of a native that raised one, and RuntimeError if translated code trapped (a bug).
+        Raises:
+            Exception: Whatever a native raises, unchanged.
+            RuntimeError: Translated code trapped, which is an internal error.
         """
         machine = self._machine
         ready = self._runnable.get(machine.pc)
@@ -123,7 +125,11 @@ class Tiering:
         return limit - left
 
     def _is_warm(self, pc: int) -> bool:
-        """Count a run that starts at ``pc``; return whether there were enough to translate it."""
+        """Count a run that starts at `pc`.
+
+        Returns:
+            Whether enough runs have started there to translate the code.
+        """
         if self.state is State.INTERPRETED:
             return False
         count = self._run_counts.get(pc, 0) + 1
@@ -131,7 +137,7 @@ class Tiering:
         return count > _WARM_RUNS
 
     def _ready_code(self, pc: int) -> ReadyCode | None:
-        """Return the translated code that starts at ``pc``; None if it must be interpreted."""
+        """The translated code that starts at `pc`; None if it must be interpreted."""
         if self.state is State.WRITTEN:
             self._compare()
         if self.state is State.COLD:
@@ -178,7 +184,7 @@ class Tiering:
         return ReadyCode(self._host.instantiate(entry.code), entry.need, self._memories.stack - entry.depth - 1)
 
     def _interpret(self, limit: int) -> int:
-        """Interpret up to ``limit``; return the budget used."""
+        """Interpret up to `limit` instructions, and return the budget used."""
         machine = self._machine
         # Translated code does not decode again what may contain a BRANCH whose edge flag it has changed.
         for pc in machine.code.overlapped:
@@ -191,7 +197,7 @@ class Tiering:
                 self.apply(Change.WRITTEN)
 
     def _run_translated(self, run: Run, left: int) -> int:
-        """Run translated code with a budget of ``left`` and apply its exit to the machine; return the budget used."""
+        """Run translated code with a budget of `left`, apply its exit to the machine, and return the budget used."""
         machine = self._machine
         rest, machine.pc, kind, words = run(left)
         done = left - rest
@@ -220,7 +226,7 @@ class Tiering:
     # -- called by translated code (aseba_vm.jit.wasm_host.Caller)
 
     def prepare(self, site: CallSite | EmitSite) -> Callable[[Sequence[int]], int]:
-        """Return the function that executes a native call or emits an event."""
+        """The function that executes a native call, or that emits an event."""
         return self._prepare_call(site) if isinstance(site, CallSite) else self._prepare_event(site)
 
     def _prepare_event(self, site: EmitSite) -> Callable[[Sequence[int]], int]:
@@ -234,7 +240,7 @@ class Tiering:
         return emit
 
     def _prepare_call(self, site: CallSite) -> Callable[[Sequence[int]], int]:
-        """Return the function that executes a native call. An exception of the native is raised after the exit."""
+        """The function that executes a native call. An exception of the native is raised after the exit."""
         machine, number, pc = self._machine, site.number, site.pc
 
         def call(popped: Sequence[int]) -> int:
@@ -272,14 +278,14 @@ class Tiering:
 
 
 def _known(function: Native, signature: Signature) -> KnownNative:
-    """Return what the translator knows of a native."""
+    """The translator's view of a native."""
     return KnownNative(signature, function.kernel if isinstance(function, StandardNative) else None)
 
 
 def create_tiering(name: str, machine: TieredMachine) -> Tiering | None:
-    """Return the tiering for an engine name, None for the interpreter.
+    """The tiering for an engine name, None for the interpreter.
 
-    Raises ValueError for an unknown name, or for ``wasm`` without wasmtime.
+    Raises ValueError for an unknown name, or for `wasm` without wasmtime.
     """
     if name not in ENGINES:
         raise ValueError(f"engine: found {name!r}, expected one of {', '.join(ENGINES)}")

@@ -37,11 +37,11 @@ class Translation:
         self._canonical = self._without_edges(words)
 
     def matches(self, words: tuple[int, ...]) -> bool:
-        """Return whether this is the translation of a program. Edge flags change as it runs and do not count."""
+        """Whether this is the translation of a program. Edge flags change as it runs and do not count."""
         return self._without_edges(words) == self._canonical
 
     def is_modified(self, code: CodeMemory) -> bool:
-        """Return whether the interpreter has changed an operand, by executing it as a BRANCH."""
+        """Whether the interpreter has changed an operand, by executing it as a BRANCH."""
         blocks = self._blocks
         return (
             blocks is not None
@@ -50,7 +50,7 @@ class Translation:
         )
 
     def entry(self, pc: int) -> EntryCode | None:
-        """Return the translation of the block at ``pc`` and of what follows it."""
+        """The translation of the block at `pc` and of what follows it."""
         if pc not in self._entries:
             self._entries[pc] = self._translate(pc)
         return self._entries[pc]
@@ -81,7 +81,7 @@ _translations: OrderedDict[object, Translation] = OrderedDict()
 
 
 def find_translation(words: tuple[int, ...], memories: Memories, natives: tuple[KnownNative, ...]) -> Translation:
-    """Return the translation of a program from the cache; least recently used ones are dropped."""
+    """The translation of a program from the cache; least recently used ones are dropped."""
     key = (words, memories, natives)
     found = _translations.pop(key, None)
     if found is None:

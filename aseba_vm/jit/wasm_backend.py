@@ -1,12 +1,12 @@
 """Translation to WebAssembly: one module per event.
 
-Modules work directly on the state of the machine (:mod:`aseba_vm.jit.wasm_host`). A subroutine is a function that
+Modules work directly on the state of the machine (`aseba_vm.jit.wasm_host`). A subroutine is a function that
 takes the budget and the stack depth, and returns the budget left, or -1 if translated code was left inside it. An exit
 writes the remaining budget, address, kind and the words of the stack into memory. Standard natives are compiled from
 their kernels.
 
-Locals in the generated code: ``$n`` budget, ``$d`` stack depth, ``$h`` scratch, ``$t<number>`` temporaries of
-expressions, ``$s<number>`` temporaries of statements, ``$inlined<number>.<name>`` those of natives.
+Locals in the generated code: `$n` budget, `$d` stack depth, `$h` scratch, `$t<number>` temporaries of
+expressions, `$s<number>` temporaries of statements, `$inlined<number>.<name>` those of natives.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ _TRAPPED = -1
 
 
 def translate(blocks: Blocks, structure: StructuredProgram, natives: Sequence[KnownNative]) -> WasmCode:
-    """Return the code of a program, for :meth:`aseba_vm.jit.wasm_host.WasmHost.instantiate`."""
+    """The code of a program, for `aseba_vm.jit.wasm_host.WasmHost.instantiate`."""
     writer = _Writer(structure, natives, blocks.memories.variables)
     return WasmCode(WasmRuntime.get().compile(writer.text()), tuple(writer.sites))
 
@@ -89,7 +89,7 @@ class _Writer:
         self.lines.append(line)
 
     def text(self) -> str:
-        """Return the module; its export ``run`` reads the budget from memory and writes the exit there."""
+        """The module; its export `run` reads the budget from memory and writes the exit there."""
         subs = [self._routine(sub, f"$f{sub.pc}") for sub in self.structure.subs.values()]
         main = self._routine(self.structure.main, '$run (export "run")')
         return "\n".join(["(module", IMPORTS, self.kernels.text(), *subs, main, ")"])
@@ -115,7 +115,7 @@ class _Writer:
     # -- exits
 
     def _exit(self, place: ProgramPoint, kind: int, uncharged: int) -> str:
-        """Return the code that stores the exit and returns."""
+        """The code that stores the exit and returns."""
         depth = "(local.get $d)" if self.is_sub else "(i32.const 0)"
         stores = [f"(i32.store (i32.const {EXIT + 8}) (i32.const {place.pc}))"]
         stores.append(f"(i32.store (i32.const {EXIT + 12}) (i32.const {kind}))")
@@ -140,7 +140,11 @@ class _Writer:
     # -- nodes
 
     def _nodes(self, nodes: Sequence[Node], uncharged: int) -> int | None:
-        """Generate nodes; return the instructions not yet charged at their end, None if the end is unreachable."""
+        """Generate nodes.
+
+        Returns:
+            The number of instructions not yet charged at their end; None if the end is unreachable.
+        """
         for node in nodes:
             match node:
                 case Charge(cost):
@@ -184,7 +188,7 @@ class _Writer:
     def _if(self, node: If, uncharged: int) -> int | None:
         """Generate a condition.
 
-        A ``when`` whose condition was true before takes the other arm and keeps its edge flag. Both arms must end with
+        A `when` whose condition was true before takes the other arm and keeps its edge flag. Both arms must end with
         the same number of uncharged instructions.
         """
         branch = node.branch
@@ -305,6 +309,6 @@ class _Writer:
             emit_line(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")
 
     def _python(self, site: CallSite | EmitSite, done: str = "(i32.const 0)") -> str:
-        """Return a call of Python; ``done`` is 1 plus the result of a translated native."""
+        """A call of Python; `done` is 1 plus the result of a translated native."""
         self.sites.append(site)
         return f"(call $python (i32.const {len(self.sites) - 1}) {done})"

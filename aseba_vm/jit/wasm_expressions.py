@@ -26,7 +26,7 @@ class Wat(NamedTuple):
 
 
 class WasmExpressions:
-    """Generates expressions. ``emit_line`` appends code that runs before, ``bail_out`` is the code of an exit."""
+    """Generates expressions. `emit_line` appends code that runs before, `bail_out` is the code of an exit."""
 
     def __init__(self, emit_line: Callable[[str], None]) -> None:
         self._emit_line = emit_line
@@ -34,20 +34,20 @@ class WasmExpressions:
         self.bail_out = ""
 
     def word(self, expression: Expr) -> str:
-        """Return an expression wrapped to a signed 16-bit word."""
+        """An expression wrapped to a signed 16-bit word."""
         text, is_word = self._value(expression)
         return text if is_word else f"(i32.extend16_s {text})"
 
     def low(self, expression: Expr) -> str:
-        """Return an expression of which only the low 16 bits are significant."""
+        """An expression of which only the low 16 bits are significant."""
         return self._value(expression).text
 
     def condition(self, operator: int, left: Expr, right: Expr) -> str:
-        """Return ``left operator right`` as an i32, nonzero if true."""
+        """`left operator right` as an i32, nonzero if true."""
         return self.word(Binary(operator, left, right))
 
     def place(self, base: int, size: int, index: Expr) -> str:
-        """Return the byte offset of an array element, to be added to the offset of the base, after a bounds check."""
+        """The byte offset of an array element, to be added to the offset of the base, after a bounds check."""
         if isinstance(index, Const) and 0 <= index.value < size:
             return f"(i32.const {2 * index.value})"
         # unsigned, as in the machine

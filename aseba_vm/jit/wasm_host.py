@@ -82,7 +82,7 @@ class WasmCode(NamedTuple):
 
 
 class TranslatedMachine(Protocol):
-    """What translated code needs of its machine; none of these methods may raise."""
+    """The part of a machine that translated code uses; none of these methods may raise."""
 
     @property
     def variables(self) -> Variables:
@@ -101,12 +101,13 @@ class TranslatedMachine(Protocol):
 
 
 class Caller(Protocol):
-    """What executes native calls for translated code, and emits events; none of these methods may raise."""
+    """Executes native calls and emits events for translated code; none of these methods may raise."""
 
     def prepare(self, site: CallSite | EmitSite) -> Callable[[Sequence[int]], int]:
-        """Return the function that does it, given an array that begins with the words that a call pops.
+        """The function that executes this call or emits this event.
 
-        It returns 0 to continue, 1 if translated code must exit, 2 if an argument is invalid and nothing was done.
+        Its argument is an array that begins with the words that a call pops. It returns 0 to continue, 1 if translated
+        code must exit, 2 if an argument is invalid and nothing was done.
         """
 
     def finish(self, site: CallSite, result: int, cost: int) -> None:
@@ -153,7 +154,7 @@ class WasmHost:
             self._store.close()
 
     def instantiate(self, code: WasmCode) -> Run:
-        """Return the function of a module for this machine."""
+        """The function of a module for this machine."""
         run = self._wasmtime.Instance(self._store, code.module, self._imports).exports(self._store)["run"]
         call = make_caller(self._wasmtime, self._store, run)
         budget, exit_area, unpack = self._budget, self._exit, _EXIT_FORMAT.unpack_from
@@ -184,7 +185,7 @@ class WasmHost:
             request[2] = self._calls[number](self._arguments)
 
     def _with_stack(self, found: tuple[int, int, int, int]) -> tuple[int, int, int, Any]:
-        """Return an exit with the words to push."""
+        """An exit with the words to push."""
         left, pc, kind, count = found
         return left, pc, kind, tuple(self._stack[:count])
 
@@ -192,7 +193,7 @@ class WasmHost:
         return (kind * size).from_address(self._base + place)
 
     def _moved(self, words: Sequence[int], kind: Any, place: int) -> Any:
-        """Return a copy of words in the memory."""
+        """A copy of words in the memory."""
         array = self._array(kind, place, len(words))
         array[:] = words[:]
         return array

@@ -51,7 +51,7 @@ class KernelCall(NamedTuple):
 class KernelModule:
     """The kernels that a module uses, with those that they call.
 
-    ``places`` are arrays at fixed places: parameters of these names are not handed over. ``tables`` is the address
+    `places` are arrays at fixed places: parameters of these names are not handed over. `tables` is the address
     from which on the tuples that kernels read are stored.
     """
 
@@ -134,7 +134,7 @@ def _result(kind: str) -> str:
 
 
 class _Function:
-    """Translates one kernel; ``leave`` is the instruction of its `return`."""
+    """Translates one kernel; `leave` is the instruction of its `return`."""
 
     def __init__(self, scope: Scope, leave: str) -> None:
         self.scope = scope
@@ -175,7 +175,7 @@ class _Function:
         return f"{text}\n({self._result}.const 0)" if self._result else text
 
     def _parameter(self, name: str, kind: str) -> str:
-        """Declare a parameter; returns its text."""
+        """Declare a parameter and return its text."""
         if kind in ARRAYS:
             self.scope.arrays[name] = kind
             return "" if name in self.scope.places else f"(param ${name} i32)"
@@ -267,7 +267,7 @@ def _unwrapped(text: str) -> str:
 
 
 def _loaded(target: ast.expr) -> ast.expr:
-    """Return the target of an assignment as an expression that reads it."""
+    """The target of an assignment as an expression that reads it."""
     if isinstance(target, ast.Subscript):
         return ast.copy_location(ast.Subscript(target.value, target.slice, ast.Load()), target)
     return ast.copy_location(ast.Name(getattr(target, "id", ""), ast.Load()), target)

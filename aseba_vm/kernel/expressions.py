@@ -25,14 +25,14 @@ Typed = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where an array is that all kernels of a module share: its address in bytes and its number of elements."""
+    """The place of an array that all kernels of a module share: address in bytes and number of elements."""
 
     address: int
     count: int
 
 
 class Tables:
-    """The tuples of signed 16-bit integers that kernels read, and their addresses from ``start`` on."""
+    """The tuples of signed 16-bit integers that kernels read, and their addresses from `start` on."""
 
     def __init__(self, start: int | None) -> None:
         self._start = start
@@ -58,8 +58,8 @@ class Tables:
 class Scope:
     """The names that the text of a kernel knows.
 
-    ``arrays`` has the type of each array, those of a record as ``record.field``; ``places`` the arrays at a fixed
-    place; ``types`` the types of scalar parameters and local variables. ``prefix`` makes the names of local variables
+    `arrays` has the type of each array, those of a record as `record.field`; `places` the arrays at a fixed
+    place; `types` the types of scalar parameters and local variables. `prefix` makes the names of local variables
     unique where the text becomes a part of another function.
     """
 
@@ -150,7 +150,7 @@ class Expressions:
         raise self.refuse(node)
 
     def _alike(self, left: ast.expr, right: ast.expr) -> tuple[tuple[str, str], str]:
-        """Return two values as one type, and this type: a float if one of them is."""
+        """Two values as one type, and this type: a float if one of them is."""
         a, b = self.value(left), self.value(right)
         kind = "f64" if "f64" in (a[1], b[1]) else "i32"
         return (self.convert(a, kind, left), self.convert(b, kind, right)), kind

@@ -26,7 +26,7 @@ def quotient(left: int, right: int) -> int:
 
 
 def remainder(left: int, right: int) -> int:
-    """The remainder of :func:`quotient`, which has the sign of ``left``. Raises ZeroDivisionError."""
+    """The remainder of `quotient`, which has the sign of `left`. Raises ZeroDivisionError."""
     result = abs(left) % abs(right)
     return -result if left < 0 else result
 
@@ -46,5 +46,5 @@ _INSTRUCTIONS: dict[object, str] = {
 
 
 def instruction_of(function: object) -> str | None:
-    """The WebAssembly text of a function of this module, with ``{}`` for its arguments; None for any other object."""
+    """The WebAssembly text of a function of this module, with `{}` for its arguments; None for any other object."""
     return _INSTRUCTIONS.get(function) if callable(function) else None

@@ -22,7 +22,7 @@ class _SpecializationError(Exception):
 
 
 def specialize(kernel: ast.FunctionDef, arguments: Mapping[str, int]) -> list[ast.stmt] | None:
-    """Return the body of a kernel for the arguments by name; None if it has other loops or changes a parameter."""
+    """The body of a kernel for the arguments by name; None if it has other loops or changes a parameter."""
     try:
         return _Specializer(arguments).block(kernel.body)
     except _SpecializationError:
@@ -30,13 +30,13 @@ def specialize(kernel: ast.FunctionDef, arguments: Mapping[str, int]) -> list[as
 
 
 class _Specializer(ast.NodeTransformer):
-    """Replaces the names that are known, and computes what then is constant."""
+    """Replaces known names by their values, and computes expressions that are constant then."""
 
     def __init__(self, known: Mapping[str, int]) -> None:
         self._known = dict(known)
 
     def block(self, body: list[ast.stmt]) -> list[ast.stmt]:
-        """Return a new list of statements; the given ones stay as they are."""
+        """A new list of statements; the given ones stay as they are."""
         found: list[ast.stmt] = []
         for statement in body:
             made = self.visit(deepcopy(statement))
@@ -60,15 +60,15 @@ class _Specializer(ast.NodeTransformer):
         return node
 
     def visit_While(self, _node: ast.While) -> ast.stmt:
-        """Such a loop is worth a function of its own."""
+        """Refuse: such a loop is worth a function of its own."""
         raise _SpecializationError
 
     def visit_Break(self, _node: ast.Break) -> ast.stmt:
-        """A loop that ends early cannot be unrolled."""
+        """Refuse: a loop that ends early cannot be unrolled."""
         raise _SpecializationError
 
     def visit_Continue(self, _node: ast.Continue) -> ast.stmt:
-        """Nor can one that skips the rest of an iteration."""
+        """Refuse: a loop that skips the rest of an iteration cannot be unrolled."""
         raise _SpecializationError
 
     def visit_For(self, node: ast.For) -> ast.stmt | list[ast.stmt]:

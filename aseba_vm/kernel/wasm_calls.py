@@ -1,4 +1,4 @@
-"""Calls into and out of WebAssembly by the fastest interface of the installed ``wasmtime``.
+"""Calls into and out of WebAssembly by the fastest interface of the installed `wasmtime`.
 
 The documented interface checks and converts every value, which costs more than a short event. The ctypes bindings
 inside the package make the same calls without that. They are private: where they differ from what this module expects,
@@ -14,7 +14,7 @@ from typing import Any
 
 
 def make_caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] = ()) -> Callable[[], object]:
-    """Return a function that calls an exported function with fixed arguments: an int is an i32, a float an f64.
+    """A function that calls an exported function with fixed arguments: an int is an i32, a float an f64.
 
     The call holds the GIL, so the exported function must be bounded in time.
     """
@@ -35,7 +35,7 @@ def make_caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[fl
 
 
 def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
-    """Return a host function without parameters for modules to import. It must not raise."""
+    """A host function without parameters for modules to import. It must not raise."""
     kind = wasmtime.FuncType([], [])
     try:
         bindings = wasmtime._bindings
@@ -61,7 +61,7 @@ def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
 
 @cache
 def _library(name: str) -> ctypes.PyDLL:
-    """Return a library whose functions are called with the GIL: to release and take it costs more than a short event.
+    """A library whose functions are called with the GIL: to release and take it costs more than a short event.
 
     It is cached because each one has classes of its own, which only the collector frees.
     """

@@ -18,9 +18,9 @@ _SAMPLE = '(module (import "" "memory" (memory 1)) (func (export "run") (i32.sto
 
 @cache
 def is_usable() -> bool:
-    """Return whether WebAssembly can be compiled and run here. Never raises.
+    """Whether WebAssembly can be compiled and run here. Never raises.
 
-    If not, the reason is logged once: ``wasmtime`` may be missing (it has no wheel for every platform) or broken (a
+    If not, the reason is logged once: `wasmtime` may be missing (it has no wheel for every platform) or broken (a
     missing system library, a binary for another platform), or a memory limit too low.
     """
     try:
@@ -33,7 +33,7 @@ def is_usable() -> bool:
 
 
 def _try() -> None:
-    """Compile and run a sample. Raises any exception that a broken ``wasmtime`` can raise."""
+    """Compile and run a sample. Raises any exception that a broken `wasmtime` can raise."""
     runtime = WasmRuntime.get()
     wasmtime = runtime.wasmtime
     with mmap.mmap(-1, _HEADROOM):
@@ -60,7 +60,7 @@ class WasmRuntime:
     _instance: WasmRuntime | None = None
 
     def __init__(self) -> None:
-        """Import ``wasmtime`` and create the compiler."""
+        """Import `wasmtime` and create the compiler."""
         self.wasmtime: Any = importlib.import_module("wasmtime")
         self.engine = self.wasmtime.Engine(self._config())
         self._modules: weakref.WeakSet[Any] = weakref.WeakSet()
@@ -68,7 +68,7 @@ class WasmRuntime:
         atexit.register(self._close)
 
     def _config(self) -> Any:
-        """Return a configuration in which memories reserve only the address space of their size.
+        """A configuration in which memories reserve only the address space of their size.
 
         The default of 4 GB each fails where address space is limited (`ulimit -v`, batch systems). The memories never
         grow, so no space behind them is needed either; bounds are checked explicitly, which measured no slower.
@@ -84,13 +84,13 @@ class WasmRuntime:
         return config
 
     def compile(self, text: str) -> Any:
-        """Return the module of a WebAssembly text."""
+        """The module of a WebAssembly text."""
         module = self.wasmtime.Module(self.engine, text)
         self._modules.add(module)
         return module
 
     def register(self, owner: StoreOwner) -> None:
-        """Register an owner of a store, to be closed at exit before ``wasmtime`` itself is unloaded."""
+        """Register an owner of a store, to be closed at exit before `wasmtime` itself is unloaded."""
         self._store_owners.add(owner)
 
     def _close(self) -> None:
@@ -99,7 +99,7 @@ class WasmRuntime:
 
     @classmethod
     def get(cls) -> WasmRuntime:
-        """Return the instance, created on first use."""
+        """The instance, created on first use."""
         if cls._instance is None:
             cls._instance = cls()
         return cls._instance

@@ -31,7 +31,7 @@ LANGUAGES: tuple[str, ...] = _languages()
 
 @cache
 def texts(file: str, language: str = ENGLISH) -> Mapping[str, str]:
-    """Return the texts of a file, such as "compiler", in a language, with English for what the language lacks.
+    """The texts of a file, such as "compiler", in a language, with English for what the language lacks.
 
     An unknown language is English. Raises FileNotFoundError if English has no such file.
     """

@@ -14,9 +14,9 @@ _BRANCH = int(Op.BRANCH)  # compared with every word of the memory, where a memb
 class CodeMemory:
     """The bytecode of a machine, changed by its methods only.
 
-    ``operations`` has the decoded operation at each address. ``edges`` has the edge flag of each word that is a BRANCH,
+    `operations` has the decoded operation at each address. `edges` has the edge flag of each word that is a BRANCH,
     0 or 1, in whatever storage the active engine needs; the flag in a word is that of its last writing. Code that
-    changes the flag of an ``overlapped`` word, which another instruction may read as its operand, calls ``refresh``.
+    changes the flag of an `overlapped` word, which another instruction may read as its operand, calls `refresh`.
     """
 
     __slots__ = ("_words", "addresses", "edges", "operations", "overlapped")
@@ -31,11 +31,11 @@ class CodeMemory:
         self.operations: list[Decoded] = [(OTHER, 0, 0)] * size
 
     def __len__(self) -> int:
-        """Return the size of the memory in words."""
+        """The size of the memory in words."""
         return len(self._words)
 
     def word(self, pc: int) -> int:
-        """Return an unsigned word with its edge flag; 0 beyond the memory."""
+        """An unsigned word with its edge flag; 0 beyond the memory."""
         word = self._words[pc] if pc < len(self._words) else 0
         return (word & ~WAS_TRUE) | self.edges[pc] << _FLAG if word >> 12 == _BRANCH else word
 
@@ -60,7 +60,7 @@ class CodeMemory:
         self._find_events()
 
     def refresh(self, pc: int) -> None:
-        """Decode what may contain the word at ``pc`` again, because its edge flag may have changed."""
+        """Decode the instructions that may contain the word at `pc` again, because its edge flag may have changed."""
         for place in range(max(pc - 2, 0), pc):
             self._decode(place)
         if pc <= self.word(0):
@@ -88,7 +88,7 @@ class CodeMemory:
         self.addresses = {self.word(place): self.word(place + 1) for place in reversed(range(1, size, 2))}
 
     def _is_overlapped(self, pc: int) -> bool:
-        """Whether another instruction, or the table of events, may contain the word at ``pc``."""
+        """Whether another instruction, or the table of events, may contain the word at `pc`."""
         words = self._words
         is_operand = any(LENGTH[words[pc - place] >> 12] > place for place in (1, 2) if pc >= place)
         return is_operand or pc <= words[0]

@@ -13,13 +13,13 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Cost of an operation in instructions: ``base``, plus ``per_word`` for each word of its arguments."""
+    """Cost of an operation in instructions: `base`, plus `per_word` for each word of its arguments."""
 
     base: int = 0
     per_word: int = 0
 
     def of(self, words: int) -> int:
-        """Return the cost for arguments with ``words`` words in total."""
+        """The cost for arguments with `words` words in total."""
         return self.base + self.per_word * words
 
 
@@ -28,14 +28,14 @@ FREE = Cost()
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """Costs of natives by name, of all ``others``, and of an emitted event."""
+    """Costs of natives by name, of all `others`, and of an emitted event."""
 
     natives: Mapping[str, Cost] = field(default_factory=lambda: MappingProxyType({}))
     others: Cost = FREE
     emit: Cost = FREE
 
     def of(self, native: str) -> Cost:
-        """Return the cost of a native by name."""
+        """The cost of a native by name."""
         return self.natives.get(native, self.others)
 
 

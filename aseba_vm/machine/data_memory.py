@@ -11,7 +11,7 @@ MIN_WORD, MAX_WORD = -32768, 32767
 class Variables(Sequence[int]):
     """A fixed number of words in -32768…32767.
 
-    ``words`` is the storage: faster to access, and not range-checked. Read the attribute again after every run, since
+    `words` is the storage: faster to access, and not range-checked. Read the attribute again after every run, since
     an engine may have moved the words.
     """
 
@@ -20,12 +20,12 @@ class Variables(Sequence[int]):
     words: MutableSequence[int]
 
     def __init__(self, size: int) -> None:
-        """Create a memory of ``size`` zeros."""
+        """Create a memory of `size` zeros."""
         self.words = [0] * size
         self._owner: object = None
 
     def move_to(self, words: MutableSequence[int], owner: object = None) -> None:
-        """Copy the words to a storage of the same size and use it; ``owner`` is kept alive meanwhile."""
+        """Copy the words to a storage of the same size and use it; `owner` is kept alive meanwhile."""
         words[:] = self.words[:]
         self.words, self._owner = words, owner
 
@@ -39,7 +39,7 @@ class Variables(Sequence[int]):
     @overload
     def __getitem__(self, place: slice) -> list[int]: ...
     def __getitem__(self, place: Any) -> Any:
-        """Return a word or a list of words."""
+        """A word or a list of words."""
         return self.words[place]
 
     @overload
@@ -61,11 +61,11 @@ class Variables(Sequence[int]):
         self.words[place] = value
 
     def __len__(self) -> int:
-        """Return the number of words."""
+        """The number of words."""
         return len(self.words)
 
     def __eq__(self, other: object) -> bool:
-        """Return whether the words are equal to those of any sequence."""
+        """Whether the words are equal to those of any sequence."""
         if not isinstance(other, Sequence):
             return NotImplemented
         return self.words[:] == list(other)
@@ -73,5 +73,5 @@ class Variables(Sequence[int]):
     __hash__ = None  # type: ignore[assignment]  # mutable
 
     def __repr__(self) -> str:
-        """Return the words as text."""
+        """The words as text."""
         return f"Variables({self.words[:]})"

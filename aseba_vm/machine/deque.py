@@ -76,7 +76,7 @@ def deque_pop_back(memory: Shorts, cost: Ints, queue: int, destination: int, len
 
 @kernel
 def ring_place(queue: int, length: int, position: int) -> int:
-    """Return the address of a position in the ring, which is not negative."""
+    """The address of a position in the ring, which is not negative."""
     if position < length - 2:
         return queue + 2 + position  # a division is slow
     return queue + 2 + remainder(position, length - 2)
@@ -94,7 +94,7 @@ def get_words(memory: Shorts, queue: int, destination: int, index: int, length: 
 
 @kernel
 def pop_words(memory: Shorts, cost: Ints, queue: int, destination: int, index: int, length: int, size: int) -> int:
-    """Get and erase; the words are erased even if they cannot be read."""
+    """Read elements and erase them; they are erased even if they cannot be read."""
     if length < 3:
         return DEQUE
     fault = get_words(memory, queue, destination, index, length, size)
@@ -144,7 +144,7 @@ def erase_words(memory: Shorts, cost: Ints, queue: int, index: int, length: int,
 
 @kernel
 def move_words(memory: Shorts, cost: Ints, queue: int, length: int, first: int, last: int, distance: int) -> int:
-    """Move words along the ring by ``distance``, from position ``first`` up or down to ``last``.
+    """Move words along the ring by `distance`, from position `first` up or down to `last`.
 
     Moving down to 0 or below never ends in the reference, because positions are unsigned there; here it is a fault.
     """

@@ -48,7 +48,7 @@ _ANGLES = (*ARCTANGENT, *[RIGHT_ANGLE] * 9)
 
 @kernel
 def sine(angle: int) -> int:
-    """Return the sine of an angle."""
+    """The sine of an angle."""
     if angle == RIGHT_ANGLE:
         return 32767
     if angle == -RIGHT_ANGLE:
@@ -64,13 +64,13 @@ def sine(angle: int) -> int:
 
 @kernel
 def cosine(angle: int) -> int:
-    """Return the cosine of an angle, as sin(angle + 90°)."""
+    """The cosine of an angle, as sin(angle + 90°)."""
     return sine(wrap(angle + RIGHT_ANGLE))
 
 
 @kernel
 def arctangent(y: int, x: int) -> int:
-    """Return the angle of the direction (x, y), not yet wrapped to 16 bits."""
+    """The angle of the direction (x, y), not yet wrapped to 16 bits."""
     if y == 0:
         return 0 if x >= 0 else -32768
     result = RIGHT_ANGLE if x == 0 else steepness_angle(wrap(abs(y)), wrap(abs(x)))
@@ -81,7 +81,7 @@ def arctangent(y: int, x: int) -> int:
 
 @kernel
 def steepness_angle(height: int, width: int) -> int:
-    """Return the angle whose tangent is height / width; either may be -32768, which stands for 32768.
+    """The angle whose tangent is height / width; either may be -32768, which stands for 32768.
 
     The ratio has 16 fractional bits. Its exponent selects a group of eight table entries, its mantissa an entry and
     the fraction between it and the next. Ratios below 2^12 are interpolated linearly from 0.

@@ -3,7 +3,7 @@
 Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
 
 The loop executes what nearly every program consists of. An instruction that it cannot execute, because it fails or is
-rare, is left to :func:`aseba_vm.machine.reference.step` before it has changed anything.
+rare, is left to `aseba_vm.machine.reference.step` before it has changed anything.
 """
 
 from __future__ import annotations
@@ -26,9 +26,12 @@ from aseba_vm.machine.reference import ACTIVE, InterpretedMachine, step
 
 
 def interpret(machine: InterpretedMachine, limit: int) -> int:
-    """Execute instructions while the event is active and less than ``limit`` is spent; return the budget used.
+    """Execute instructions while the event is active and less than `limit` is spent.
 
     Each instruction costs one, natives and events also their own cost, so the last operation may exceed the limit.
+
+    Returns:
+        The budget used.
     """
     spent = 0
     while spent < limit and machine.flags & ACTIVE:
@@ -39,7 +42,7 @@ def interpret(machine: InterpretedMachine, limit: int) -> int:
 
 
 def _run_slice(machine: InterpretedMachine, limit: int) -> int:
-    """Execute up to ``limit`` instructions, or up to one that the loop does not execute; return their number."""
+    """Execute up to `limit` instructions, or up to one that the loop does not execute, and return their number."""
     code, variables, stack = machine.code, machine.variables.words, machine.stack
     operations, edges, size = code.operations, code.edges, len(code)
     pc, sp = machine.pc, machine.sp

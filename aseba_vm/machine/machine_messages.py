@@ -53,7 +53,7 @@ class VariablesRead:
 
 @dataclass(frozen=True, slots=True)
 class EventKilled:
-    """An event was abandoned at ``pc``, because of a new event or because it took too long."""
+    """An event was abandoned at `pc`, because of a new event or because it took too long."""
 
     pc: int
 
@@ -74,7 +74,7 @@ class _Fault(ABC):
         return self.message_in("en")
 
     def message_in(self, language: str) -> str:
-        """Return the fault as a sentence in a language, such as "de"; English if the language is unknown."""
+        """The fault as a sentence in a language, such as "de"; English if the language is unknown."""
         return format_message(*self.kind_and_arguments, texts("compiler", language))
 
 
@@ -108,7 +108,7 @@ class DivisionByZero(_Fault):
 
 @dataclass(frozen=True, slots=True)
 class NodeSpecific(_Fault):
-    """A native rejected its arguments; ``reason`` is the text that it gave."""
+    """A native rejected its arguments; `reason` is the text that it gave."""
 
     pc: int
     reason: str
@@ -123,7 +123,7 @@ class NodeSpecific(_Fault):
 class BadCode(_Fault):
     """Bytecode that no compiler generates, or a stack overflow; the reference aborts its process here.
 
-    ``reason`` is an identifier.
+    `reason` is an identifier.
     """
 
     pc: int

@@ -1,4 +1,7 @@
-"""What a native function is given, and how it refuses (docs/spec/aseba-bytecode-vm.md section 11)."""
+"""Calls of native functions: signature, arguments and access to the memory.
+
+Source: docs/spec/aseba-bytecode-vm.md section 11.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ class NativeMachine(Protocol):
 class Signature:
     """A native ready to be called: the number of words it pops, and the size of each parameter.
 
-    A size that is pushed by the caller is given as minus its index in the popped words. ``cost`` is the cost of a call.
+    A size that is pushed by the caller is given as minus its index in the popped words. `cost` is the cost of a call.
     """
 
     native: NativeFunction
@@ -50,27 +53,27 @@ class Signature:
         return cls(native, count + len(places), sizes, cost)
 
     def call_cost(self, popped: Sequence[int]) -> int:
-        """Return the cost of a call beyond its instruction, given the words it pops."""
+        """The cost of a call beyond its instruction, given the words it pops."""
         if not self.cost.per_word:
             return self.cost.base
         return self.cost.of(sum([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes]))
 
 
 def _size_key(native: NativeFunction, index: int) -> int:
-    """Return what parameters with the same size share: the template, or the parameter itself."""
+    """A key that parameters of the same size have in common: the template, or the index of the parameter itself."""
     return native.parameters[index].size or index + 1
 
 
 class NativeCall:
     """A call from one place of a program: address and size of each argument, and access to the words.
 
-    ``memory`` is the whole variable memory, ``popped`` the words that the call pops, unsigned.
+    `memory` is the whole variable memory, `popped` the words that the call pops, unsigned.
     """
 
     __slots__ = ("addresses", "machine", "memory", "native", "popped", "sizes")
 
     def __init__(self, machine: NativeMachine, signature: Signature, popped: Sequence[int]) -> None:
-        """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
+        """`popped` are the words of the stack from the top: addresses, then sizes in list order."""
         self.machine = machine
         self.memory = machine.variables.words
         self.native = signature.native
@@ -90,12 +93,12 @@ class NativeCall:
         return True
 
     def read(self, argument: int) -> list[int]:
-        """Return a copy of the words of an argument."""
+        """A copy of the words of an argument."""
         address = self.addresses[argument]
         return list(self.memory[address : address + self.sizes[argument]])
 
     def words(self) -> list[int]:
-        """Return a copy of the words of all arguments, one after the other."""
+        """A copy of the words of all arguments, one after the other."""
         memory, found = self.memory, []
         for address, size in zip(self.addresses, self.sizes, strict=True):
             if size == 1:
@@ -105,7 +108,7 @@ class NativeCall:
         return found
 
     def value(self, argument: int) -> int:
-        """Return the first word of an argument."""
+        """The first word of an argument."""
         return self.memory[self.addresses[argument]]
 
     def write(self, argument: int, values: Sequence[int]) -> None:
@@ -119,7 +122,7 @@ class NativeCall:
         self.machine.charge(instructions)
 
     def record(self, number: int) -> NativeCalled:
-        """Return the call as a value."""
+        """The call as a value."""
         arguments = tuple(
             (address, size, tuple(self.memory[address : address + size]))
             for address, size in zip(self.addresses, self.sizes, strict=True)

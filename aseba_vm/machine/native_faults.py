@@ -1,4 +1,4 @@
-"""What natives raise, and the numbers that standard natives return in place of it."""
+"""Exceptions of natives, and the numbers that standard natives return in place of them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class DivisionFault(NativeFault):
 
 
 class DequeFault(NativeFault):
-    """A wrong index or too many values for a deque; ``times``: how often it is reported."""
+    """A wrong index or too many values for a deque; `times`: how often it is reported."""
 
     def __init__(self, times: int = 1) -> None:
         super().__init__("deque")

@@ -47,24 +47,28 @@ class NativeTable:
         ]
 
     def __len__(self) -> int:
-        """Return the number of natives."""
+        """The number of natives."""
         return len(self._entries)
 
     def __getitem__(self, number: int) -> tuple[Native, Signature]:
-        """Return a function and its signature."""
+        """A function and its signature."""
         entry = self._entries[number]
         return entry.function, entry.signature
 
     def count_popped(self, number: int) -> int:
-        """Return how many words a native pops."""
+        """Number of words that a native pops."""
         return self._entries[number].signature.count
 
     def cost(self, number: int, popped: Sequence[int]) -> int:
-        """Return the cost of a call beyond its instruction."""
+        """The cost of a call beyond its instruction."""
         return self._entries[number].signature.call_cost(popped)
 
     def call(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native from ``pc`` with the words it pops; return False if an argument lies outside memory."""
+        """Call a native from `pc` with the words it pops.
+
+        Returns:
+            False if an argument lies outside the memory; the native was not called then.
+        """
         function, signature, calls = self._entries[number]
         # A place of a program nearly always pops the same words.
         known, call = calls.get(pc, _NO_CALL)
@@ -80,7 +84,7 @@ class NativeTable:
         return True
 
     def stop_on(self, pc: int, fault: NativeFault) -> None:
-        """Stop the event because a native called at ``pc`` raised ``fault``."""
+        """Stop the event because a native called at `pc` raised `fault`."""
         machine = self._machine
         if isinstance(fault, DivisionFault):
             machine.stop_on(DivisionByZero(pc))

@@ -259,12 +259,12 @@ class StandardNative:
             raise FAULTS[result]()
 
     def fits(self, native: NativeFunction) -> bool:
-        """Return whether a native has the parameters of this one, so that the kernel can take the words of a call."""
+        """Whether a native has the parameters of this one, so that the kernel can take the words of a call."""
         return [each.size for each in native.parameters] == [each.size for each in self._declared.parameters]
 
 
 def _standard_natives() -> dict[str, StandardNative]:
-    """Return the natives that the Thymio II declares and that have a kernel: ``math.add`` is `math_add`."""
+    """The natives that the Thymio II declares and that have a kernel: `math.add` is `math_add`."""
     kernels = {**globals(), **vars(deque)}
     return {
         native.name: StandardNative(kernels[name], native)

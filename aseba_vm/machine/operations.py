@@ -61,7 +61,7 @@ UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
 
 
 def decode(word: int, second: int) -> Decoded:
-    """Return kind and operands of the operation that starts with ``word``, given the word after it."""
+    """Kind and operands of the operation that starts with `word`, given the word after it."""
     op, operand = word >> 12, word & 0xFFF
     match op:
         case Op.PUSH:

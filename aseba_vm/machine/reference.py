@@ -1,9 +1,9 @@
-"""The machine instruction by instruction, one function per operation; what all engines are compared with.
+"""The machine instruction by instruction, one function per operation: the reference for all engines.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
 
 An operation takes the machine and its word, and returns the address of the next instruction. Steps, breakpoints and
-traces execute it, and the quick loop (:mod:`aseba_vm.machine.interpreter`) what it leaves out.
+traces execute these functions, and so do instructions that the quick loop (`aseba_vm.machine.interpreter`) leaves out.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ACTIVE = 1
 
 
 class InterpretedMachine(Protocol):
-    """What the loop needs of a machine."""
+    """The part of a machine that both interpreter loops use."""
 
     target: TargetDescription
     costs: Costs
@@ -49,7 +49,14 @@ class _BadInstructionError(Exception):
 
 
 def step(machine: InterpretedMachine) -> int:
-    """Execute one instruction; return its cost, 0 if it cannot be executed. Raises what a native raises."""
+    """Execute one instruction.
+
+    Returns:
+        Its cost; 0 if it cannot be executed.
+
+    Raises:
+        Exception: Whatever a native raises, unchanged.
+    """
     pc = machine.pc
     try:
         if not 0 <= pc < len(machine.code):
@@ -71,7 +78,7 @@ def _need(machine: InterpretedMachine, count: int) -> None:
 
 
 def _pop(machine: InterpretedMachine, count: int = 1) -> list[int]:
-    """Remove words from the stack; return them, the topmost first."""
+    """Remove words from the stack and return them, the topmost first."""
     _need(machine, count)
     words = machine.stack[machine.sp + 1 - count : machine.sp + 1][::-1]
     machine.sp -= count
@@ -149,7 +156,7 @@ def _store_indexed(machine: InterpretedMachine, word: int) -> int:
 
 
 def _index(machine: InterpretedMachine, needed: int = 1) -> int:
-    """Return the topmost word, unsigned, which stays on the stack of at least ``needed`` words."""
+    """The topmost word, unsigned, which stays on the stack of at least `needed` words."""
     _need(machine, needed)
     return machine.stack[machine.sp] & 0xFFFF
 
@@ -184,7 +191,7 @@ def _jump(machine: InterpretedMachine, word: int) -> int:
 
 
 def _branch(machine: InterpretedMachine, word: int) -> int:
-    """Continue if the condition is true, for a ``when`` only if it was not true before; otherwise jump."""
+    """Continue if the condition is true, for a `when` only if it was not true before; otherwise jump."""
     code, pc = machine.code, machine.pc
     is_true = bool(_result(machine, word & 0xFF))
     if not machine.flags & ACTIVE:

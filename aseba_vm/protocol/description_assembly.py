@@ -44,7 +44,7 @@ class DescriptionAssembly:
 
     @property
     def missing(self) -> str:
-        """What has not arrived yet, for the user; empty once the description is complete."""
+        """A text about the parts that have not arrived, for the user; empty once the description is complete."""
         kinds = (
             ("variables", self._variables, self.header.variable_count),
             ("local events", self._events, self.header.event_count),

@@ -19,14 +19,14 @@ class Field(Protocol):
     """One kind of field."""
 
     def pack(self, value: Any) -> bytes:
-        """Return the bytes of a value. Raises ProtocolError if the field cannot carry it."""
+        """The bytes of a value. Raises ProtocolError if the field cannot carry it."""
 
     def unpack(self, payload: bytes, offset: int) -> tuple[Any, int]:
-        """Return the value at ``offset`` and the offset after it. Raises ProtocolError if bytes are missing."""
+        """The value at `offset` and the offset after it. Raises ProtocolError if bytes are missing."""
 
 
 class _Integer:
-    """An integer in a format of :mod:`struct`."""
+    """An integer in a format of `struct`."""
 
     def __init__(self, code: str) -> None:
         self._struct = struct.Struct(f"<{code}")
@@ -48,7 +48,7 @@ _U8, _U16, _I16 = _Integer("B"), _Integer("H"), _Integer("h")
 
 
 class _Optional:
-    """An integer that older or defective peers leave out: ``default`` where the payload ends before it."""
+    """An integer that older or defective peers leave out: `default` where the payload ends before it."""
 
     def __init__(self, default: int, field: _Integer) -> None:
         self._default = default
@@ -64,7 +64,7 @@ class _Optional:
 
 
 class _Bytes:
-    """A count in ``counter``, then that many bytes."""
+    """A count in `counter`, then that many bytes."""
 
     def __init__(self, counter: _Integer) -> None:
         self._counter = counter
@@ -114,7 +114,7 @@ class _Words:
 
 
 class _Fixed:
-    """Exactly ``size`` bytes."""
+    """Exactly `size` bytes."""
 
     def __init__(self, size: int) -> None:
         self._size = size

@@ -18,7 +18,7 @@ class FrameReader:
     """Cuts the bytes of one stream into frames; the stream may be split at any byte."""
 
     def __init__(self, max_payload: int = LARGEST_PAYLOAD) -> None:
-        """``max_payload`` is the longest accepted payload in bytes."""
+        """`max_payload` is the longest accepted payload in bytes."""
         self._max_payload = max_payload
         self._pending = bytearray()
 
@@ -28,10 +28,10 @@ class FrameReader:
         return len(self._pending)
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Return the frames that ``data`` completes, each with its header.
+        """The frames that `data` completes, each with its header.
 
         Raises ProtocolError for a payload above the limit; the stream cannot be read further, so close it. Frames
-        before it in the same ``data`` are lost.
+        before it in the same `data` are lost.
         """
         self._pending += data
         pending = self._pending

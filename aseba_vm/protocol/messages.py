@@ -1,6 +1,6 @@
 """One frozen dataclass per message of an Aseba network, and both directions of their encoding.
 
-The fields after ``source`` are the payload in order. Source: docs/spec/aseba-protocol.md section 1.3.
+The fields after `source` are the payload in order. Source: docs/spec/aseba-protocol.md section 1.3.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _HEADER = struct.Struct("<HHH")
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A message; ``source`` is the id of the node that sent it, or the number of a client (usually 0 or 1)."""
+    """A message; `source` is the id of the node that sent it, or the number of a client (usually 0 or 1)."""
 
     source: int
 
 
 @dataclass(frozen=True, slots=True)
 class UserMessage(Message):
-    """An event of programs. ``number`` is its index in the shared list of events, 0..32767."""
+    """An event of programs. `number` is its index in the shared list of events, 0..32767."""
 
     number: int
     words: tuple[int, ...] = ()
@@ -111,7 +111,7 @@ class BootloaderPageData(Message):
 class BootloaderAck(Message):
     """End of a request.
 
-    ``error``: 0 none, 1 invalid frame size, 2 programming failed at ``address``, 3 not in programming.
+    `error`: 0 none, 1 invalid frame size, 2 programming failed at `address`, 3 not in programming.
     """
 
     TYPE: ClassVar = 0x8006
@@ -160,7 +160,7 @@ class LocalEventDescription(Message):
 
 @dataclass(frozen=True, slots=True)
 class NativeFunctionDescription(Message):
-    """The next native function of a description; sizes as in :class:`aseba_vm.target.Parameter`."""
+    """The next native function of a description; sizes as in `aseba_vm.target.Parameter`."""
 
     TYPE: ClassVar = 0x9003
     name: fields.Text
@@ -177,7 +177,7 @@ class Disconnected(Message):
 
 @dataclass(frozen=True, slots=True)
 class Variables(Message):
-    """Values of the variables from address ``start``."""
+    """Values of the variables from address `start`."""
 
     TYPE: ClassVar = 0x9005
     start: fields.U16
@@ -204,7 +204,7 @@ class DivisionByZero(Message):
 
 @dataclass(frozen=True, slots=True)
 class EventExecutionKilled(Message):
-    """A handler was abandoned at ``pc``."""
+    """A handler was abandoned at `pc`."""
 
     TYPE: ClassVar = 0x9008
     pc: fields.U16
@@ -212,7 +212,7 @@ class EventExecutionKilled(Message):
 
 @dataclass(frozen=True, slots=True)
 class NodeSpecificError(Message):
-    """A native function or the node rejected something; ``text`` is the reason."""
+    """A native function or the node rejected something; `text` is the reason."""
 
     TYPE: ClassVar = 0x9009
     pc: fields.U16
@@ -221,7 +221,7 @@ class NodeSpecificError(Message):
 
 @dataclass(frozen=True, slots=True)
 class ExecutionStateChanged(Message):
-    """State of the machine. ``flags``: 1 event active, 2 step by step, 4 event running."""
+    """State of the machine. `flags`: 1 event active, 2 step by step, 4 event running."""
 
     TYPE: ClassVar = 0x900A
     pc: fields.U16
@@ -230,7 +230,7 @@ class ExecutionStateChanged(Message):
 
 @dataclass(frozen=True, slots=True)
 class BreakpointSetResult(Message):
-    """Reply to SetBreakpoint; ``success`` is 0 or 1."""
+    """Reply to SetBreakpoint; `success` is 0 or 1."""
 
     TYPE: ClassVar = 0x900B
     pc: fields.U16
@@ -247,7 +247,7 @@ class NodePresent(Message):
 
 @dataclass(frozen=True, slots=True)
 class DeviceInfo(Message):
-    """Data of the device. ``kind``: 1 UUID (16 bytes), 2 name (up to 55 bytes), 3 radio (6 bytes)."""
+    """Data of the device. `kind`: 1 UUID (16 bytes), 2 name (up to 55 bytes), 3 radio (6 bytes)."""
 
     TYPE: ClassVar = 0x900D
     kind: fields.U8
@@ -289,7 +289,7 @@ class GetDescription(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetBytecode(Command):
-    """Store words of bytecode at address ``start``; the node resets its machine."""
+    """Store words of bytecode at address `start`; the node resets its machine."""
 
     TYPE: ClassVar = 0xA001
     start: fields.U16
@@ -340,7 +340,7 @@ class GetExecutionState(Command):
 
 @dataclass(frozen=True, slots=True)
 class SetBreakpoint(Command):
-    """Stop before the instruction at ``pc``."""
+    """Stop before the instruction at `pc`."""
 
     TYPE: ClassVar = 0xA008
     pc: fields.U16
@@ -363,7 +363,7 @@ class ClearAllBreakpoints(Command):
 
 @dataclass(frozen=True, slots=True)
 class GetVariables(Command):
-    """Ask for ``count`` words of the variables from address ``start``."""
+    """Ask for `count` words of the variables from address `start`."""
 
     TYPE: ClassVar = 0xA00B
     start: fields.U16
@@ -372,7 +372,7 @@ class GetVariables(Command):
 
 @dataclass(frozen=True, slots=True)
 class SetVariables(Command):
-    """Set the variables from address ``start``."""
+    """Set the variables from address `start`."""
 
     TYPE: ClassVar = 0xA00C
     start: fields.U16
@@ -459,14 +459,14 @@ _CLASSES: dict[int, Any] = {
 
 @cache
 def _layout(number: int) -> tuple[tuple[str, fields.Field], ...]:
-    """Return name and kind of each field of the payload of a type, in order."""
+    """Name and kind of each field of the payload of a type, in order."""
     kind = _CLASSES[number]
     hints = get_type_hints(kind, include_extras=True)
     return tuple((field.name, hints[field.name].__metadata__[0]) for field in fields_of(kind) if field.name != "source")
 
 
 def encode(message: Message) -> bytes:
-    """Return the frame of a message, with its header.
+    """The frame of a message, with its header.
 
     Raises ProtocolError if a value does not fit its field or the payload is above 65535 bytes. Peers accept 516 bytes.
     """
@@ -482,7 +482,7 @@ def encode(message: Message) -> bytes:
 
 
 def _parts(message: Message) -> tuple[int, bytes]:
-    """Return the type and the payload of a message."""
+    """The type and the payload of a message."""
     if isinstance(message, UserMessage):
         if not 0 <= message.number < FIRST_SYSTEM_TYPE:
             raise ProtocolError(f"UserMessage: number {message.number}, expected 0..{FIRST_SYSTEM_TYPE - 1}")
@@ -499,7 +499,7 @@ def _parts(message: Message) -> tuple[int, bytes]:
 
 
 def decode(frame: bytes) -> Message:
-    """Return the message of a frame with its header.
+    """The message of a frame with its header.
 
     Bytes behind the last field are ignored. Raises ProtocolError if the frame is not as long as its header states, or
     if the payload is shorter than its type requires.

@@ -1,7 +1,7 @@
 """The client's side of the nodes of one Aseba network, without input and output.
 
 A user connects a stream and then repeats, in any order: `receive` each message that arrives, `advance` the time at
-least every 0.1 s, make requests, and after each of these send what `pop_messages` returns::
+least every 0.1 s, make requests, and after each of these send the messages that `pop_messages` returns:
 
     client = NodeClient()
     client.start(now_ns)
@@ -66,7 +66,7 @@ MAX_NODES = 256
 
 @dataclass(slots=True)
 class _Presence:
-    """A node that has been heard: its announced version, and how far it is known."""
+    """A node from which messages have arrived: its announced version, and the state of its description."""
 
     version: int
     heard_ns: int
@@ -78,7 +78,7 @@ class _Presence:
 
     @property
     def missing(self) -> str:
-        """What is missing of the description, for the user."""
+        """A text about the missing parts of the description, for the user."""
         return "nothing has arrived" if self.assembly is None else self.assembly.missing
 
 
@@ -125,7 +125,7 @@ class NodeClient:
         return found
 
     def pop_messages(self) -> list[Message]:
-        """Return and clear the messages to send, in order."""
+        """The messages to send, in order. They are removed from the queue."""
         messages, self._outbox = self._outbox, []
         return messages
 
@@ -195,7 +195,7 @@ class NodeClient:
         return found
 
     def receive(self, message: Message) -> list[Report]:
-        """Process a message and return what has happened."""
+        """Process a message; the reports say what has changed by it."""
         number = message.source
         if isinstance(message, UserMessage):
             return [reports.EventReceived(number, message.number, message.words)]

@@ -25,7 +25,7 @@ class _Read:
 
 
 class RemoteNode:
-    """What has been read of a node. `NodeClient` writes it; for everyone else it is read-only."""
+    """The data that has been read from a node. Only `NodeClient` writes it; it is read-only for all other code."""
 
     def __init__(self, number: int, version: int, description: TargetDescription) -> None:
         """Create a node of which no variable has been read yet."""
@@ -77,7 +77,11 @@ class RemoteNode:
         self._reads.append(_Read(request.start, request.count, now_ns))
 
     def overdue(self, sent_before_ns: int) -> list[tuple[int, int]]:
-        """Forget the requests sent before a time; return start and number of words of each."""
+        """Forget the requests sent before a time.
+
+        Returns:
+            Start address and number of words of each.
+        """
         found = [(read.start, read.count) for read in self._reads if read.sent_ns < sent_before_ns]
         self._reads = [read for read in self._reads if read.sent_ns >= sent_before_ns]
         return found
@@ -89,7 +93,11 @@ class RemoteNode:
             read.written.update(range(start, start + len(values)))
 
     def store(self, start: int, values: Sequence[int], kept: Collection[int] = ()) -> tuple[str, ...]:
-        """Store values except at the `kept` addresses; return the names of the variables that have changed."""
+        """Store values except at the `kept` addresses.
+
+        Returns:
+            Names of the variables that have changed, in order of address.
+        """
         end = min(start + len(values), len(self._memory))
         before = self._memory[start:end]
         after = [
@@ -111,7 +119,8 @@ class RemoteNode:
     def finish_read(self, start: int, count: int) -> Collection[int]:
         """Note that values arrived: all or the first ones of the oldest request from this address on.
 
-        Return the addresses that were written since that request.
+        Returns:
+            The addresses that were written since that request.
         """
         for index, read in enumerate(self._reads):
             if read.start == start:

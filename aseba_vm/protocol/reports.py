@@ -1,4 +1,4 @@
-"""Reports of a :class:`~aseba_vm.protocol.node_client.NodeClient`: what has happened on the network."""
+"""Reports of an `aseba_vm.protocol.node_client.NodeClient`: events on the network."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class ExecutionState:
 
     @property
     def is_active(self) -> bool:
-        """Whether a handler is active; ``pc`` has a meaning only then."""
+        """Whether a handler is active; `pc` has a meaning only then."""
         return bool(self.flags & EVENT_ACTIVE)
 
     @property
@@ -45,7 +45,7 @@ class NodeConnected:
 
 @dataclass(frozen=True, slots=True)
 class NodeDisconnected:
-    """A node that was connected is gone, or starts again; ``reason`` is for the user."""
+    """A node that was connected is gone, or starts again; `reason` is for the user."""
 
     node: int
     reason: str
@@ -61,7 +61,7 @@ class NodeUnusable:
 
 @dataclass(frozen=True, slots=True)
 class VariablesRead:
-    """Values arrived. ``changed`` are the names of variables whose values differ from before, in order of address."""
+    """Values arrived. `changed` are the names of variables whose values differ from before, in order of address."""
 
     node: int
     start: int
@@ -71,7 +71,7 @@ class VariablesRead:
 
 @dataclass(frozen=True, slots=True)
 class EventReceived:
-    """A node, or another client (number ``source``), has sent an event of programs."""
+    """A node, or another client (number `source`), has sent an event of programs."""
 
     source: int
     number: int
@@ -112,7 +112,7 @@ class BreakpointReported:
 
 @dataclass(frozen=True, slots=True)
 class DeviceInfoReceived:
-    """Data of a device, by kind (:class:`~aseba_vm.protocol.messages.DeviceInfo`)."""
+    """Data of a device, by kind (`aseba_vm.protocol.messages.DeviceInfo`)."""
 
     node: int
     kind: int
@@ -121,7 +121,7 @@ class DeviceInfoReceived:
 
 @dataclass(frozen=True, slots=True)
 class RequestTimedOut:
-    """A node has not answered in time; ``request`` is the message, of a program the last part."""
+    """A node has not answered in time; `request` is the message, of a program the last part."""
 
     node: int
     request: Message

@@ -1,4 +1,4 @@
-"""Requests that need several messages, because a message carries at most :data:`MAX_WORDS` words."""
+"""Requests that need several messages, because a message carries at most `MAX_WORDS` words."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ __all__ = ["read_ranges", "set_bytecode", "set_variables"]
 
 
 def set_bytecode(node: int, words: Sequence[int], *, source: int = 0) -> list[SetBytecode]:
-    """Return the messages that load a program; an empty one is a message without words."""
+    """The messages that load a program; an empty one is a message without words."""
     starts = range(0, max(len(words), 1), MAX_WORDS)
     return [SetBytecode(source, node, start, tuple(words[start : start + MAX_WORDS])) for start in starts]
 
 
 def set_variables(node: int, start: int, values: Sequence[int], *, source: int = 0) -> list[SetVariables]:
-    """Return the messages that write values (int16) from an address on."""
+    """The messages that write values (int16) from an address on."""
     return [
         SetVariables(source, node, start + begin, tuple(values[begin : begin + MAX_WORDS]))
         for begin in range(0, len(values), MAX_WORDS)
@@ -24,7 +24,7 @@ def set_variables(node: int, start: int, values: Sequence[int], *, source: int =
 
 
 def read_ranges(node: int, places: Iterable[tuple[int, int]], *, source: int = 0) -> list[GetVariables]:
-    """Return the fewest messages that read all places, which are pairs of address and size in words.
+    """The fewest messages that read all places, which are pairs of address and size in words.
 
     Adjacent places share a message. A place is cut only if it is longer than a message can carry, so that the values of
     one variable are of the same moment.

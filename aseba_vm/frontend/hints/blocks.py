@@ -1,4 +1,4 @@
-"""Blocks: missing and extra ``end``, ``then`` and ``do``, braces, ``else if``, the form of loops."""
+"""Blocks: missing and extra `end`, `then` and `do`, braces, `else if`, the form of loops."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _BLOCKS = frozenset(("if", "when", "while", "for"))
 
 @dataclass(slots=True)
 class Block:
-    """An open block: index of its keyword, and of its last ``else``."""
+    """An open block: index of its keyword, and of its last `else`."""
 
     opener: int
     other: int | None = None
 
 
 def find_blocks(words: Sequence[Word]) -> tuple[list[Block], list[tuple[Block, int]]]:
-    """Return the blocks that are open after the tokens, and the closed ones, each with the index of its end."""
+    """The blocks that are open after the tokens, and the closed ones, each with the index of its end."""
     stack: list[Block] = []
     closed: list[tuple[Block, int]] = []
     for index, word in enumerate(words):
@@ -37,7 +37,7 @@ def find_blocks(words: Sequence[Word]) -> tuple[list[Block], list[tuple[Block, i
 
 
 def brace(context: ErrorContext) -> Hint | None:
-    """Recognize ``{`` and ``}``; the edit writes ``then``, ``do`` or ``end`` where it is clear which of them."""
+    """Recognize `{` and `}`; the edit writes `then`, `do` or `end` where it is clear which of them."""
     source, at = context.source, context.offset
     if source[at] not in "{}":
         return None
@@ -56,7 +56,7 @@ def brace(context: ErrorContext) -> Hint | None:
 
 
 def else_if(context: ErrorContext) -> Hint | None:
-    """Recognize ``else if`` without its own ``end``."""
+    """Recognize `else if` without its own `end`."""
     if not context.is_statement_expected or context.kind() not in HANDLER_ENDS:
         return None
     words = context.words
@@ -78,8 +78,8 @@ def else_if(context: ErrorContext) -> Hint | None:
 def missing_end(context: ErrorContext) -> Hint | None:
     """Recognize a block that is still open at a handler, a subroutine or the end of the text.
 
-    It is the last one opened, unless the ``end`` of a block inside it is indented like an outer block: then that block
-    has taken the ``end`` of the outer one.
+    It is the last one opened, unless the `end` of a block inside it is indented like an outer block: then that block
+    has taken the `end` of the outer one.
     """
     found = context.kind()
     words = context.words[: context.at]
@@ -103,7 +103,7 @@ def missing_end(context: ErrorContext) -> Hint | None:
 
 
 def extra_end(context: ErrorContext) -> Hint | None:
-    """Recognize an ``end`` where no block is open, often meant for an ``onevent``."""
+    """Recognize an `end` where no block is open, often meant for an `onevent`."""
     if context.kind() != "end" or not context.is_statement_expected or find_blocks(context.words[: context.at])[0]:
         return None
     word, source = context.word(), context.source
@@ -115,7 +115,7 @@ def extra_end(context: ErrorContext) -> Hint | None:
 
 
 def block_word(context: ErrorContext) -> Hint | None:
-    """Recognize ``then`` or ``do`` that is missing, written as ``:``, or confused with the other."""
+    """Recognize `then` or `do` that is missing, written as `:`, or confused with the other."""
     wanted, found = context.error.arguments[0], context.kind()
     if not isinstance(wanted, str) or wanted not in ("then", "do"):
         return None
@@ -131,7 +131,7 @@ def block_word(context: ErrorContext) -> Hint | None:
 
 
 def loop_form(context: ErrorContext) -> Hint | None:
-    """Recognize ``for i = 0 to 9`` and ``for (i = 0; …)``."""
+    """Recognize `for i = 0 to 9` and `for (i = 0; …)`."""
     is_head = context.kind(-1) == "for" or context.kind(-2) == "for"
     return Hint("hint-for", ()) if is_head and context.kind() in ("=", "(", "identifier", "integer") else None
 
@@ -146,7 +146,7 @@ def _is_loop_head(words: Sequence[Word]) -> bool:
 
 
 def _new_end(context: ErrorContext, indent: str, before: int) -> Edit:
-    """Return the edit that inserts ``end`` between two tokens, on its own line if they are on different lines."""
+    """The edit that inserts `end` between two tokens, on its own line if they are on different lines."""
     last = context.words[before - 1]
     if context.words[before].row == last.row:
         return Edit(last.end, last.end, " end")
@@ -162,6 +162,6 @@ def _line_indent(source: str, word: Word) -> str:
 
 
 def _indent(source: str, word: Word) -> str | None:
-    """Return the white space before the first token of a line; None for other tokens."""
+    """The white space before the first token of a line; None for other tokens."""
     line = source[source.rfind("\n", 0, word.start) + 1 : word.start]
     return line if line.strip(" \t") == "" else None

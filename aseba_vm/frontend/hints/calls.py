@@ -1,4 +1,4 @@
-"""Calls of native functions and subroutines: ``call`` and ``callsub`` left out or confused, results, parentheses."""
+"""Calls of native functions and subroutines: `call` and `callsub` left out or confused, results, parentheses."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from aseba_vm.frontend.hints.context import BEFORE_VALUE, CONNECTORS, HANDLER_EN
 
 
 def native_as_statement(context: ErrorContext) -> Hint | None:
-    """Recognize ``sound.freq(440, 1)`` without ``call``."""
+    """Recognize `sound.freq(440, 1)` without `call`."""
     at = _called_name(context)
     if context.kind(at) != "identifier" or context.kind(at + 1) != "(" or not context.is_statement(at):
         return None
@@ -20,12 +20,12 @@ def native_as_statement(context: ErrorContext) -> Hint | None:
 
 
 def native_with_variable(context: ErrorContext) -> Hint | None:
-    """Recognize a function without ``call`` where a variable has the same name, such as ``leds.top``."""
+    """Recognize a function without `call` where a variable has the same name, such as `leds.top`."""
     return native_as_statement(context) if context.kind() == "(" else None
 
 
 def native_in_expression(context: ErrorContext) -> Hint | None:
-    """Recognize ``x = math.sqrt(y)``."""
+    """Recognize `x = math.sqrt(y)`."""
     name = context.word()
     if name.text not in context.natives or context.kind(1) != "(" or context.kind(-1) not in BEFORE_VALUE:
         return None
@@ -45,7 +45,7 @@ def native_in_expression(context: ErrorContext) -> Hint | None:
 
 
 def call_without_parentheses(context: ErrorContext) -> Hint | None:
-    """Recognize ``call sound.freq 440, 1``."""
+    """Recognize `call sound.freq 440, 1`."""
     if context.kind(-1) != "identifier" or context.kind(-2) != "call":
         return None
     name = context.word(-1)
@@ -56,14 +56,14 @@ def call_without_parentheses(context: ErrorContext) -> Hint | None:
 
 
 def callsub_of_native(context: ErrorContext) -> Hint | None:
-    """Recognize ``callsub leds.top``."""
+    """Recognize `callsub leds.top`."""
     if context.kind() != "callsub" or context.kind(1) != "identifier" or context.word(1).text not in context.natives:
         return None
     return Hint("hint-call", (context.word(1).text,))
 
 
 def subroutine_as_statement(context: ErrorContext) -> Hint | None:
-    """Recognize ``turn`` or ``turn()`` without ``callsub``."""
+    """Recognize `turn` or `turn()` without `callsub`."""
     at = _called_name(context)
     if context.kind(at) != "identifier" or context.word(at).text not in context.subs or not context.is_statement(at):
         return None
@@ -77,7 +77,7 @@ def subroutine_as_statement(context: ErrorContext) -> Hint | None:
 
 
 def call_of_subroutine(context: ErrorContext) -> Hint | None:
-    """Recognize ``call turn`` or ``call turn()``."""
+    """Recognize `call turn` or `call turn()`."""
     if context.kind() != "call" or context.kind(1) != "identifier" or context.word(1).text not in context.subs:
         return None
     name = context.word(1).text
@@ -89,7 +89,7 @@ def call_of_subroutine(context: ErrorContext) -> Hint | None:
 
 
 def callsub_with_parentheses(context: ErrorContext) -> Hint | None:
-    """Recognize ``callsub turn()`` and ``callsub sound.freq(440, 1)``."""
+    """Recognize `callsub turn()` and `callsub sound.freq(440, 1)`."""
     if context.kind() != "(" or context.kind(-1) != "identifier" or context.kind(-2) != "callsub":
         return None
     name = context.word(-1).text
@@ -103,5 +103,5 @@ def callsub_with_parentheses(context: ErrorContext) -> Hint | None:
 
 
 def _called_name(context: ErrorContext) -> int:
-    """Return the distance of the rejected name, or of the name before the rejected parenthesis."""
+    """The distance of the rejected name, or of the name before the rejected parenthesis."""
     return -1 if context.kind() == "(" else 0

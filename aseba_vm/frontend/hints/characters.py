@@ -1,4 +1,4 @@
-"""Characters that start no token of Aseba: ``;``, quotation marks, decimal points, look-alikes."""
+"""Characters that start no token of Aseba: `;`, quotation marks, decimal points, look-alikes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DECIMAL = re.compile(r"[0-9]+\.[0-9]+(?![\w.])")
 
 
 def semicolon(context: ErrorContext) -> Hint | None:
-    """Recognize ``;``; the edit removes all of them."""
+    """Recognize `;`; the edit removes all of them."""
     source = context.source
     if source[context.offset] != ";" or sum((word.kind == "[") - (word.kind == "]") for word in context.words) > 0:
         return None
@@ -50,6 +50,6 @@ def look_alike(context: ErrorContext) -> Hint | None:
 
 
 def decimals(context: ErrorContext) -> Hint | None:
-    """Recognize ``1.5``."""
+    """Recognize `1.5`."""
     number = _DECIMAL.match(context.source, context.offset)
     return Hint("hint-decimals", (number[0],)) if number is not None else None

@@ -1,4 +1,4 @@
-"""Comments as other languages write them: ``//`` and ``/* */``."""
+"""Comments as other languages write them: `//` and `/* */`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from aseba_vm.frontend.hints.context import ErrorContext
 
 
 def foreign_comment(context: ErrorContext) -> Hint | None:
-    """Recognize ``//`` before the error in the same line, or ``/*`` around it."""
+    """Recognize `//` before the error in the same line, or `/*` around it."""
     for first, second in reversed(list(pairwise(context.words))):
         if first.kind != "/" or first.end != second.start or second.kind not in ("/", "*", "*="):
             continue
@@ -23,7 +23,7 @@ def foreign_comment(context: ErrorContext) -> Hint | None:
 
 
 def comment_as_statement(context: ErrorContext) -> Hint | None:
-    """Recognize ``// comment``: the first half is rejected where a statement may start, the second in an expression."""
+    """Recognize `// comment`: the first half is rejected where a statement may start, the second in an expression."""
     at = 0 if context.kind() == "/" and context.is_adjacent(0) else -1
     if context.kind(at) != "/" or not context.is_adjacent(at) or context.kind(at + 1) not in ("/", "*", "*="):
         return None
@@ -31,7 +31,7 @@ def comment_as_statement(context: ErrorContext) -> Hint | None:
 
 
 def _rewritten(source: str, start: int) -> Hint | None:
-    """Return the hint that writes ``//`` or ``/* */`` as an Aseba comment."""
+    """The hint that writes `//` or `/* */` as an Aseba comment."""
     if source.startswith("//", start):
         return Hint("hint-comment", ("//", "#"), Edit(start, start + 2, "#"))
     end = source.find("*/", start + 2)

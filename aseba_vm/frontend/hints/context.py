@@ -1,4 +1,4 @@
-"""The context of an error: the tokens around it, and what recognizers ask about them."""
+"""The context of an error: the tokens around it, and the queries of recognizers about them."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ class ErrorContext:
 
     Attributes:
         source: the rejected text.
-        words: its tokens; only those before the error if the lexer rejected it. The last one is ``end-of-input``.
-        at: index of the rejected token in ``words``.
-        offset: index of its first character in ``source``.
+        words: its tokens; only those before the error if the lexer rejected it. The last one is `end-of-input`.
+        at: index of the rejected token in `words`.
+        offset: index of its first character in `source`.
         error: the error.
         symbols: the names of the target, and those of the program before the error.
         natives: native functions of the target by name.
@@ -79,43 +79,43 @@ class ErrorContext:
     natives: Mapping[str, NativeFunction]
 
     def kind(self, distance: int = 0) -> str:
-        """Return the kind of a token near the error; empty before the first and after the last."""
+        """The kind of a token near the error; empty before the first and after the last."""
         index = self.at + distance
         return self.words[index].kind if 0 <= index < len(self.words) else ""
 
     def word(self, distance: int = 0) -> Word:
-        """Return a token near the error. Raises IndexError after the last one."""
+        """A token near the error. Raises IndexError after the last one."""
         return self.words[self.at + distance]
 
     def is_adjacent(self, distance: int) -> bool:
-        """Return whether a token near the error touches the next one."""
+        """Whether a token near the error touches the next one."""
         first = self.at + distance
         return 0 <= first < len(self.words) - 1 and self.words[first].end == self.words[first + 1].start
 
     def replaced(self, kind: str, first: int, last: int, text: str, *arguments: str | int) -> Hint:
-        """Return a hint with an edit that replaces the tokens from one distance to another."""
+        """A hint with an edit that replaces the tokens from one distance to another."""
         return Hint(kind, arguments, Edit(self.word(first).start, self.word(last).end, text))
 
     @property
     def subs(self) -> set[str]:
-        """Return the names of the subroutines of the program."""
+        """The names of the subroutines of the program."""
         return {name.text for keyword, name in pairwise(self.words) if keyword.kind == "sub"}
 
     @property
     def declared(self) -> set[str]:
-        """Return the names of all variables of the program, also of those below the error."""
+        """The names of all variables of the program, also of those below the error."""
         return {name.text for keyword, name in pairwise(self.words) if keyword.kind == "var"}
 
     @property
     def is_statement_expected(self) -> bool:
-        """Return whether the error is an unexpected token where a statement may start."""
+        """Whether the error is an unexpected token where a statement may start."""
         keywords = ("call", "callsub", "onevent", "sub", "emit", "_emit", "for", "in", ":", "step")
         return self.error.arguments[:1] == ("identifier",) and self.kind(-1) not in keywords
 
     def condition(self, *, with_assignment: bool = False) -> str:
-        """Return the keyword of the condition that contains the error, empty if there is none.
+        """The keyword of the condition that contains the error, empty if there is none.
 
-        ``with_assignment``: an ``=`` does not end the condition.
+        `with_assignment`: an `=` does not end the condition.
         """
         ends = {"then", "do", "else", "end", "onevent", "sub", "call", "callsub", "emit", "return", "var", "const"}
         for word in reversed(self.words[: self.at]):
@@ -126,18 +126,18 @@ class ErrorContext:
         return ""
 
     def is_statement(self, distance: int = 0) -> bool:
-        """Return whether a token near the error is the first of a statement."""
+        """Whether a token near the error is the first of a statement."""
         before = self.kind(distance - 1)
         if before == "identifier":
             return self.kind(distance - 2) not in ("emit", "_emit", "call", "for")
         return before == "" or before in _AFTER_STATEMENT
 
     def closing(self, distance: int) -> int | None:
-        """Return the distance of the parenthesis that closes the one at a distance, None if there is none."""
+        """The distance of the parenthesis that closes the one at a distance, None if there is none."""
         return self._closing(distance, {"(": 1, ")": -1})
 
     def bracket(self, distance: int) -> int | None:
-        """Return the distance of the bracket that closes the one at a distance, None if there is none."""
+        """The distance of the bracket that closes the one at a distance, None if there is none."""
         return self._closing(distance, {"[": 1, "]": -1})
 
     def _closing(self, distance: int, steps: Mapping[str, int]) -> int | None:
@@ -150,7 +150,7 @@ class ErrorContext:
 
 
 def locate_error(source: str, attempt: Attempt) -> ErrorContext | None:
-    """Return the context of the error of an attempt, None if the position of the error is not that of a token.
+    """The context of the error of an attempt, None if the position of the error is not that of a token.
 
     Raises no error: a text whose beginning cannot be tokenized has no context.
     """
@@ -180,7 +180,7 @@ def _word(source: str, token: Token) -> Word:
 
 
 def spaced(source: str, start: int, end: int, word: str) -> str:
-    """Return a word in place of symbols, with spaces where it would touch its neighbors."""
+    """A word in place of symbols, with spaces where it would touch its neighbors."""
     if not word:
         return ""
     before = " " if start > 0 and not source[start - 1].isspace() and source[start - 1] != "(" else ""

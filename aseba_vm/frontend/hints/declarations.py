@@ -10,7 +10,7 @@ from aseba_vm.frontend.hints.context import ErrorContext
 
 
 def late_declaration(context: ErrorContext) -> Hint | None:
-    """Recognize ``var`` after the first statement; the edit declares it above and leaves the assignment in place."""
+    """Recognize `var` after the first statement; the edit declares it above and leaves the assignment in place."""
     keyword = context.kind()
     is_refused = context.error.kind == "misplaced-var" or context.is_statement_expected
     if keyword not in ("var", "const") or not is_refused:
@@ -42,7 +42,7 @@ def late_declaration(context: ErrorContext) -> Hint | None:
 
 
 def _end_of_declarations(context: ErrorContext) -> int:
-    """Return the end of the last line of the declarations at the beginning; 0 if there are none."""
+    """The end of the last line of the declarations at the beginning; 0 if there are none."""
     top = depth = 0
     row = -1
     is_declared = False

@@ -1,4 +1,4 @@
-"""Hints for errors whose message does not help a beginner: what was probably meant, and an edit that corrects it.
+"""Hints for errors whose message does not help a beginner: the probable intention, and an edit that corrects the error.
 
 Each recognizer of this package checks the tokens around the position of an error and returns a hint or None. Kind and
 position of the error do not change. A wrong hint is worse than none, so an edit is offered only if it lets the compiler
@@ -102,7 +102,7 @@ _STAND_ALONE = frozenset(
 
 
 def find_hint(source: str, attempt: Attempt, compile_again: Callable[[str], Attempt | None]) -> Hint | None:
-    """Return the hint for a rejected text, None if there is none.
+    """The hint for a rejected text, None if there is none.
 
     Args:
         source: text of the program.
@@ -126,7 +126,7 @@ def find_hint(source: str, attempt: Attempt, compile_again: Callable[[str], Atte
 
 
 def _is_better(before: Attempt, after: Attempt | None, edit: Edit) -> bool:
-    """Return whether the edited text compiles, or is rejected by a later pass, or after edit and old position."""
+    """Whether the edited text compiles, or is rejected by a later pass, or after edit and old position."""
     if after is None or after.stage != before.stage:
         return after is None or after.stage > before.stage
     is_behind = edit.start <= before.offset

@@ -21,7 +21,7 @@ _LETTERS_PER_MISTAKE = 3
 
 
 def misspelled_keyword(context: ErrorContext) -> Hint | None:
-    """Recognize ``whlie`` and ``onevnt`` at the beginning of a statement, and ``nto`` before a value."""
+    """Recognize `whlie` and `onevnt` at the beginning of a statement, and `nto` before a value."""
     if context.kind() != "identifier":
         return None
     is_statement = context.is_statement()
@@ -31,7 +31,7 @@ def misspelled_keyword(context: ErrorContext) -> Hint | None:
 
 
 def misspelled_connector(context: ErrorContext) -> Hint | None:
-    """Recognize ``thne``, ``adn`` or ``stpe`` where the grammar expects such a word."""
+    """Recognize `thne`, `adn` or `stpe` where the grammar expects such a word."""
     if context.kind() != "identifier":
         return None
     wanted = (word for word in context.error.arguments[:1] if isinstance(word, str) and word in KEYWORDS)
@@ -53,7 +53,7 @@ def spelling(context: ErrorContext) -> Hint | None:
 
 
 def part_of_name(context: ErrorContext) -> Hint | None:
-    """Recognize a name that lacks parts of a longer one, such as ``leds.bottom`` and ``motor.target``."""
+    """Recognize a name that lacks parts of a longer one, such as `leds.bottom` and `motor.target`."""
     at = _unknown_name(context)
     if at is None:
         return None
@@ -67,13 +67,13 @@ def part_of_name(context: ErrorContext) -> Hint | None:
 
 
 def _unknown_name(context: ErrorContext) -> int | None:
-    """Return the distance of the unknown name: the error is at the name or at the keyword before it."""
+    """The distance of the unknown name: the error is at the name or at the keyword before it."""
     name = context.error.arguments[0]
     return next((at for at in (0, 1) if context.kind(at) == "identifier" and context.word(at).text == name), None)
 
 
 def _known_names(context: ErrorContext, at: int) -> Iterable[str]:
-    """Return the names that could be meant at the place of an unknown one."""
+    """The names that could be meant at the place of an unknown one."""
     symbols = context.symbols
     match context.error.kind.removesuffix("-hint"):
         case "unknown-function":
@@ -92,7 +92,7 @@ def _known_names(context: ErrorContext, at: int) -> Iterable[str]:
 
 
 def _is_part(name: str, other: str) -> bool:
-    """Return whether a name begins as another one and its further parts, or their beginnings, follow there in order."""
+    """Whether a name begins as another one and its further parts, or their beginnings, follow there in order."""
     first, *parts = name.split(".")
     begin, *remaining = other.split(".")
     wholes = iter(remaining)
@@ -103,7 +103,7 @@ def _is_part(name: str, other: str) -> bool:
 
 
 def _as_keyword(context: ErrorContext, keywords: Iterable[str]) -> Hint | None:
-    """Return the hint that names the most similar of some words of the language."""
+    """The hint that names the most similar of some words of the language."""
     name = context.word().text
     known = tuple(keywords)
     swapped = (word for word in sorted(known) if _is_swapped(name, word))
@@ -114,13 +114,13 @@ def _as_keyword(context: ErrorContext, keywords: Iterable[str]) -> Hint | None:
 
 
 def _is_close(name: str, other: str) -> bool:
-    """Return whether two words differ by a swap of two letters, or by few letters for their length."""
+    """Whether two words differ by a swap of two letters, or by few letters for their length."""
     most = max(len(name), len(other)) // _LETTERS_PER_MISTAKE
     return _is_swapped(name, other) or suggestion(name, (other,), most) is not None
 
 
 def _is_swapped(name: str, other: str) -> bool:
-    """Return whether two neighboring letters are swapped."""
+    """Whether two neighboring letters are swapped."""
     wrong = [index for index, letters in enumerate(zip(name, other, strict=False)) if letters[0] != letters[1]]
     if len(name) != len(other) or not wrong:
         return False

@@ -14,7 +14,7 @@ _OPERAND = re.compile(r"![ \t]*([^\W\d][\w.]*(?:\[[0-9]+\])?)(?=[ \t]*(?:\)|then
 
 
 def equals_in_condition(context: ErrorContext) -> Hint | None:
-    """Recognize ``if a = 1`` and ``if a => 1``."""
+    """Recognize `if a = 1` and `if a => 1`."""
     if context.kind() != "=" or not context.condition():
         return None
     if context.is_adjacent(0) and context.kind(1) in _SWAPPED:
@@ -24,7 +24,7 @@ def equals_in_condition(context: ErrorContext) -> Hint | None:
 
 
 def doubled_operator(context: ErrorContext) -> Hint | None:
-    """Recognize ``&&``, ``||``, ``<>``, ``===`` and ``!==``, whose second half was rejected."""
+    """Recognize `&&`, `||`, `<>`, `===` and `!==`, whose second half was rejected."""
     if not context.is_adjacent(-1):
         return None
     pair = (context.kind(-1), context.kind())
@@ -39,7 +39,7 @@ def doubled_operator(context: ErrorContext) -> Hint | None:
 
 
 def comparison_as_statement(context: ErrorContext) -> Hint | None:
-    """Recognize ``a == 1`` or ``a := 1`` in place of an assignment."""
+    """Recognize `a == 1` or `a := 1` in place of an assignment."""
     if context.kind() == "==":
         return context.replaced("hint-assignment", 0, 0, "=")
     if context.kind() == ":" and context.kind(1) == "=" and context.is_adjacent(0):
@@ -48,12 +48,12 @@ def comparison_as_statement(context: ErrorContext) -> Hint | None:
 
 
 def comparison_in_declaration(context: ErrorContext) -> Hint | None:
-    """Recognize ``var a == 1`` and ``const A := 1``."""
+    """Recognize `var a == 1` and `const A := 1`."""
     return comparison_as_statement(context) if context.kind(-1) in ("identifier", "]") else None
 
 
 def step_in_front(context: ErrorContext) -> Hint | None:
-    """Recognize ``++i``."""
+    """Recognize `++i`."""
     if context.kind() not in ("++", "--") or context.kind(1) != "identifier" or not context.is_statement_expected:
         return None
     name, mark = context.word(1), context.word()
@@ -61,7 +61,7 @@ def step_in_front(context: ErrorContext) -> Hint | None:
 
 
 def negation(context: ErrorContext) -> Hint | None:
-    """Recognize ``!`` in a condition, or ``! =``."""
+    """Recognize `!` in a condition, or `! =`."""
     source, at = context.source, context.offset
     spaced = re.match(r"![ \t]+=(?!=)", source[at:])
     if spaced is not None:
@@ -75,7 +75,7 @@ def negation(context: ErrorContext) -> Hint | None:
 
 
 def number_as_condition(context: ErrorContext) -> Hint | None:
-    """Recognize ``if a then`` where ``a`` is a number."""
+    """Recognize `if a then` where `a` is a number."""
     if context.kind() not in CONDITIONS or context.error.arguments != ("boolean", "integer"):
         return None
     size = 1

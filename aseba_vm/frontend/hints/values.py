@@ -7,16 +7,16 @@ from aseba_vm.frontend.hints.context import CONNECTORS, STATEMENTS, ErrorContext
 
 _EXPRESSION_ENDS = STATEMENTS | frozenset(("then", "do", "else", "elseif", "end", "onevent", "sub", "var", "const"))
 _EXAMPLE_INDEX = 2
-"""The element that a hint gives as example: the front sensor of ``prox.horizontal``."""
+"""The element that a hint gives as example: the front sensor of `prox.horizontal`."""
 
 
 def variable_as_bound(context: ErrorContext) -> Hint | None:
-    """Recognize ``for i in 0:n do`` with a variable ``n``."""
+    """Recognize `for i in 0:n do` with a variable `n`."""
     return _needs_constant(context, "bound", 0, 1)
 
 
 def variable_as_size(context: ErrorContext) -> Hint | None:
-    """Recognize ``var a[n]`` and ``const A = n`` with a variable ``n``."""
+    """Recognize `var a[n]` and `const A = n` with a variable `n`."""
     if context.kind() == "[":
         return _needs_constant(context, "size", 1, context.bracket(0))
     return _needs_constant(context, "value", 2, _expression_end(context, 2))
@@ -37,7 +37,7 @@ def later_variable_as_size(context: ErrorContext) -> Hint | None:
 
 
 def variable_in_slice(context: ErrorContext) -> Hint | None:
-    """Recognize ``a[0:n]`` and ``a[n:3]``."""
+    """Recognize `a[0:n]` and `a[n:3]`."""
     if context.kind() != ":" or context.error.arguments not in ((), ("]", ":")):
         return None
     if context.error.arguments:
@@ -49,7 +49,7 @@ def variable_in_slice(context: ErrorContext) -> Hint | None:
 
 
 def calculated_bound(context: ErrorContext) -> Hint | None:
-    """Recognize ``for i in 0:N-1 do`` and ``for i in 0:-n do``."""
+    """Recognize `for i in 0:N-1 do` and `for i in 0:-n do`."""
     first = 0
     while context.kind(first - 1) not in (*_EXPRESSION_ENDS, "in", ""):
         first -= 1
@@ -61,7 +61,7 @@ def calculated_bound(context: ErrorContext) -> Hint | None:
 
 
 def whole_array(context: ErrorContext) -> Hint | None:
-    """Recognize ``if prox.horizontal > 2000 then`` and other places where an array has to be one value."""
+    """Recognize `if prox.horizontal > 2000 then` and other places where an array has to be one value."""
     first, end = 1, _expression_end(context, 1)
     size = 0
     match context.error.kind, context.error.arguments:
@@ -84,7 +84,7 @@ def whole_array(context: ErrorContext) -> Hint | None:
 
 
 def _needs_constant(context: ErrorContext, place: str, first: int, end: int | None) -> Hint | None:
-    """Return the hint about the first variable between two distances."""
+    """The hint about the first variable between two distances."""
     for distance in range(first, len(context.words) - context.at if end is None else end):
         name = context.word(distance).text
         if context.kind(distance) != "identifier" or name in context.symbols.constants:
@@ -96,7 +96,7 @@ def _needs_constant(context: ErrorContext, place: str, first: int, end: int | No
 
 
 def _expression_end(context: ErrorContext, first: int) -> int:
-    """Return the distance after an expression: that of the next keyword, comma or second value."""
+    """The distance after an expression: that of the next keyword, comma or second value."""
     depth, distance = 0, first
     while context.kind(distance) not in (*_EXPRESSION_ENDS, "end-of-input", ""):
         kind = context.kind(distance)
@@ -114,7 +114,7 @@ def _expression_end(context: ErrorContext, first: int) -> int:
 
 
 def _is_declaration(context: ErrorContext) -> bool:
-    """Return whether the error is at the ``=`` of the declaration of an array."""
+    """Whether the error is at the `=` of the declaration of an array."""
     distance = -1
     if context.kind(-1) == "]":
         while context.kind(distance) not in ("[", ""):
@@ -124,7 +124,7 @@ def _is_declaration(context: ErrorContext) -> bool:
 
 
 def _whole_names(context: ErrorContext, first: int, end: int) -> list[tuple[str, int, str]]:
-    """Return text, size and an element of each array and slice between two distances, outside indexes and lists."""
+    """Text, size and an element of each array and slice between two distances, outside indexes and lists."""
     found = []
     distance = first
     while distance < end:

@@ -1,4 +1,4 @@
-"""Words that Aseba spells differently or does not have: ``elif``, ``If``, ``true``."""
+"""Words that Aseba spells differently or does not have: `elif`, `If`, `true`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _TRUTH = {"true": "1", "false": "0"}
 
 
 def keyword_spelling(context: ErrorContext) -> Hint | None:
-    """Recognize ``elif`` and ``If``."""
+    """Recognize `elif` and `If`."""
     name = context.word().text
     if name in _ELSEIF:
         return context.replaced("hint-elseif", 0, 0, "elseif", name)
@@ -22,7 +22,7 @@ def keyword_spelling(context: ErrorContext) -> Hint | None:
 
 
 def truth_value(context: ErrorContext) -> Hint | None:
-    """Recognize ``true`` and ``false``; the edit writes 1 or 0 unless the word is a condition by itself."""
+    """Recognize `true` and `false`; the edit writes 1 or 0 unless the word is a condition by itself."""
     value = _TRUTH.get(context.word().text.lower())
     if value is None or context.kind(-1) not in BEFORE_VALUE:
         return None
