@@ -66,13 +66,29 @@ def test_the_citation_is_that_of_this_version() -> None:
     project = _pyproject()["project"]
     assert fields["version"] == thymio_sim_ros.__version__
     assert fields["license"] == project["license"]["text"]
-    assert [fields["url"], fields["repository-code"]] == [project["urls"]["Homepage"], project["urls"]["Source"]]
     assert [line.removeprefix("  - ") for line in lines[lines.index("keywords:") + 1 :]] == project["keywords"]
 
 
+def test_the_addresses_are_the_same_everywhere() -> None:
+    urls = _pyproject()["project"].get("urls", {})
+    listed = [urls.get("Homepage"), urls.get("Source"), urls.get("Issues")]
+    in_manifest = {url.get("type"): url.text for url in _manifest().findall("url")}
+    assert [in_manifest.get(kind) for kind in ("website", "repository", "bugtracker")] == listed
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    cited = [re.search(rf"^{key}: (.+)$", citation, re.MULTILINE) for key in ("url", "repository-code")]
+    assert [match and match[1] for match in cited] == listed[:2]
+
+
+@pytest.mark.parametrize(
+    "name", ["pyproject.toml", "CITATION.cff", "CHANGELOG.md", "README.md", ".github/ISSUE_TEMPLATE/config.yml"]
+)
+def test_no_address_is_a_placeholder(name: str) -> None:
+    assert re.findall(r"[\w.@:/-]+\.example\b", (ROOT / name).read_text(encoding="utf-8")) == []
+
+
 def test_the_maintainers_are_the_same_everywhere() -> None:
-    (maintainer,) = _manifest().findall("maintainer")
-    assert _pyproject()["project"]["maintainers"] == [{"name": maintainer.text, "email": maintainer.get("email")}]
+    names = [maintainer.text for maintainer in _manifest().findall("maintainer")]
+    assert [maintainer["name"] for maintainer in _pyproject()["project"]["maintainers"]] == names
 
 
 def test_description_and_licence_agree() -> None:
