@@ -20,8 +20,8 @@ from benchmarks.lib import rounds
 from benchmarks.lib.report import ROOT, Cell, Goal, Report, Table
 from benchmarks.lib.scenes import dense_scene
 from benchmarks.lib.soak_samples import change, sample
-from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground, read_program
 
 QUICK = {"hours": 0.01, "parts": 4}
 BEHAVIORS = ROOT / "thymio_sim_ros" / "device" / "firmware" / "behaviors"
@@ -41,13 +41,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def runner_of(scene: str, seconds: float) -> Callable[[], tuple[float, float, int]]:
     """Return what runs a scene for so long and measures speed, memory in MB, and objects (for a worker)."""
     if scene == EXPLORERS:
-        runner = Runner(dense_scene(4), read_program(str(BEHAVIORS / "explorer.aesl")))
+        engine = Engine(dense_scene(4), read_program(str(BEHAVIORS / "explorer.aesl")))
     else:
-        runner = Runner(load_playground(str(LINE))[1], read_program(str(BEHAVIORS / "line_follower.aesl")))
+        engine = Engine(load_playground(str(LINE))[1], read_program(str(BEHAVIORS / "line_follower.aesl")))
 
     def run() -> tuple[float, float, int]:
         begun = time.process_time()
-        runner.run(seconds)
+        engine.run(seconds)
         speed = seconds / (time.process_time() - begun)
         gc.collect()
         return speed, sample(os.getpid(), 0.0).pss_mb, len(gc.get_objects())

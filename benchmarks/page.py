@@ -23,7 +23,7 @@ from benchmarks.lib.page_editors import EDITORS, ROWS, Opening, dragging, open_e
 from benchmarks.lib.processes import suite
 from benchmarks.lib.report import Goal, Report, Table
 from benchmarks.lib.scenes import grid
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 
 QUICK = {"rounds": 1, "seconds": 0.5, "settle": 0.1, "robots": 2, "fineness": ["simple"], "editors": ["VPL"]}
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

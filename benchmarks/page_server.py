@@ -27,7 +27,7 @@ import rclpy  # noqa: F401  # the server needs it
 from benchmarks.lib.command import MissingError
 from benchmarks.lib.report import Report, Table
 from tests.processes import free_port
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 
 QUICK = {"browsers": [3], "held": 0.2}
 ATTACKER, VISITOR = "127.0.0.2", "127.0.0.1"

@@ -31,10 +31,10 @@ from aseba_vm.protocol import FrameReader, Run, UserMessage, decode, encode, req
 from benchmarks.lib.command import MissingError
 from benchmarks.lib.report import Report, Table
 from tests.processes import free_port
-from thymio_sim_ros import loading
 from thymio_sim_ros.device.layout import PLAYGROUND
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files import loading
 from thymio_sim_ros.sim import world as world_module
 from thymio_sim_ros.sim.model.readings import ProximityReading
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_HALF_CONE_RAD as HALF_CONE_RAD
@@ -241,8 +241,8 @@ def drive_here(world: Playground, program: ThymioProgram, seconds: float, varian
         stack.enter_context(mock.patch.object(world_module, "all_sensors", return_value=sensors))
         if on_grid:
             stack.enter_context(mock.patch.object(world_module, "Schedule", Grid))
-        runner = Runner(world, program, **{"proximity_model": "enki", **options})
-        return [event.args for _ in runner.steps(seconds) for _, event in runner.emitted]
+        engine = Engine(world, program, **{"proximity_model": "enki", **options})
+        return [event.args for _ in engine.steps(seconds) for _, event in engine.emitted]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -15,8 +15,8 @@ from collections.abc import Callable
 from benchmarks.lib import rounds
 from benchmarks.lib.report import ROOT, Report, Table
 from benchmarks.lib.scenes import dense_scene
-from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground, read_program
 from thymio_sim_ros.sim.commands import MotorTargets
 
 QUICK = {"rounds": 1, "seconds": 1.0}
@@ -37,17 +37,17 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def runner_of(scene: str, robot_seconds: float) -> Callable[[], float]:
     """Return what runs a scene for so long and returns how many times real time that was (for a worker)."""
     if scene == EXPLORERS:
-        runner = Runner(dense_scene(20), read_program(str(BEHAVIORS / "explorer.aesl")))
+        engine = Engine(dense_scene(20), read_program(str(BEHAVIORS / "explorer.aesl")))
     elif scene == LINE_FOLLOWER:
-        runner = Runner(load_playground(str(LINE))[1], read_program(str(BEHAVIORS / "line_follower.aesl")))
+        engine = Engine(load_playground(str(LINE))[1], read_program(str(BEHAVIORS / "line_follower.aesl")))
     else:
-        runner = Runner(load_playground(str(LINE))[1])
-        runner.post("thymio", MotorTargets(200, 150))
-    seconds = robot_seconds / len(runner.world.robots)
+        engine = Engine(load_playground(str(LINE))[1])
+        engine.post("thymio", MotorTargets(200, 150))
+    seconds = robot_seconds / len(engine.world.robots)
 
     def run() -> float:
         begun = time.process_time()
-        runner.run(seconds)
+        engine.run(seconds)
         return seconds / (time.process_time() - begun)
 
     return run

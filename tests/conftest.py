@@ -18,7 +18,7 @@ import pytest
 
 from aseba_vm import languages
 from tests.patience import PATIENCE_S
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 from thymio_sim_ros.sim.formats import svg_worker
 
 with contextlib.suppress(ImportError):

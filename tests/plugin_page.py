@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from thymio_sim_ros import registry
 from thymio_sim_ros.device import behavior_host, bindings, layout
+from thymio_sim_ros.files import registry
 
 PAGE = Path(__file__).parents[1] / "docs" / "plugins.md"
 _BLOCK = re.compile(r"^\*\*`([^`]+)`\*\*\n\n```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)

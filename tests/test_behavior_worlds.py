@@ -12,8 +12,8 @@ from tests.seeds import seeds
 from tests.sim.builders import box, make
 from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground, read_program
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
 from thymio_sim_ros.sim.commands import Clap, MoveRobot, RemoteKey, Tap, Tilt
@@ -29,57 +29,57 @@ def hall(robots: Mapping[str, tuple[float, float, float]], *things: Mapping[str,
     return make([HALL, *things], starts)
 
 
-def alone(behaviour: str, playground: Any = "base", *, seed: int = 0) -> Runner:
+def alone(behaviour: str, playground: Any = "base", *, seed: int = 0) -> Engine:
     """A robot that was switched on with a behaviour, and has felt its sensors once."""
     loaded = load_playground(playground)[1] if isinstance(playground, str) else playground
-    runner = Runner(loaded, behaviour=behaviour, seed=seed)
-    runner.run(0.12)
-    return runner
+    engine = Engine(loaded, behaviour=behaviour, seed=seed)
+    engine.run(0.12)
+    return engine
 
 
-def touch(runner: Runner, *buttons: str, robot: str = ROBOT) -> None:
+def touch(engine: Engine, *buttons: str, robot: str = ROBOT) -> None:
     """Put fingers on buttons together and take them off."""
     for pressed in (True, False):
         for button in buttons:
-            runner.press(robot, button, pressed=pressed)
-        runner.run(0.1)
+            engine.press(robot, button, pressed=pressed)
+        engine.run(0.1)
 
 
-def targets(runner: Runner, robot: str = ROBOT) -> tuple[int, int]:
-    left, right = (runner.devices[robot].variables.get(f"motor.{side}.target")[0] for side in ("left", "right"))
+def targets(engine: Engine, robot: str = ROBOT) -> tuple[int, int]:
+    left, right = (engine.devices[robot].variables.get(f"motor.{side}.target")[0] for side in ("left", "right"))
     return left, right
 
 
-def leds(runner: Runner, group: str, robot: str = ROBOT) -> tuple[int, ...]:
-    return runner.world.robots[robot].state(LedState).levels[group]
+def leds(engine: Engine, group: str, robot: str = ROBOT) -> tuple[int, ...]:
+    return engine.world.robots[robot].state(LedState).levels[group]
 
 
-def top(runner: Runner, robot: str = ROBOT) -> tuple[int, ...]:
-    return leds(runner, "top", robot)
+def top(engine: Engine, robot: str = ROBOT) -> tuple[int, ...]:
+    return leds(engine, "top", robot)
 
 
-def is_silent(runner: Runner) -> bool:
-    return runner.world.robots[ROBOT].state(LoudspeakerState).is_silent
+def is_silent(engine: Engine) -> bool:
+    return engine.world.robots[ROBOT].state(LoudspeakerState).is_silent
 
 
-def gap(runner: Runner, one: str, other: str) -> float:
+def gap(engine: Engine, one: str, other: str) -> float:
     """Meters between the middles of two robots."""
-    a, b = (runner.world.robots[name].pose for name in (one, other))
+    a, b = (engine.world.robots[name].pose for name in (one, other))
     return math.hypot(a.x_m - b.x_m, a.y_m - b.y_m)
 
 
-def contacts_in(runner: Runner, seconds: float) -> int:
+def contacts_in(engine: Engine, seconds: float) -> int:
     """Ticks with a contact during so many simulated seconds."""
-    return sum(bool(runner.step().contacts) for _ in range(round(seconds * 100)))
+    return sum(bool(engine.step().contacts) for _ in range(round(seconds * 100)))
 
 
 @pytest.mark.parametrize("seed", [2, 3, 5])  # others need longer, or stand head-on before a wall: the next test
 def test_explorer_drives_about_for_a_minute_and_touches_nothing(seed: int) -> None:
-    runner = alone("explorer", seed=seed)
-    robot = runner.world.robots[ROBOT]
+    engine = alone("explorer", seed=seed)
+    robot = engine.world.robots[ROBOT]
     quarters = set()
     for _ in range(60):
-        assert contacts_in(runner, 1.0) == 0
+        assert contacts_in(engine, 1.0) == 0
         quarters.add((robot.pose.x_m > 0.0, robot.pose.y_m > 0.0))
     assert len(quarters) == 4
 
@@ -87,65 +87,65 @@ def test_explorer_drives_about_for_a_minute_and_touches_nothing(seed: int) -> No
 @pytest.mark.parametrize("seed", [0, 3])
 def test_explorer_leaves_a_wall_that_it_met_head_on(seed: int) -> None:
     wall = box(0.4, 0.0, size_x_m=0.05, size_y_m=2.0)
-    runner = alone("explorer", hall({ROBOT: (0.0, 0.0, 0.0)}, wall), seed=seed)
-    robot = runner.world.robots[ROBOT]
-    runner.run(4.0)
+    engine = alone("explorer", hall({ROBOT: (0.0, 0.0, 0.0)}, wall), seed=seed)
+    robot = engine.world.robots[ROBOT]
+    engine.run(4.0)
     assert robot.pose.x_m == pytest.approx(0.155, abs=0.01)
     assert robot.pose.yaw_rad == pytest.approx(0.0, abs=0.05)
-    assert runner.until(lambda: abs(robot.pose.yaw_rad) > 1.2, 60.0)
+    assert engine.until(lambda: abs(robot.pose.yaw_rad) > 1.2, 60.0)
 
 
 def test_explorer_drives_backwards_as_carefully() -> None:
-    runner = alone("explorer")
+    engine = alone("explorer")
     for _ in range(6):
-        touch(runner, "backward")
-    assert targets(runner) == (-150, -150)
-    assert contacts_in(runner, 20.0) == 0
+        touch(engine, "backward")
+    assert targets(engine) == (-150, -150)
+    assert contacts_in(engine, 20.0) == 0
 
 
 def test_friendly_follows_another_robot_and_does_not_touch_it() -> None:
     playground = hall({"leader": (0.0, 0.0, 0.3), ROBOT: (-0.2, -0.06, 0.3)})
-    runner = Runner(playground, {"leader": WALKER, ROBOT: read_program("friendly")})
-    start = runner.world.robots[ROBOT].pose
-    assert contacts_in(runner, 20.0) == 0
-    end = runner.world.robots[ROBOT].pose
+    engine = Engine(playground, {"leader": WALKER, ROBOT: read_program("friendly")})
+    start = engine.world.robots[ROBOT].pose
+    assert contacts_in(engine, 20.0) == 0
+    end = engine.world.robots[ROBOT].pose
     assert math.hypot(end.x_m - start.x_m, end.y_m - start.y_m) > 0.4
-    assert gap(runner, "leader", ROBOT) < 0.22
+    assert gap(engine, "leader", ROBOT) < 0.22
 
 
 def test_friendly_comes_to_rest_in_front_of_a_hand() -> None:
     hand = box(0.22, 0.0, size_x_m=0.05, size_y_m=0.1)
-    runner = alone("friendly", hall({ROBOT: (0.0, 0.0, 0.0)}, hand))
-    assert runner.until(lambda: runner.devices[ROBOT].variables.get("arrived") == (1,), 10.0)
-    assert runner.until(lambda: not is_silent(runner), 0.1)
-    assert targets(runner) == (0, 0)
-    assert contacts_in(runner, 1.0) == 0
+    engine = alone("friendly", hall({ROBOT: (0.0, 0.0, 0.0)}, hand))
+    assert engine.until(lambda: engine.devices[ROBOT].variables.get("arrived") == (1,), 10.0)
+    assert engine.until(lambda: not is_silent(engine), 0.1)
+    assert targets(engine) == (0, 0)
+    assert contacts_in(engine, 1.0) == 0
 
 
 def test_fearful_retreats_from_a_robot_that_comes() -> None:
     playground = hall({"bully": (-0.5, 0.0, 0.0), ROBOT: (0.0, 0.0, math.pi)})
-    runner = Runner(playground, {"bully": WALKER, ROBOT: read_program("fearful")})
-    assert contacts_in(runner, 30.0) == 0
-    assert runner.world.robots[ROBOT].pose.x_m > 0.2
+    engine = Engine(playground, {"bully": WALKER, ROBOT: read_program("fearful")})
+    assert contacts_in(engine, 30.0) == 0
+    assert engine.world.robots[ROBOT].pose.x_m > 0.2
 
 
 def test_fearful_cries_while_it_is_trapped() -> None:
     front = box(0.14, 0.0, size_x_m=0.05, size_y_m=0.4)
     behind = box(-0.09, 0.0, size_x_m=0.05, size_y_m=0.4)
-    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}, front, behind))
+    engine = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}, front, behind))
     for _ in range(20):
-        assert targets(runner) == (0, 0)
-        runner.run(0.1)
-        assert runner.devices[ROBOT].variables.get("crying") == (1,)
-    runner.post(ROBOT, MoveRobot(1.0, 1.0, 0.0))
-    assert runner.until(lambda: is_silent(runner), 1.0)
+        assert targets(engine) == (0, 0)
+        engine.run(0.1)
+        assert engine.devices[ROBOT].variables.get("crying") == (1,)
+    engine.post(ROBOT, MoveRobot(1.0, 1.0, 0.0))
+    assert engine.until(lambda: is_silent(engine), 1.0)
 
 
 def test_fearful_stands_still_while_nothing_is_near() -> None:
-    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
-    runner.run(5.0)
-    assert runner.world.robots[ROBOT].pose.x_m == 0.0
-    assert is_silent(runner)
+    engine = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    engine.run(5.0)
+    assert engine.world.robots[ROBOT].pose.x_m == 0.0
+    assert is_silent(engine)
 
 
 @pytest.mark.parametrize("seed", seeds(2))
@@ -159,67 +159,67 @@ def test_the_line_follower_goes_on_behind_every_gap(seed: int) -> None:
 
 
 def test_obedient_obeys_the_buttons() -> None:
-    runner = alone("obedient", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    engine = alone("obedient", hall({ROBOT: (0.0, 0.0, 0.0)}))
     seen = []
     for buttons in (["forward"], ["forward"], ["right"], ["forward"], ["left"], ["left", "right"], ["backward"]):
-        touch(runner, *buttons)
-        seen.append(targets(runner))
+        touch(engine, *buttons)
+        seen.append(targets(engine))
     assert seen == [(150, 150), (300, 300), (450, 150), (300, 300), (150, 450), (300, 300), (150, 150)]
-    touch(runner, "forward", "backward")
-    assert targets(runner) == (0, 0)
-    assert runner.world.robots[ROBOT].pose.x_m > 0.05
+    touch(engine, "forward", "backward")
+    assert targets(engine) == (0, 0)
+    assert engine.world.robots[ROBOT].pose.x_m > 0.05
 
 
 def test_a_behaviour_stops_where_the_table_ends() -> None:
     table = {"kind": "rectangle", "name": "table", "size_x_m": 0.8, "size_y_m": 0.8, "color": "#ffffff"}
-    runner = alone("explorer", make([table], [{"name": ROBOT, "x_m": 0.0, "y_m": 0.0}]))
-    assert runner.until(lambda: runner.now_ns > 10**9 and targets(runner) == (0, 0), 20.0)
-    runner.run(1.0)
-    assert leds(runner, "bottom_left") == (32, 0, 0)
-    assert runner.world.robots[ROBOT].pose.x_m < 0.4
+    engine = alone("explorer", make([table], [{"name": ROBOT, "x_m": 0.0, "y_m": 0.0}]))
+    assert engine.until(lambda: engine.now_ns > 10**9 and targets(engine) == (0, 0), 20.0)
+    engine.run(1.0)
+    assert leds(engine, "bottom_left") == (32, 0, 0)
+    assert engine.world.robots[ROBOT].pose.x_m < 0.4
 
 
 def test_a_finger_chooses_a_behaviour_in_the_menu_and_ends_it() -> None:
-    runner = alone("menu")
-    assert top(runner) == (0, 32, 0)
-    touch(runner, "right")
-    assert top(runner) == (32, 32, 0)
-    runner.run(2.0)
-    touch(runner, "center")
-    runner.run(2.0)
-    assert runner.hosts[ROBOT].program.name == "explorer.aesl"
-    assert runner.world.robots[ROBOT].pose.x_m > 0.05
-    touch(runner, "center")
-    assert runner.hosts[ROBOT].program.name == "menu.aesl"
-    stopped = runner.world.robots[ROBOT].pose
-    runner.run(1.0)
-    assert runner.world.robots[ROBOT].pose == stopped
-    assert runner.emitted == []
+    engine = alone("menu")
+    assert top(engine) == (0, 32, 0)
+    touch(engine, "right")
+    assert top(engine) == (32, 32, 0)
+    engine.run(2.0)
+    touch(engine, "center")
+    engine.run(2.0)
+    assert engine.hosts[ROBOT].program.name == "explorer.aesl"
+    assert engine.world.robots[ROBOT].pose.x_m > 0.05
+    touch(engine, "center")
+    assert engine.hosts[ROBOT].program.name == "menu.aesl"
+    stopped = engine.world.robots[ROBOT].pose
+    engine.run(1.0)
+    assert engine.world.robots[ROBOT].pose == stopped
+    assert engine.emitted == []
 
 
 def test_each_robot_has_a_menu_of_its_own() -> None:
-    runner = Runner(hall({"anna": (0.0, 0.5, 0.0), "bert": (0.0, -0.5, 0.0)}), behaviour="menu")
-    runner.run(2.5)
-    touch(runner, "center", robot="anna")
-    assert [runner.hosts[name].program.name for name in ("anna", "bert")] == ["friendly.aesl", "menu.aesl"]
+    engine = Engine(hall({"anna": (0.0, 0.5, 0.0), "bert": (0.0, -0.5, 0.0)}), behaviour="menu")
+    engine.run(2.5)
+    touch(engine, "center", robot="anna")
+    assert [engine.hosts[name].program.name for name in ("anna", "bert")] == ["friendly.aesl", "menu.aesl"]
 
 
 def test_a_reset_of_the_world_switches_the_robot_on_again() -> None:
-    runner = alone("menu")
-    runner.run(2.5)
-    touch(runner, "center")
-    runner.reset()
-    assert runner.hosts[ROBOT].program.name == "menu.aesl"
-    touch(runner, "center")
-    assert runner.hosts[ROBOT].program.name == "menu.aesl"
+    engine = alone("menu")
+    engine.run(2.5)
+    touch(engine, "center")
+    engine.reset()
+    assert engine.hosts[ROBOT].program.name == "menu.aesl"
+    touch(engine, "center")
+    assert engine.hosts[ROBOT].program.name == "menu.aesl"
 
 
 def test_the_centre_button_leads_round_the_behaviours_of_the_thesis() -> None:
-    runner = alone("thesis_basic")
+    engine = alone("thesis_basic")
     names = []
     for _ in range(3):
-        touch(runner, "center")
-        names.append(runner.hosts[ROBOT].program.name)
+        touch(engine, "center")
+        names.append(engine.hosts[ROBOT].program.name)
     assert names == ["thesis_explorer.aesl", "thesis_track_follower.aesl", "thesis_basic.aesl"]
 
 
@@ -228,179 +228,179 @@ def test_the_centre_button_leads_round_the_behaviours_of_the_thesis() -> None:
     [("forward", (400, 400)), ("backward", (-400, -400)), ("left", (-100, 400)), ("right", (400, -100))],
 )
 def test_basic_of_the_thesis_drives_on_after_a_press(arrow: str, expected: Sequence[int]) -> None:
-    runner = alone("thesis_basic")
-    touch(runner, arrow)
-    runner.run(1.0)
-    assert targets(runner) == expected
+    engine = alone("thesis_basic")
+    touch(engine, arrow)
+    engine.run(1.0)
+    assert targets(engine) == expected
 
 
 @pytest.mark.parametrize("arrow", ["forward", "backward"])
 def test_basic_of_the_thesis_stops_at_what_is_in_the_way(arrow: str) -> None:
-    runner = alone("thesis_basic")
-    touch(runner, arrow)
-    assert contacts_in(runner, 8.0) == 0
-    assert targets(runner) == (0, 0)
-    assert abs(runner.world.robots[ROBOT].pose.x_m) > 0.3
+    engine = alone("thesis_basic")
+    touch(engine, arrow)
+    assert contacts_in(engine, 8.0) == 0
+    assert targets(engine) == (0, 0)
+    assert abs(engine.world.robots[ROBOT].pose.x_m) > 0.3
 
 
 @pytest.mark.parametrize("playground", ["base", "borderless"])
 def test_explorer_of_the_thesis_turns_away_from_walls_and_borders(playground: str) -> None:
-    runner = alone("thesis_explorer", playground)
-    touch(runner, "forward")
-    robot = runner.world.robots[ROBOT]
+    engine = alone("thesis_explorer", playground)
+    touch(engine, "forward")
+    robot = engine.world.robots[ROBOT]
     headings = set()
     for _ in range(40):
-        assert contacts_in(runner, 1.0) == 0
+        assert contacts_in(engine, 1.0) == 0
         headings.add(round(robot.pose.yaw_rad))
         assert math.hypot(robot.pose.x_m, robot.pose.y_m) < 1.3
     assert len(headings) > 3
-    touch(runner, "backward")
-    assert targets(runner) == (0, 0)
+    touch(engine, "backward")
+    assert targets(engine) == (0, 0)
 
 
 def test_explorer_of_the_thesis_turns_by_hand() -> None:
-    runner = alone("thesis_explorer")
-    touch(runner, "left")
-    runner.run(1.0)
-    assert 1.0 < runner.world.robots[ROBOT].pose.yaw_rad < 1.6
-    assert targets(runner) == (0, 0)
+    engine = alone("thesis_explorer")
+    touch(engine, "left")
+    engine.run(1.0)
+    assert 1.0 < engine.world.robots[ROBOT].pose.yaw_rad < 1.6
+    assert targets(engine) == (0, 0)
 
 
 def test_track_follower_of_the_thesis_stops_at_the_end_of_the_track() -> None:
-    runner = alone("thesis_track_follower", "borderless")
-    touch(runner, "forward")
-    assert runner.until(lambda: runner.devices[ROBOT].variables.get("doing") == (0,), 60.0)
-    end = runner.world.robots[ROBOT].pose
+    engine = alone("thesis_track_follower", "borderless")
+    touch(engine, "forward")
+    assert engine.until(lambda: engine.devices[ROBOT].variables.get("doing") == (0,), 60.0)
+    end = engine.world.robots[ROBOT].pose
     assert math.dist((end.x_m, end.y_m), (1.04, -0.64)) < 0.1
-    assert targets(runner) == (0, 0)
+    assert targets(engine) == (0, 0)
 
 
 @pytest.mark.slow
 def test_track_follower_of_the_thesis_goes_round_between_the_obstacles() -> None:
-    runner = alone("thesis_track_follower", "obstacle")
-    robot = runner.world.robots[ROBOT]
-    touch(runner, "forward")
+    engine = alone("thesis_track_follower", "obstacle")
+    robot = engine.world.robots[ROBOT]
+    touch(engine, "forward")
     corners = [(0.7, -0.45), (-0.4, -0.8), (-0.36, 0.0), (-0.8, 0.6), (0.0, 0.9), (0.7, 0.45), (0.3, 0.0)]
     for corner in corners:
-        assert runner.until(lambda at=corner: math.dist((robot.pose.x_m, robot.pose.y_m), at) < 0.1, 60.0), corner
-    assert runner.until(lambda: runner.devices[ROBOT].variables.get("doing") == (0,), 60.0)
+        assert engine.until(lambda at=corner: math.dist((robot.pose.x_m, robot.pose.y_m), at) < 0.1, 60.0), corner
+    assert engine.until(lambda: engine.devices[ROBOT].variables.get("doing") == (0,), 60.0)
     assert math.hypot(robot.pose.x_m, robot.pose.y_m) < 0.15
 
 
 def test_two_friendly_robots_find_each_other_and_dance() -> None:
     playground = hall({"anna": (-0.2, 0.0, 0.0), "bert": (0.2, 0.0, math.pi)})
-    runner = Runner(playground, behaviour="friendly")
-    assert runner.until(lambda: runner.devices["anna"].variables.get("friend")[0] > 0, 10.0)
-    colors = {(top(runner, "anna"), top(runner, "bert"))}
+    engine = Engine(playground, behaviour="friendly")
+    assert engine.until(lambda: engine.devices["anna"].variables.get("friend")[0] > 0, 10.0)
+    colors = {(top(engine, "anna"), top(engine, "bert"))}
     for _ in range(500):
-        runner.step()
-        colors.add((top(runner, "anna"), top(runner, "bert")))
+        engine.step()
+        colors.add((top(engine, "anna"), top(engine, "bert")))
     assert any(red and green for (red, green, _), _ in colors)
     assert any(green and blue for _, (_, green, blue) in colors)
-    assert gap(runner, "anna", "bert") < 0.25
-    assert runner.devices["anna"].variables.get("prox.comm.tx") == (2,)
+    assert gap(engine, "anna", "bert") < 0.25
+    assert engine.devices["anna"].variables.get("prox.comm.tx") == (2,)
 
 
 def test_a_friend_is_followed_farther_than_it_is_seen() -> None:
     playground = hall({"anna": (-0.17, 0.0, 0.0), "bert": (0.17, 0.0, math.pi)})
-    runner = Runner(playground, behaviour="friendly")
-    lone = Runner(playground, {"anna": read_program("friendly"), "bert": load_program("", "none")})
-    for either in (runner, lone):
+    engine = Engine(playground, behaviour="friendly")
+    lone = Engine(playground, {"anna": read_program("friendly"), "bert": load_program("", "none")})
+    for either in (engine, lone):
         either.run(3.0)
-    assert gap(runner, "anna", "bert") < 0.25
+    assert gap(engine, "anna", "bert") < 0.25
     assert gap(lone, "anna", "bert") == pytest.approx(0.34, abs=0.01)
 
 
 def test_fearful_answers_a_knock_and_shows_how_it_is_held() -> None:
-    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
-    runner.post(ROBOT, Tap())
-    assert runner.until(lambda: not is_silent(runner), 0.2)
-    runner.post(ROBOT, Tilt(0.0, -1.0))
-    runner.run(0.5)
-    assert [level > 0 for level in leds(runner, "circle")] == [number == 4 for number in range(8)]
+    engine = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    engine.post(ROBOT, Tap())
+    assert engine.until(lambda: not is_silent(engine), 0.2)
+    engine.post(ROBOT, Tilt(0.0, -1.0))
+    engine.run(0.5)
+    assert [level > 0 for level in leds(engine, "circle")] == [number == 4 for number in range(8)]
 
 
 def test_obedient_obeys_the_remote_control() -> None:
-    runner = alone("obedient", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    engine = alone("obedient", hall({ROBOT: (0.0, 0.0, 0.0)}))
     seen = []
     for key in (2, 80, 4, 5, 86, 33, 81, 87):
-        runner.post(ROBOT, RemoteKey(0, key))
-        runner.run(0.1)
-        seen.append(targets(runner))
+        engine.post(ROBOT, RemoteKey(0, key))
+        engine.run(0.1)
+        seen.append(targets(engine))
     assert seen == [(150, 150), (300, 300), (150, 450), (0, 0), (150, -150), (0, 0), (-150, -150), (0, 0)]
 
 
-def clap(runner: Runner, times: int) -> None:
+def clap(engine: Engine, times: int) -> None:
     """So many claps, four in a second, and then a pause."""
     for _ in range(times):
-        runner.post(ROBOT, Clap(255))
-        runner.run(0.26)
-    runner.run(1.2)
+        engine.post(ROBOT, Clap(255))
+        engine.run(0.26)
+    engine.run(1.2)
 
 
 def test_attentive_counts_claps() -> None:
-    runner = alone("attentive", hall({ROBOT: (0.0, 0.0, 0.0)}))
-    clap(runner, 1)
-    assert targets(runner) == (0, 0)
+    engine = alone("attentive", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    clap(engine, 1)
+    assert targets(engine) == (0, 0)
     seen = []
     for claps in (2, 1, 1, 2, 3):
-        clap(runner, claps)
-        seen.append(targets(runner))
+        clap(engine, claps)
+        seen.append(targets(engine))
     assert seen == [(80, 80), (80, -80), (80, 80), (0, 0), (80, 0)]
-    colors = {top(runner) for _ in range(120) if runner.step()}
+    colors = {top(engine) for _ in range(120) if engine.step()}
     assert any(red > 0 for red, _, _ in colors)
-    runner.run(2.0)
-    assert all(red == green == 0 for red, green, _ in (top(runner) for _ in range(100) if runner.step()))
+    engine.run(2.0)
+    assert all(red == green == 0 for red, green, _ in (top(engine) for _ in range(100) if engine.step()))
 
 
 def test_attentive_shows_the_claps_it_counts() -> None:
-    runner = alone("attentive", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    engine = alone("attentive", hall({ROBOT: (0.0, 0.0, 0.0)}))
     lit = []
     for _ in range(3):
-        runner.post(ROBOT, Clap(255))
-        runner.run(0.26)
-        lit.append(sum(level > 0 for level in leds(runner, "circle")))
+        engine.post(ROBOT, Clap(255))
+        engine.run(0.26)
+        lit.append(sum(level > 0 for level in leds(engine, "circle")))
     assert lit == [1, 3, 5]
-    runner.run(1.0)
-    assert not any(leds(runner, "circle"))
+    engine.run(1.0)
+    assert not any(leds(engine, "circle"))
 
 
 @pytest.mark.parametrize("behaviour", ["friendly", "explorer", "fearful", "attentive", "investigator", "obedient"])
 def test_the_proximity_lights_show_what_is_seen_in_every_behaviour(behaviour: str) -> None:
     wall = box(0.2, 0.0, size_x_m=0.05, size_y_m=1.0)
-    runner = alone(behaviour, hall({ROBOT: (0.05, 0.0, 0.0)}, wall))
-    assert runner.until(lambda: leds(runner, "proximity")[2] > 5, 1.0)
+    engine = alone(behaviour, hall({ROBOT: (0.05, 0.0, 0.0)}, wall))
+    assert engine.until(lambda: leds(engine, "proximity")[2] > 5, 1.0)
 
 
 def test_no_light_but_the_colour_is_on_in_the_menu() -> None:
     wall = box(0.2, 0.0, size_x_m=0.05, size_y_m=1.0)
-    runner = alone("menu", hall({ROBOT: (0.05, 0.0, 0.0)}, wall))
-    runner.run(1.0)
-    assert top(runner) == (0, 32, 0)
-    assert not any(leds(runner, "proximity") + leds(runner, "ground") + leds(runner, "circle"))
+    engine = alone("menu", hall({ROBOT: (0.05, 0.0, 0.0)}, wall))
+    engine.run(1.0)
+    assert top(engine) == (0, 32, 0)
+    assert not any(leds(engine, "proximity") + leds(engine, "ground") + leds(engine, "circle"))
 
 
 def test_fearful_cries_and_blinks_while_it_falls() -> None:
-    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
-    runner.post(ROBOT, MoveRobot(5.0, 5.0, 0.0))
-    assert runner.until(lambda: runner.devices[ROBOT].variables.get("falling") == (1,), 0.3)
-    colors = {top(runner) for _ in range(20) if runner.step()}
+    engine = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    engine.post(ROBOT, MoveRobot(5.0, 5.0, 0.0))
+    assert engine.until(lambda: engine.devices[ROBOT].variables.get("falling") == (1,), 0.3)
+    colors = {top(engine) for _ in range(20) if engine.step()}
     assert colors >= {(0, 0, 0), (32, 0, 0)}
-    assert not is_silent(runner)
-    assert runner.until(lambda: runner.devices[ROBOT].variables.get("falling") == (0,), 1.0)
-    assert runner.until(lambda: is_silent(runner), 0.5)
+    assert not is_silent(engine)
+    assert engine.until(lambda: engine.devices[ROBOT].variables.get("falling") == (0,), 1.0)
+    assert engine.until(lambda: is_silent(engine), 0.5)
 
 
 def test_welcome_waits_with_a_light_that_breathes_in_four_seconds() -> None:
-    runner = alone("welcome", "line")
-    runner.run(0.2)
-    start, seen = runner.world.robots[ROBOT].pose, []
+    engine = alone("welcome", "line")
+    engine.run(0.2)
+    start, seen = engine.world.robots[ROBOT].pose, []
     for _ in range(80):
-        seen.append(top(runner)[1])
-        runner.run(0.1)
+        seen.append(top(engine)[1])
+        engine.run(0.1)
     assert (min(seen), max(seen)) == (14, 32)
     tops = [index for index, level in enumerate(seen) if level == 32]
     assert 36 <= tops[-1] - tops[0] <= 44
-    assert runner.world.robots[ROBOT].pose == start
-    assert is_silent(runner)
-    assert leds(runner, "circle") == (0,) * 8
+    assert engine.world.robots[ROBOT].pose == start
+    assert is_silent(engine)
+    assert leds(engine, "circle") == (0,) * 8

@@ -26,6 +26,8 @@ from thymio_sim_ros.cli.runner_sound import run_with_sound
 from thymio_sim_ros.device.firmware.sd_card import SdCard
 from thymio_sim_ros.device.firmware.settings import Settings
 from thymio_sim_ros.device.programs.program import load_program
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.run_log import RunLog, read
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.grading.assignment import Assignment
 from thymio_sim_ros.grading.finished import FinishedReports
@@ -34,8 +36,6 @@ from thymio_sim_ros.grading.reports.texts import file_name
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.submissions import Submission
-from thymio_sim_ros.runlog.run_log import RunLog, read
-from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.sweep.description import Description
 from thymio_sim_ros.sweep.grid import Sweep
@@ -101,8 +101,8 @@ def _recording(folder: Path, second: bool) -> None:
 
 
 def _sound(folder: Path, second: bool) -> None:
-    runner = Runner(make(), load_program("call sound.freq(440, 30)" if second else "", "test"))
-    run_with_sound(runner, runner.steps(0.05), folder / "sound.wav")
+    engine = Engine(make(), load_program("call sound.freq(440, 30)" if second else "", "test"))
+    run_with_sound(engine, engine.steps(0.05), folder / "sound.wav")
 
 
 @cache

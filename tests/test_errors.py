@@ -50,14 +50,16 @@ def test_every_exception_of_a_module_has_the_common_base() -> None:
 
 def test_the_walk_finds_exceptions_that_exist() -> None:
     found = {
-        kind.__name__ for module in ("registry", "sim.model.fields") for kind in _exceptions(f"thymio_sim_ros.{module}")
+        kind.__name__
+        for module in ("files.registry", "sim.model.fields")
+        for kind in _exceptions(f"thymio_sim_ros.{module}")
     }
     assert found == {"FieldError", "RegistryError"}
 
 
 def test_built_in_bases_that_callers_rely_on_are_kept() -> None:
     from thymio_sim_ros.device.options import OptionError
-    from thymio_sim_ros.runlog.command_codec import CommandJsonError
+    from thymio_sim_ros.engine.command_codec import CommandJsonError
 
     assert issubclass(OptionError, ValueError)
     assert issubclass(CommandJsonError, ValueError)

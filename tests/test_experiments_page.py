@@ -14,9 +14,9 @@ import pytest
 
 from tests import pages
 from tests.patience import PROGRAM_S
-from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runlog.run_log import RunLog
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.run_log import RunLog
+from thymio_sim_ros.files.loading import load_playground, read_program
 from thymio_sim_ros.sim.commands import MotorTargets
 
 ROOT = Path(__file__).parents[1]
@@ -69,15 +69,15 @@ def test_what_the_table_says_can_be_done(tmp_path: Path) -> None:
     file = tmp_path / "run.jsonl"
     log = RunLog(file.open("w", encoding="utf-8", newline="\n"))
     options = {"motor_model": "firmware", "proximity_model": "cone"}
-    runner = Runner(playground, {"blue": program}, noise=False, log=log, **options)
-    runner.post("red", MotorTargets(100, 100))
-    x_m = runner.world.robots["red"].pose.x_m
-    assert runner.until(lambda: runner.world.robots["red"].pose.x_m > x_m + 0.01, 5)
-    runner.press("blue", "forward")
-    assert runner.until(lambda: runner.devices["blue"].variables.get("button.forward") == (1,), 1)
-    runner.press("blue", "forward", pressed=False)
-    runner.devices["blue"].variables.set("leds.top", [32, 0, 0])
-    assert runner.emitted == []
+    engine = Engine(playground, {"blue": program}, noise=False, log=log, **options)
+    engine.post("red", MotorTargets(100, 100))
+    x_m = engine.world.robots["red"].pose.x_m
+    assert engine.until(lambda: engine.world.robots["red"].pose.x_m > x_m + 0.01, 5)
+    engine.press("blue", "forward")
+    assert engine.until(lambda: engine.devices["blue"].variables.get("button.forward") == (1,), 1)
+    engine.press("blue", "forward", pressed=False)
+    engine.devices["blue"].variables.set("leds.top", [32, 0, 0])
+    assert engine.emitted == []
     log.close()
     assert json.loads(file.read_text().splitlines()[-1]) == {"end": True}
 

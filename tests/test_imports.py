@@ -49,7 +49,7 @@ DECLARATIONS = _names(
 RULES = {
     "aseba_vm": Rule(_names("aseba_vm"), never=NO_WALL_CLOCK),
     # one compiler of kernels to WebAssembly for natives of the machine and laws of the simulator
-    f"{OURS}.sim": Rule(_names("sim", "registry") | KERNELS, frozenset({"numpy"}), NO_WALL_CLOCK),
+    f"{OURS}.sim": Rule(_names("sim", "files.registry") | KERNELS, frozenset({"numpy"}), NO_WALL_CLOCK),
     # one decoding of text files for programs and playgrounds
     f"{OURS}.sim.formats.xml_tree": Rule(
         _names("sim") | {"aseba_vm.aesl.text_decoding", "aseba_vm.errors"}, never=NO_WALL_CLOCK
@@ -57,21 +57,25 @@ RULES = {
     # the one place where the core measures real time: a picture that takes too much to draw is refused
     f"{OURS}.sim.formats.svg_worker": Rule(frozenset(), frozenset({"resvg_py"}), NO_WALL_CLOCK - {"time"}),
     f"{OURS}.sim.physics": Rule(_names("sim") | KERNELS, frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),
-    f"{OURS}.device": Rule(_names("aseba_vm", "device", "registry") | DECLARATIONS, never=NO_WALL_CLOCK),
-    f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
-    f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),
-    f"{OURS}.runner_faults": Rule(_names("device", "runner", "sim"), never=NO_WALL_CLOCK),
+    f"{OURS}.device": Rule(_names("aseba_vm", "device", "files.registry") | DECLARATIONS, never=NO_WALL_CLOCK),
+    f"{OURS}.files.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
+    # world and devices: no ROS, no network, no clock on the wall
+    f"{OURS}.engine": Rule(_names("aseba_vm", "device", "engine", "sim"), never=NO_WALL_CLOCK),
+    f"{OURS}.files": Rule(_names("aseba_vm", "device", "files", "sim")),
+    f"{OURS}.names": Rule(_names("bridge.access", "names")),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
-    f"{OURS}.web": Rule(_names("web", "bridge", "playground_index", "resources", "sim"), frozenset({"aiohttp"})),
+    f"{OURS}.web": Rule(
+        _names("web", "bridge", "files.playground_index", "files.resources", "sim"), frozenset({"aiohttp"})
+    ),
     f"{OURS}.network": Rule(
-        _names("addresses", "aseba_vm", "bridge", "device.programs", "network"),
+        _names("aseba_vm", "bridge", "device.programs", "names.addresses", "network"),
         frozenset({"serial", "websockets", "zeroconf"}),
     ),
     f"{OURS}.network.http": Rule(
         _names(
             "aseba_vm", "bridge.access", "bridge.origin_policy", "bridge.protocol", "device.programs", "network.http"
         )
-        | _names("block_files", "web.hosts"),
+        | _names("files.block_files", "web.hosts"),
         never=NO_WALL_CLOCK,
     ),
     f"{OURS}.network.http.server": Rule(_names("aseba_vm", "bridge", "network", "web"), frozenset({"aiohttp"})),
@@ -80,7 +84,7 @@ RULES = {
         _names("aseba_vm", "device.programs", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK
     ),
     f"{OURS}.classroom": Rule(
-        _names("addresses", "aseba_vm", "bridge", "classroom", "loading", "resources", "sim"),
+        _names("aseba_vm", "bridge", "classroom", "files", "names.addresses", "sim"),
         frozenset({"segno", "websockets"}),
     ),
     f"{OURS}.classroom.server": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
@@ -101,28 +105,25 @@ RULES = {
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
     f"{OURS}.batch_runs": Rule(_names("batch_runs"), frozenset({"dask", "distributed"})),
     f"{OURS}.sweep": Rule(
-        _names("aseba_vm", "device", "loading", "resources", "runner", "runner_faults", "sim", "sweep"),
+        _names("aseba_vm", "device", "engine", "files", "sim", "sweep"),
         frozenset({"pyarrow"}),
         NO_WALL_CLOCK - {"time"},
     ),
-    f"{OURS}.rl": Rule(_names("loading", "rl", "runner", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
+    f"{OURS}.rl": Rule(_names("engine", "files", "rl", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
-    f"{OURS}.testing": Rule(
-        _names("device", "loading", "resources", "runlog.run_log", "runner", "sim", "testing"), frozenset({"pytest"})
-    ),
+    f"{OURS}.testing": Rule(_names("device", "engine", "files", "sim", "testing"), frozenset({"pytest"})),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
-    f"{OURS}.lockstep": Rule(_names("course_packages", "errors", "lockstep", "type_names"), ROS),
+    f"{OURS}.lockstep": Rule(_names("course_packages", "errors", "lockstep", "names.type_names"), ROS),
     f"{OURS}.grading": Rule(
-        _names("aseba_vm", "batch_runs", "block_files", "grading", "runlog.test_files"), frozenset({"pytest"})
+        _names("aseba_vm", "batch_runs", "files.block_files", "files.test_files", "grading"), frozenset({"pytest"})
     ),
     f"{OURS}.grading.gradescope": Rule(frozenset(), frozenset({"yaml"})),
     f"{OURS}.grading.test_process": Rule(
-        _names("grading", "pytest_plugin", "runlog.test_files", "testing"), frozenset({"pytest"})
+        _names("files.test_files", "grading", "pytest_plugin", "testing"), frozenset({"pytest"})
     ),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
     f"{OURS}.cli.banner": Rule(ALL_OF_OURS, frozenset({"segno"})),
-    # resources, loading, addresses, suite_config: helpers of the commands, without ROS
     OURS: Rule(ALL_OF_OURS),
 }
 STARTERS = {

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground, read_program
 
 ROOT = Path(__file__).parent.parent
 FOLDER = "Übung 1 für Zoë – gruß"
@@ -85,10 +85,10 @@ def test_line_ends_of_windows_change_nothing(files: Path) -> None:
     (files / "lf.json").write_bytes((files / "spaß.json").read_bytes().replace(b"\r\n", b"\n"))
     poses = []
     for program, playground in (("grün.aesl", "spaß.json"), ("lf.aesl", "lf.json")):
-        runner = Runner(load_playground(str(files / playground))[1], read_program(str(files / program)))
-        begin = runner.world.robots["thymio"].pose
-        runner.run(1.0)
-        poses.append(runner.world.robots["thymio"].pose)
+        engine = Engine(load_playground(str(files / playground))[1], read_program(str(files / program)))
+        begin = engine.world.robots["thymio"].pose
+        engine.run(1.0)
+        poses.append(engine.world.robots["thymio"].pose)
     assert poses[0] == poses[1]
     assert poses[0].x_m > begin.x_m + 0.02
 

@@ -15,7 +15,7 @@ import pytest
 
 from aseba_vm.languages import LANGUAGES
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model import robot_constants
@@ -130,11 +130,11 @@ def test_line_is_black_40_mm_wide_and_never_tighter_than_20_cm() -> None:
 
 
 def test_on_the_desk_the_explorer_drives_about_and_takes_no_tape_for_an_edge() -> None:
-    runner = Runner(loaded("desk"), behaviour="explorer")
-    robot = runner.world.robots["thymio"]
+    engine = Engine(loaded("desk"), behaviour="explorer")
+    robot = engine.world.robots["thymio"]
     fields = set()
     for _ in range(600):
-        runner.run(0.1)
+        engine.run(0.1)
         fields.add((round(robot.pose.x_m, 1), round(robot.pose.y_m, 1)))
     assert len(fields) >= 12
 
@@ -246,9 +246,9 @@ def test_in_the_arena_a_robot_pushes_what_is_light_and_stops_at_a_post() -> None
 def test_the_two_robots_hear_each_other() -> None:
     text = "var heard\ncall prox.comm.enable(1)\nprox.comm.tx = {}\nonevent prox.comm\nheard = prox.comm.rx"
     programs = {name: load_program(text.format(number), name) for name, number in (("red", 5), ("blue", 7))}
-    runner = Runner(loaded("two_robots"), programs)
-    runner.run(2.0)
-    assert {name: device.variables.get("heard") for name, device in runner.devices.items()} == {
+    engine = Engine(loaded("two_robots"), programs)
+    engine.run(2.0)
+    assert {name: device.variables.get("heard") for name, device in engine.devices.items()} == {
         "red": (7,),
         "blue": (5,),
     }

@@ -13,11 +13,11 @@ import pytest
 
 from tests import plugin_page
 from tests.sim.builders import FLOOR, make
-from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.loading import load_playground, read_program, shipped_behaviours
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import load_playground, read_program, shipped_behaviours
 from thymio_sim_ros.sim import actuators, sensors, shapes
 from thymio_sim_ros.sim.model.primitives import Disc
 from thymio_sim_ros.sim.playground import reader
@@ -81,10 +81,10 @@ def test_a_program_knows_its_variable_its_event_and_its_native() -> None:
 
 @pytest.mark.usefixtures("extras")
 def test_the_behaviour_finds_the_north_with_the_sensor_and_hops_with_the_actuator() -> None:
-    runner = Runner(load_playground("slalom_field")[1], read_program("go_north"))
-    (robot,) = runner.world.robots.values()
+    engine = Engine(load_playground("slalom_field")[1], read_program("go_north"))
+    (robot,) = engine.world.robots.values()
     before = robot.pose
-    runner.run(6.0)
+    engine.run(6.0)
     assert math.degrees(robot.pose.yaw_rad) == pytest.approx(90, abs=15)
     assert robot.pose.y_m - before.y_m == pytest.approx(0.15, abs=0.02)
 
@@ -146,8 +146,8 @@ def test_programs_see_nothing_of_one_that_does_not_fit_the_robot(
     variant: Variant, caplog: pytest.LogCaptureFixture, name: str, old: str, new: str, said: str
 ) -> None:
     with variant(f"thymio_extras/{name}.py", old, new):
-        runner = Runner(make([FLOOR]), load_program("motor.left.target = 100", "a"))
-        runner.run(0.2)
+        engine = Engine(make([FLOOR]), load_program("motor.left.target = 100", "a"))
+        engine.run(0.2)
         assert name in {plugin.name for plugin in (*sensors.all_sensors(), *actuators.all_actuators())}
     (reported,) = (record.getMessage() for record in caplog.records)
     assert reported.startswith(f"programs see nothing of the plug-in '{name}': {said}")
@@ -231,7 +231,7 @@ def test_a_behaviour_that_cannot_be_read_is_left_out_of_the_list(
 
 @pytest.mark.usefixtures("extras")
 def test_a_robot_can_be_switched_on_with_its_behaviour() -> None:
-    runner = Runner(load_playground("slalom_field")[1], behaviour="go_north")
-    (robot,) = runner.world.robots.values()
-    runner.run(6.0)
+    engine = Engine(load_playground("slalom_field")[1], behaviour="go_north")
+    (robot,) = engine.world.robots.values()
+    engine.run(6.0)
     assert math.degrees(robot.pose.yaw_rad) == pytest.approx(90, abs=15)

@@ -11,8 +11,8 @@ from types import ModuleType
 import pytest
 
 from tests.sim.builders import FLOOR, make, run, send
-from thymio_sim_ros import registry
-from thymio_sim_ros.registry import RegistryError
+from thymio_sim_ros.files import registry
+from thymio_sim_ros.files.registry import RegistryError
 from thymio_sim_ros.sim import actuators, sensors, shapes, stimuli
 from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, MotorTargets
 from thymio_sim_ros.sim.playground import reader

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
-from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.playground.track_line import SENSOR_CENTER, TrackLine
 from thymio_sim_ros.testing import Classroom, no_contact
@@ -15,15 +15,15 @@ def distance_to(points: list[Point], point: Point) -> float:
     return TrackLine(points, closed=True).distance(point)
 
 
-def farthest_in_laps(runner: Runner, laps: float, playground: str = "line", track: str = "") -> float:
+def farthest_in_laps(engine: Engine, laps: float, playground: str = "line", track: str = "") -> float:
     """Largest distance in m of the ground sensors' middle from the line's middle during so many laps of the line."""
-    robot = runner.world.robots["thymio"]
+    robot = engine.world.robots["thymio"]
     line, _ = TrackLine.of(load_playground(playground)[1], track)
     _, last = line.locate(robot.pose.place(SENSOR_CENTER))
     driven, farthest = 0.0, 0.0
     while driven < laps * line.length_m:
-        assert runner.now_ns < laps * 60e9
-        runner.run(0.1)
+        assert engine.now_ns < laps * 60e9
+        engine.run(0.1)
         distance, along = line.locate(robot.pose.place(SENSOR_CENTER), last)
         driven += line.offset(last, along)
         farthest, last = max(farthest, distance), along

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from thymio_sim_ros import field_checks
+from thymio_sim_ros.course_packages import field_checks
 
 if TYPE_CHECKING:
     from thymio_sim_ros.ros.aseba.node import AsebaRuntime
@@ -87,7 +87,7 @@ def _run_log(request: pytest.FixtureRequest) -> Path | None:
     folder: Path | None = request.config.getoption("--run-logs", None)
     if folder is None:
         return None
-    from thymio_sim_ros.runlog.test_files import run_log_path
+    from thymio_sim_ros.files.test_files import run_log_path
 
     folder.mkdir(parents=True, exist_ok=True)
     return run_log_path(folder, request.node.nodeid)
@@ -111,8 +111,8 @@ def _is_graded(request: pytest.FixtureRequest) -> bool:
 
 def _playground(request: pytest.FixtureRequest, value: Any) -> Any:
     """What a test calls a playground, as Classroom and Simulator take it."""
-    from thymio_sim_ros.loading import is_playground_text
-    from thymio_sim_ros.resources import playgrounds
+    from thymio_sim_ros.files.loading import is_playground_text
+    from thymio_sim_ros.files.resources import playgrounds
     from thymio_sim_ros.testing.sources import playground_source
 
     if not isinstance(value, str | Path):
@@ -204,7 +204,7 @@ def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simula
     until the next one, as with the driver and `ros2 launch`.
     """
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
-    from thymio_sim_ros.suite_config import SuiteConfig
+    from thymio_sim_ros.ros.suite_config import SuiteConfig
     from thymio_sim_ros.testing.ros import Simulation
 
     def make(**parameters: Any) -> Simulation:

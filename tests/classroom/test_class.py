@@ -23,13 +23,13 @@ from websockets.exceptions import WebSocketException
 from tests.bridge.peers import Client, run
 from tests.classroom.class_support import RunningClass
 from tests.patience import PATIENCE_S
-from thymio_sim_ros import resources
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS
 from thymio_sim_ros.classroom.cdr import read_string
 from thymio_sim_ros.classroom.suite_state import read_state
 from thymio_sim_ros.cli import main as commands
+from thymio_sim_ros.files import resources
 
 pytestmark = pytest.mark.process
 

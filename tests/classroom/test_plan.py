@@ -7,10 +7,10 @@ import struct
 
 import pytest
 
-from thymio_sim_ros import resources
 from thymio_sim_ros.classroom.cdr import CdrError, read_diagnostic, read_string
 from thymio_sim_ros.classroom.plan import plan_of
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import load_playground
 
 
 @pytest.mark.parametrize("name", resources.playgrounds())

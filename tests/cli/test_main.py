@@ -20,8 +20,8 @@ from tests.processes import free_port
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.cli import main, suite
 from thymio_sim_ros.cli.signal_handling import StopSignal
-from thymio_sim_ros.runlog import run_log
-from thymio_sim_ros.runlog.replay import replay
+from thymio_sim_ros.engine import run_log
+from thymio_sim_ros.engine.replay import replay
 from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from thymio_sim_ros.cli.runner_sound import run_with_sound
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.sim.playground import reader as playgrounds
 
 TWO = json.dumps(
@@ -25,8 +25,8 @@ TWO = json.dumps(
 def heard(tmp_path, source):
     """Samples −128…127 of two robots that run a program for a second."""
     file = tmp_path / "sound.wav"
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "test"))
-    run_with_sound(runner, runner.steps(1.0), file)
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(source, "test"))
+    run_with_sound(engine, engine.steps(1.0), file)
     with wave.open(str(file)) as sound:
         assert (sound.getnchannels(), sound.getsampwidth(), sound.getframerate()) == (1, 1, 7812)
         return [sample - 128 for sample in sound.readframes(sound.getnframes())]
@@ -50,7 +50,7 @@ def test_robots_are_heard_together(tmp_path):
 
 
 def test_a_place_that_cannot_be_written_is_refused_before_the_run(tmp_path):
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program("", "test"))
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program("", "test"))
     with pytest.raises(OSError, match="No such file"):
-        run_with_sound(runner, runner.steps(1.0), tmp_path / "nowhere" / "sound.wav")
-    assert runner.now_ns == 0
+        run_with_sound(engine, engine.steps(1.0), tmp_path / "nowhere" / "sound.wav")
+    assert engine.now_ns == 0

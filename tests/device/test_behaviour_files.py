@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from aseba_vm.cli.main import main
-from thymio_sim_ros import resources
 from thymio_sim_ros.device.behavior_host import ENTRIES, MENU, built_in
+from thymio_sim_ros.files import resources
 
 BEHAVIOURS = resources.behaviours()
 

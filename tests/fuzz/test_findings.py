@@ -9,8 +9,8 @@ import pytest
 from tests.fuzz.table import TARGETS
 from tests.fuzz.target import FOLDER
 from thymio_sim_ros.device.firmware import wav
-from thymio_sim_ros.runlog import command_codec, run_log
-from thymio_sim_ros.runlog.command_codec import CommandJsonError
+from thymio_sim_ros.engine import command_codec, run_log
+from thymio_sim_ros.engine.command_codec import CommandJsonError
 
 BIG = b"9" * 400
 """An integer above all floats."""

@@ -17,11 +17,11 @@ from tests.grading.example_class import HARMLESS, PUPILS, moodle_zip, write_assi
 from thymio_sim_ros.cli import grade as grade_command
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.cli.errors import USAGE_ERROR
+from thymio_sim_ros.engine.replay import replay
 from thymio_sim_ros.grading import grader
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.sandbox.levels import best_level
-from thymio_sim_ros.runlog.replay import replay
 
 engine = pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
 

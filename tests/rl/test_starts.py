@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("gymnasium", reason="needs gymnasium (pip install gymnasium)")
 
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.rl import TaskError
 from thymio_sim_ros.rl.starts import RADIUS_M, Starts
 from thymio_sim_ros.sim.playground.placement import Footprint, Occupied, footprint_of

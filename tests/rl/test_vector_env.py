@@ -9,10 +9,10 @@ import pytest
 
 gymnasium = pytest.importorskip("gymnasium", reason="needs gymnasium (pip install gymnasium)")
 
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.rl import TASKS, TaskError, ThymioVectorEnv
 from thymio_sim_ros.rl.tiling import tiled
-from thymio_sim_ros.runner import Runner
 
 ROBOTS = 4
 SHORT = replace(TASKS["avoid"], playground="base", seconds=0.5)
@@ -87,10 +87,10 @@ def test_a_copy_measures_what_the_original_does() -> None:
     start = original.robots[0]
     places = [(start.x_m + x, start.y_m + y) for x, y in offsets]
     robots = [replace(start, name=f"robot_{number}", x_m=x, y_m=y) for number, (x, y) in enumerate(places)]
-    alone = Runner(original, noise=False)
-    together = Runner(replace(copies, robots=tuple(robots)), noise=False)
-    for runner in (alone, together):
-        runner.run(0.1)
+    alone = Engine(original, noise=False)
+    together = Engine(replace(copies, robots=tuple(robots)), noise=False)
+    for engine in (alone, together):
+        engine.run(0.1)
     for sensor in ("proximity", "ground"):
         expected = alone.world.read(start.name, sensor)
         assert expected is not None

@@ -11,8 +11,8 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
+from thymio_sim_ros.engine.replay import replay
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
-from thymio_sim_ros.runlog.replay import replay
 from thymio_sim_ros.sim.commands import MoveObject
 from thymio_sim_ros.sim.playground.reader import RobotStart
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from thymio_sim_ros.device.programs.program import ProgramError
-from thymio_sim_ros.resources import ResourceError
+from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.testing import Classroom, Event
 

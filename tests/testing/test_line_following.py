@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.sim.playground.track_line import TrackLine
 from thymio_sim_ros.testing import Classroom, followed_line
 

@@ -9,8 +9,8 @@ import pytest
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.program_assignment import RobotId
-from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.resources import ResourceError
+from thymio_sim_ros.files.loading import load_playground
+from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.testing.sources import (
     beside,
     is_name,

@@ -14,7 +14,7 @@ from tests.patience import PATIENCE_MS
 from tests.processes import Process, free_port
 from tests.web_ui.shared_world import SharedWorld
 from tests.web_ui.tabs import Tabs, checked_page
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = [

@@ -10,8 +10,8 @@ import pytest
 
 from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.sim.playground import reader as playgrounds
 
 FOLDER = Path(__file__).parents[1] / "data" / "web" / "blockly"
@@ -25,10 +25,10 @@ ROOM = {
 }
 
 
-def runner_of(name: str, playground: str = "") -> Runner:
+def runner_of(name: str, playground: str = "") -> Engine:
     world = load_playground(playground)[1] if playground else playgrounds.loads(json.dumps(ROOM), "room")
     program = load_program((FOLDER / f"{name}.aseba").read_text(encoding="utf-8"), name)
-    return Runner(world, program, noise=False)
+    return Engine(world, program, noise=False)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -37,11 +37,11 @@ def test_a_program_of_blocks_compiles(name: str) -> None:
 
 
 def test_the_obstacle_program_drives_and_does_not_push_against_obstacles() -> None:
-    runner = runner_of("avoid_obstacles", "obstacle")
-    robot = runner.world.robots["thymio"]
+    engine = runner_of("avoid_obstacles", "obstacle")
+    robot = engine.world.robots["thymio"]
     places = []
     for _ in range(60):
-        runner.run(0.5)
+        engine.run(0.5)
         places.append((robot.pose.x_m, robot.pose.y_m))
     assert len({(round(x, 1), round(y, 1)) for x, y in places}) > 8
     for start in range(0, 60, 20):
@@ -53,17 +53,17 @@ def test_the_line_program_follows_the_line() -> None:
     assert farthest_in_laps(runner_of("follow_line", "line"), 1) < 0.04
 
 
-def run_script(name: str) -> tuple[Runner, list[int]]:
+def run_script(name: str) -> tuple[Engine, list[int]]:
     """Run a script to its end; return the runner and the odometer: direction in degrees, x and y in mm."""
-    runner = runner_of(name)
-    variables = runner.devices["thymio"].variables
-    assert runner.until(lambda: variables.get("done") == (1,), seconds=60)
-    return runner, [variables.get(f"at_{part}")[0] for part in ("direction", "x", "y")]
+    engine = runner_of(name)
+    variables = engine.devices["thymio"].variables
+    assert engine.until(lambda: variables.get("done") == (1,), seconds=60)
+    return engine, [variables.get(f"at_{part}")[0] for part in ("direction", "x", "y")]
 
 
 def test_a_square_of_moves_and_turns_ends_where_it_began() -> None:
-    runner, (direction, x_mm, y_mm) = run_script("scratch_square")
-    pose = runner.world.robots["thymio"].pose
+    engine, (direction, x_mm, y_mm) = run_script("scratch_square")
+    pose = engine.world.robots["thymio"].pose
     assert math.hypot(pose.x_m, pose.y_m) < 0.01
     assert math.degrees(math.remainder(pose.yaw_rad, math.tau)) == pytest.approx(0, abs=3)
     assert direction == pytest.approx(0, abs=8)
@@ -71,8 +71,8 @@ def test_a_square_of_moves_and_turns_ends_where_it_began() -> None:
 
 
 def test_an_arc_goes_clockwise_and_the_odometer_follows() -> None:
-    runner, (direction, x_mm, y_mm) = run_script("scratch_arc")
-    pose = runner.world.robots["thymio"].pose
+    engine, (direction, x_mm, y_mm) = run_script("scratch_arc")
+    pose = engine.world.robots["thymio"].pose
     # a quarter of a circle of 150 mm, then 50 mm back: the robot looks to the right, which is down in the world
     assert (pose.x_m, pose.y_m) == pytest.approx((0.15, -0.10), abs=0.02)
     assert math.degrees(pose.yaw_rad) == pytest.approx(-90, abs=8)
@@ -82,9 +82,9 @@ def test_an_arc_goes_clockwise_and_the_odometer_follows() -> None:
 
 
 def test_each_color_light_has_a_place_on_the_color_wheel() -> None:
-    runner = runner_of("scratch_colors")
-    runner.run(0.5)
-    variables = runner.devices["thymio"].variables
+    engine = runner_of("scratch_colors")
+    engine.run(0.5)
+    variables = engine.devices["thymio"].variables
     # 0 is red, 33 yellow, 99 cyan: the left light went from 66 to 99, the right one from 0 to 33
     assert variables.get("leds.top") == (32, 0, 0)
     assert variables.get("leds.bottom.left") == (0, 32, 32)

@@ -21,7 +21,7 @@ from tests.web_ui.page_support import (
     open_tab,
 )
 from tests.web_ui.test_page_access import AXE, FINDINGS
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 
 pytestmark = MARKS
 

@@ -6,7 +6,7 @@ import pytest
 
 from tests.processes import wait_for_port
 from tests.web_ui.page_support import MARKS, open_page, open_tab
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 from thymio_sim_ros.web import Content, PageThread, Settings
 
 pytestmark = MARKS

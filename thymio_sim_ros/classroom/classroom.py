@@ -14,7 +14,7 @@ from thymio_sim_ros.classroom.plan import plan_of
 from thymio_sim_ros.classroom.seat import Notice, Seat
 from thymio_sim_ros.classroom.suite_process import SuiteOptions
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files.loading import load_playground
 
 __all__ = ["MAX_MESSAGE", "MISSING", "WATCHED_S", "Classroom"]
 

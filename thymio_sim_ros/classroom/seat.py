@@ -18,8 +18,6 @@ from typing import Any
 
 from websockets.exceptions import WebSocketException
 
-from thymio_sim_ros import resources
-from thymio_sim_ros.addresses import urls
 from thymio_sim_ros.bridge.access import is_loopback
 from thymio_sim_ros.classroom.bridge_client import (
     DRAFT,
@@ -31,7 +29,9 @@ from thymio_sim_ros.classroom.bridge_client import (
 )
 from thymio_sim_ros.classroom.folder import ClassFolder, Place, Work
 from thymio_sim_ros.classroom.suite_process import SuiteOptions, SuiteProcess, command, environment
-from thymio_sim_ros.loading import NO_PROGRAM, is_playground_text
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import NO_PROGRAM, is_playground_text
+from thymio_sim_ros.names.addresses import urls
 
 __all__ = ["FIRST_WAIT_S", "MAX_WAIT_S", "START_S", "STEADY_S", "Notice", "Seat", "next_wait_s"]
 

@@ -6,12 +6,12 @@ import io
 import os
 from collections.abc import Sequence
 
-from thymio_sim_ros.addresses import describe_access, describe_urls, loopback_problem, urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
-from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.names.addresses import describe_access, describe_urls, loopback_problem, urls
+from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.network.robot_target import parse_target
-from thymio_sim_ros.suite_config import SuiteConfig
+from thymio_sim_ros.ros.suite_config import SuiteConfig
 
 __all__ = ["banner", "qr_code", "startup_notice"]
 

@@ -11,8 +11,6 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from thymio_sim_ros import resources
-from thymio_sim_ros.addresses import describe_urls
 from thymio_sim_ros.bridge.access import is_loopback
 from thymio_sim_ros.bridge.server_thread import check_free, listen
 from thymio_sim_ros.classroom.classroom import Classroom
@@ -25,8 +23,10 @@ from thymio_sim_ros.cli.options import check_files, check_ros, path_argument
 from thymio_sim_ros.cli.output import print_text
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.domain import describe_range
-from thymio_sim_ros.suite_config import SuiteConfig
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.names.addresses import describe_urls
+from thymio_sim_ros.names.domain import describe_range
+from thymio_sim_ros.ros.suite_config import SuiteConfig
 
 __all__ = ["run"]
 

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from aseba_vm.cli.output import write_file
-from thymio_sim_ros import resources
 from thymio_sim_ros.cli.errors import USAGE_ERROR
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.sim.playground.reader import PlaygroundError, schema
 from thymio_sim_ros.sim.playground.writer import dumps
 

@@ -7,7 +7,6 @@ import importlib.util
 from pathlib import Path
 
 from aseba_vm.targets import THYMIO_II
-from thymio_sim_ros import resources
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.device.event_queue import FIRMWARE, POLICIES
 from thymio_sim_ros.device.firmware.sd_card import SdCard, SdCardError
@@ -16,12 +15,13 @@ from thymio_sim_ros.device.layout import LAYOUTS, THYMIO, described
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.device.programs.program_assignment import Assignment
-from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments, read_program
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments, read_program
 from thymio_sim_ros.network.robot_target import TargetError, parse_target
+from thymio_sim_ros.ros.suite_config import SuiteConfig
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
-from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = [
     "EXAMPLE",

@@ -11,8 +11,8 @@ from pathlib import Path
 import thymio_sim_ros
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.output import print_json
-from thymio_sim_ros.runlog.replay import replay
-from thymio_sim_ros.runlog.run_log import RunLogError, made_by
+from thymio_sim_ros.engine.replay import replay
+from thymio_sim_ros.engine.run_log import RunLogError, made_by
 
 __all__ = ["DIFFERENT", "run"]
 

@@ -23,9 +23,9 @@ from thymio_sim_ros.cli.output import print_json
 from thymio_sim_ros.cli.runner_sound import SOUND_SENSOR, run_with_sound
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.device.programs.program_assignment import Assignment, note_lines
-from thymio_sim_ros.runlog.run_log import RunLog
-from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.runner_faults import RunnerFaults
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.faults import ProgramFaults
+from thymio_sim_ros.engine.run_log import RunLog
 
 __all__ = ["run"]
 
@@ -46,7 +46,7 @@ def run(argv: Sequence[str]) -> int:
     _print_assignment_notes(assignments)
     try:
         log = None if options.log is None else RunLog(options.log.open("w", encoding="utf-8", newline="\n"))
-        runner = Runner(
+        engine = Engine(
             playground,
             {name: assignment.program for name, assignment in assignments.items() if assignment.program is not None},
             behaviour=options.behaviour,
@@ -56,33 +56,33 @@ def run(argv: Sequence[str]) -> int:
             seed=options.seed,
             log=log,
         )
-        faults = RunnerFaults(runner, _print_error)
+        faults = ProgramFaults(engine, _print_error)
         started = time.perf_counter()
         with StopSignal() as stop:
             sensors = () if options.sound is None else (SOUND_SENSOR,)
-            steps = faults.checked(stop.until_signal(runner.steps(options.seconds, sensors)))
+            steps = faults.checked(stop.until_signal(engine.steps(options.seconds, sensors)))
             if options.sound is None:
                 deque(steps, maxlen=0)
             else:
-                run_with_sound(runner, steps, options.sound)
+                run_with_sound(engine, steps, options.sound)
         if log is not None:
             log.close()
     except OSError as error:
         file = error.filename or options.log or options.sound
         raise UsageError(f"{file}: {error.strerror}; expected a file that can be written") from error
-    print_json(_result(runner, faults, time.perf_counter() - started))
+    print_json(_result(engine, faults, time.perf_counter() - started))
     if stop.number is not None:
-        _print_error(f"stopped after {runner.now_ns / 1e9:g} of {options.seconds:g} seconds")
+        _print_error(f"stopped after {engine.now_ns / 1e9:g} of {options.seconds:g} seconds")
         exit_by_signal(stop.number)
     return FAULT_FOUND if faults.first else 0
 
 
-def _result(runner: Runner, faults: RunnerFaults, elapsed_s: float) -> Mapping[str, object]:
+def _result(engine: Engine, faults: ProgramFaults, elapsed_s: float) -> Mapping[str, object]:
     """Simulated seconds, real-time factor, and pose and first fault of each robot."""
-    seconds = runner.now_ns / 1e9
+    seconds = engine.now_ns / 1e9
     robots: dict[str, dict[str, float | str]] = {
         name: {"x_m": robot.pose.x_m, "y_m": robot.pose.y_m, "yaw_rad": robot.pose.yaw_rad}
-        for name, robot in runner.world.robots.items()
+        for name, robot in engine.world.robots.items()
     }
     for name, fault in faults.first.items():
         robots[name]["fault"] = fault

@@ -8,10 +8,10 @@ import ipaddress
 import re
 from dataclasses import dataclass
 
-from thymio_sim_ros.addresses import describe_urls
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.bridge.server_thread import check_free
 from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.network.settings import (
     ASEBA_PORT,
     HTTP_PORT,
@@ -21,7 +21,7 @@ from thymio_sim_ros.network.settings import (
     TDM_WS_PORT,
     NetworkSettings,
 )
-from thymio_sim_ros.suite_config import ADDRESS
+from thymio_sim_ros.ros.suite_config import ADDRESS
 
 __all__ = ["Servers", "add_server_options", "address_argument", "port_argument", "select_servers"]
 

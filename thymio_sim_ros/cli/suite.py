@@ -28,12 +28,12 @@ from thymio_sim_ros.cli.options import (
 )
 from thymio_sim_ros.cli.output import print_text
 from thymio_sim_ros.cli.servers import Servers, add_server_options, address_argument, port_argument, select_servers
-from thymio_sim_ros.loading import NO_PROGRAM
+from thymio_sim_ros.engine.replay import LoggedRun, last_run
+from thymio_sim_ros.engine.run_log import RunLogError
+from thymio_sim_ros.files.loading import NO_PROGRAM
 from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
 from thymio_sim_ros.network.settings import OFF
-from thymio_sim_ros.runlog.replay import LoggedRun, last_run
-from thymio_sim_ros.runlog.run_log import RunLogError
-from thymio_sim_ros.suite_config import ADDRESS, OUT_OF_RANGE, SuiteConfig
+from thymio_sim_ros.ros.suite_config import ADDRESS, OUT_OF_RANGE, SuiteConfig
 
 __all__ = ["run"]
 

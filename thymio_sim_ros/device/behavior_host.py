@@ -16,13 +16,13 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from thymio_sim_ros import registry
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.programs.foreign import foreign_program
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import OFF
+from thymio_sim_ros.files import registry
 
 __all__ = ["ENTRIES", "MENU", "BehaviorHost", "built_in", "is_internal"]
 

@@ -15,7 +15,7 @@ from functools import cache
 
 from aseba_vm import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
 from aseba_vm.targets import THYMIO_II
-from thymio_sim_ros import registry
+from thymio_sim_ros.files import registry
 from thymio_sim_ros.sim import actuators, sensors
 from thymio_sim_ros.sim.actuators import Actuator, all_actuators
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors

@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 
-from thymio_sim_ros.block_files import BlocksError, is_of_blocks, open_program
+from thymio_sim_ros.files.block_files import BlocksError, is_of_blocks, open_program
 from thymio_sim_ros.grading import gradescope
 from thymio_sim_ros.grading.archives import (
     Content,

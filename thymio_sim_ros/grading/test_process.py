@@ -20,11 +20,11 @@ from typing import Any
 
 import pytest
 
+from thymio_sim_ros.files.test_files import trace_path
 from thymio_sim_ros.grading.integrity import TestFunctions
 from thymio_sim_ros.grading.points import points_of
 from thymio_sim_ros.grading.sandbox import syscalls
 from thymio_sim_ros.pytest_plugin import GRADED, Graded
-from thymio_sim_ros.runlog.test_files import trace_path
 
 __all__ = ["GradingPlugin", "main"]
 

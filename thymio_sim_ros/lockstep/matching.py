@@ -9,7 +9,7 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
-from thymio_sim_ros.type_names import type_name
+from thymio_sim_ros.names.type_names import type_name
 
 __all__ = ["EVERYWHERE", "all_matched", "endpoints", "fit", "is_complete", "is_matched"]
 

@@ -145,7 +145,7 @@ class Announcer:
     def _addresses(self) -> list[str]:
         if not ipaddress.ip_address(self._address).is_unspecified:
             return [self._address]
-        from thymio_sim_ros.addresses import own_address
+        from thymio_sim_ros.names.addresses import own_address
 
         try:
             return [str(ipaddress.ip_address(own_address()))]

@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.rl.errors import TaskError
 from thymio_sim_ros.rl.observations import SENSORS, Observations, observe
 from thymio_sim_ros.rl.starts import Starts
 from thymio_sim_ros.rl.tasks import Rewards, Task
 from thymio_sim_ros.rl.tiling import tiled
-from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.robot_constants import FULL_TARGET
@@ -75,7 +75,7 @@ class Simulation:
         """Steps of the episode so far, by robot."""
         self._lost_steps = np.zeros(len(self.names), np.int64)
         """Steps since a ground sensor was above something dark, by robot."""
-        self._runner: Runner | None = None
+        self._engine: Engine | None = None
 
     def begin(self, random: np.random.Generator) -> Outcome:
         """Begin an episode of every robot, in a new world. The same random numbers give the same bits."""
@@ -83,7 +83,7 @@ class Simulation:
             RobotStart(name, pose.x_m, pose.y_m, pose.yaw_rad)
             for name, pose in zip(self.names, self._draw(random, self._offsets), strict=True)
         ]
-        self._runner = Runner(
+        self._engine = Engine(
             replace(self._playground, robots=tuple(starts)),
             seed=int(random.integers(_SEEDS)),
             noise=self.task.noise,
@@ -91,7 +91,7 @@ class Simulation:
             proximity_model=self.task.proximity_model,
         )
         everyone = range(len(self.names))
-        return self._step(self._runner, np.zeros((len(self.names), 2)), everyone)
+        return self._step(self._engine, np.zeros((len(self.names), 2)), everyone)
 
     def act(
         self, actions: npt.NDArray[np.floating], *, restarted: Collection[int] = (), random: np.random.Generator
@@ -105,7 +105,7 @@ class Simulation:
 
         Raises RuntimeError before the first `begin`, ValueError for actions of another shape or not finite.
         """
-        if self._runner is None:
+        if self._engine is None:
             raise RuntimeError("the environment has no episode yet: call reset() before step()")
         expected = (len(self.names), 2)
         values = np.asarray(actions, np.float64)
@@ -114,9 +114,9 @@ class Simulation:
         values = np.clip(values, -1.0, 1.0)
         for number in restarted:
             (pose,) = self._draw(random, (self._offsets[number],))
-            self._runner.post(self.names[number], MoveRobot(pose.x_m, pose.y_m, pose.yaw_rad))
+            self._engine.post(self.names[number], MoveRobot(pose.x_m, pose.y_m, pose.yaw_rad))
             values[number] = 0.0
-        return self._step(self._runner, values, restarted)
+        return self._step(self._engine, values, restarted)
 
     def _draw(self, random: np.random.Generator, offsets: Collection[tuple[float, float]]) -> list[Pose]:
         """Return start poses of the robots in the copies with these offsets."""
@@ -126,15 +126,15 @@ class Simulation:
             for pose in self._starts.draw(random, self._robots_per_copy)
         ]
 
-    def _step(self, runner: Runner, actions: Floats, beginning: Collection[int]) -> Outcome:
+    def _step(self, engine: Engine, actions: Floats, beginning: Collection[int]) -> Outcome:
         for name, (left, right) in zip(self.names, np.rint(actions * FULL_TARGET).astype(int).tolist(), strict=True):
-            runner.post(name, MotorTargets(left, right))
-        before = self._poses(runner)
+            engine.post(name, MotorTargets(left, right))
+        before = self._poses(engine)
         touching: set[str] = set()
-        for result in runner.steps(self.task.step_s, ()):
+        for result in engine.steps(self.task.step_s, ()):
             touching.update(contact.robot for contact in result.contacts)
-        poses = self._poses(runner)
-        words = {sensor: self._words(runner, sensor) for sensor in self._read}
+        poses = self._poses(engine)
+        words = {sensor: self._words(engine, sensor) for sensor in self._read}
 
         contact = np.array([name in touching for name in self.names])
         is_dark: Bools = np.ones(len(self.names), np.bool_)
@@ -144,7 +144,7 @@ class Simulation:
         rewards = self._rewards(before, poses, contact, is_dark)
         self._steps += 1
         self._lost_steps = np.where(is_dark, 0, self._lost_steps + 1)
-        terminated = np.array([runner.world.robots[name].is_fallen for name in self.names])
+        terminated = np.array([engine.world.robots[name].is_fallen for name in self.names])
         terminated |= self._lost_steps * self.task.step_s >= self.task.line_lost_s
         if self.task.ends_at_contact:
             terminated |= contact
@@ -171,11 +171,11 @@ class Simulation:
             rewards += getattr(weights, field.name) * quantities[field.name]
         return rewards
 
-    def _poses(self, runner: Runner) -> Floats:
-        poses = [runner.world.robots[name].pose for name in self.names]
+    def _poses(self, engine: Engine) -> Floats:
+        poses = [engine.world.robots[name].pose for name in self.names]
         return np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses])
 
-    def _words(self, runner: Runner, sensor: str) -> list[tuple[int, ...]]:
+    def _words(self, engine: Engine, sensor: str) -> list[tuple[int, ...]]:
         """Return the words of what a sensor measures now, by robot."""
-        readings = [runner.world.read(name, sensor) for name in self.names]
+        readings = [engine.world.read(name, sensor) for name in self.names]
         return [reading.words for reading in readings if reading is not None]

@@ -22,8 +22,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 
-from thymio_sim_ros.domain import describe_domain
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 from thymio_sim_ros.ros.interface import qos
 

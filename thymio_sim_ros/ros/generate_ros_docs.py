@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from thymio_sim_ros import registry
+from thymio_sim_ros.files import registry
+from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros import combined_parameters
 from thymio_sim_ros.ros.aseba.aseba_ros_mapping import mapping_tables
 from thymio_sim_ros.ros.aseba.node import RuntimeParams
@@ -26,10 +27,9 @@ from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_position
+from thymio_sim_ros.ros.suite_config import SuiteConfig
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
-from thymio_sim_ros.suite_config import SuiteConfig
-from thymio_sim_ros.type_names import type_name
 
 __all__ = ["own_sensors", "published", "table", "text", "type_name"]
 

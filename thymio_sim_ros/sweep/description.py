@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from thymio_sim_ros import resources
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.loading import load_playground, read_text
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import load_playground, read_text
 from thymio_sim_ros.sim.playground.writer import dumps
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Source, Sweep, Value

@@ -18,8 +18,8 @@ from typing import Any
 from aseba_vm import AeslError
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, parse
 from thymio_sim_ros.device.programs.program_assignment import Assignment, note_lines
-from thymio_sim_ros.loading import assignments_of
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.files.loading import assignments_of
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
@@ -59,13 +59,13 @@ def notes(run: Run) -> list[str]:
     return [f"{run.program.name}: {line}" for line in lines]
 
 
-def start(run: Run) -> Runner:
+def start(run: Run) -> Engine:
     """Return a run at time 0. Raises SweepError for a parameter that does not fit its program or playground.
 
     At most one run of a process may be under way: the next one with the same playground takes its ground over.
     """
     playground, programs, variables, models = _prepared(run)
-    runner = Runner(
+    engine = Engine(
         playground,
         programs,
         motor_model=str(models.get("motors", MOTOR_MODELS[0])),
@@ -74,11 +74,11 @@ def start(run: Run) -> Runner:
         seed=run.seed,
         ground=_ground(run.playground, _fields(run)),
     )
-    for device in runner.devices.values():
+    for device in engine.devices.values():
         for name, word in variables:
             if name in device.variables.addresses():
                 device.variables.set(name, [word])
-    return runner
+    return engine
 
 
 def _prepared(run: Run) -> tuple[Playground, dict[str, ThymioProgram], Words, dict[str, Value]]:

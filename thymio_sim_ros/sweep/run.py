@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
-from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.runner_faults import RunnerFaults
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.faults import ProgramFaults
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.playground.track_line import TrackLine
 from thymio_sim_ros.sweep.errors import SweepError
@@ -28,17 +28,17 @@ class LimitError(SweepError):
 
 def run_robots(sweep: Sweep, number: int) -> list[Row]:
     """Execute a run; return a row for each robot. Raises SweepError if it cannot be executed or exceeds its limit."""
-    runner = start(sweep.run(number))
-    line = _only_line(runner.world.playground)
-    records = {name: RobotRecord(robot, runner.devices.get(name), line) for name, robot in runner.world.robots.items()}
-    faults = RunnerFaults(runner, lambda _: None)
-    _record_events(runner, records)
+    engine = start(sweep.run(number))
+    line = _only_line(engine.world.playground)
+    records = {name: RobotRecord(robot, engine.devices.get(name), line) for name, robot in engine.world.robots.items()}
+    faults = ProgramFaults(engine, lambda _: None)
+    _record_events(engine, records)
     begun_s = time.thread_time()
-    for tick, result in enumerate(faults.checked(runner.steps(sweep.seconds, ()))):
+    for tick, result in enumerate(faults.checked(engine.steps(sweep.seconds, ()))):
         seconds = result.now_ns / 1e9
         for record in records.values():
             record.add_tick(seconds)
-        _record_events(runner, records)
+        _record_events(engine, records)
         if tick % _CHECKED_TICKS == 0 and time.thread_time() - begun_s > sweep.limit_s:
             raise LimitError(f"stopped at {sweep.limit_s:g} s of processor time, the limit of a run")
     head = _head(sweep, number)
@@ -78,6 +78,6 @@ def _only_line(playground: Playground) -> TrackLine | None:
         return None
 
 
-def _record_events(runner: Runner, records: dict[str, RobotRecord]) -> None:
-    for name, event in runner.emitted:
-        records[name].add_event(event.name, runner.now_ns / 1e9)
+def _record_events(engine: Engine, records: dict[str, RobotRecord]) -> None:
+    for name, event in engine.emitted:
+        records[name].add_event(event.name, engine.now_ns / 1e9)

@@ -12,9 +12,9 @@ import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
-from thymio_sim_ros.loading import robot_ids
-from thymio_sim_ros.runlog.run_log import RunLog
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.run_log import RunLog
+from thymio_sim_ros.files.loading import robot_ids
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
@@ -65,7 +65,7 @@ class Classroom:
         else:
             own = programs_of(programs, self._ids, folder)
         self._log = None if run_log is None else RunLog(run_log.open("w", encoding="utf-8", newline="\n"))
-        self.runner = Runner(loaded, own, seed=seed, noise=noise, log=self._log)
+        self.engine = Engine(loaded, own, seed=seed, noise=noise, log=self._log)
         self.robots: Mapping[str, Thymio] = {name: Thymio(name, self) for name in names}
         self._record_events()
 
@@ -84,12 +84,12 @@ class Classroom:
     @property
     def world(self) -> World:
         """The simulated world."""
-        return self.runner.world
+        return self.engine.world
 
     @property
     def now(self) -> float:
         """Simulated time in s."""
-        return self.runner.now_ns / SECOND_NS
+        return self.engine.now_ns / SECOND_NS
 
     def run(self, seconds: float) -> None:
         """Advance simulated time by this many seconds."""
@@ -98,12 +98,12 @@ class Classroom:
 
     def tick(self) -> None:
         """Advance simulated time by one tick of 10 ms."""
-        self.runner.step(())
+        self.engine.step(())
         self._record_events()
         for name, thymio in self.robots.items():
             robot = self.world.robots.get(name)
             if robot is not None:
-                thymio.record.add_tick(robot, self.runner.now_ns)
+                thymio.record.add_tick(robot, self.engine.now_ns)
 
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Advance time until the condition is true, at most this many simulated seconds; return its value.
@@ -111,10 +111,10 @@ class Classroom:
         Otherwise the test fails with a report of the robots.
         """
         __tracebackhide__ = True
-        end_ns = self.runner.now_ns + round(seconds * SECOND_NS)
+        end_ns = self.engine.now_ns + round(seconds * SECOND_NS)
         awaited = Awaited(condition)
         while not (value := awaited()):
-            if self.runner.now_ns >= end_ns:
+            if self.engine.now_ns >= end_ns:
                 head = f"not within {seconds:g} simulated s: {what or describe_condition(condition)}{awaited.missing()}"
                 pytest.fail("\n".join([head, *robot_lines(self)]))
             self.tick()
@@ -122,7 +122,7 @@ class Classroom:
 
     def reset(self) -> None:
         """Reset world, noise, programs and records to the start."""
-        self.runner.reset()
+        self.engine.reset()
         for thymio in self:
             thymio.record.clear()
         self._record_events()
@@ -134,26 +134,26 @@ class Classroom:
 
     def machine(self, robot: str) -> RobotMachine:
         """The machine of a robot."""
-        host = self.runner.hosts[robot]
+        host = self.engine.hosts[robot]
         return _ClassroomMachine(host.device, host.program)
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Load a program, which starts at once."""
-        self.runner.load(robot, programs_of(program, {robot: self._ids[robot]}, self._folder)[robot])
+        self.engine.load(robot, programs_of(program, {robot: self._ids[robot]}, self._folder)[robot])
         self._record_events()
 
     def emit(self, event: str, args: Sequence[int]) -> None:
         """Send an event to all robots that declare it, in the next tick. Raises LookupError if there is none."""
-        listeners = [device for device in self.runner.devices.values() if device.declares(event)]
+        listeners = [device for device in self.engine.devices.values() if device.declares(event)]
         if not listeners:
-            known = sorted({name for host in self.runner.hosts.values() for name, _ in host.program.events})
+            known = sorted({name for host in self.engine.hosts.values() for name, _ in host.program.events})
             raise LookupError(f"no program declares the event '{event}', only {', '.join(known) or 'none'}")
         for device in listeners:
             device.receive_event(event, args)
 
     def _record_events(self) -> None:
-        for name, event in self.runner.emitted:
-            self.robots[name].record.add_event(event.name, event.args, self.runner.now_ns)
+        for name, event in self.engine.emitted:
+            self.robots[name].record.add_event(event.name, event.args, self.engine.now_ns)
 
 
 def _check_robot(name: str, names: Sequence[str]) -> None:

@@ -7,9 +7,9 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from thymio_sim_ros import loading, resources
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import RobotId, note_lines
+from thymio_sim_ros.files import loading, resources
 from thymio_sim_ros.sim.playground.reader import Playground
 
 __all__ = ["beside", "is_name", "playground_of", "playground_source", "program_source", "programs_of"]

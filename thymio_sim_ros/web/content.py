@@ -13,7 +13,7 @@ import urllib.parse
 from dataclasses import dataclass
 from pathlib import Path
 
-from thymio_sim_ros.playground_index import PlaygroundIndex
+from thymio_sim_ros.files.playground_index import PlaygroundIndex
 from thymio_sim_ros.sim.playground import declarations
 from thymio_sim_ros.sim.shapes import all_shapes
 

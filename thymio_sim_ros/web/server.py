@@ -14,7 +14,7 @@ from typing import Any
 
 from aiohttp import web
 
-from thymio_sim_ros.resources import PAGE_BUILD_HINT
+from thymio_sim_ros.files.resources import PAGE_BUILD_HINT
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 from thymio_sim_ros.web.content import TYPES, Content, Document
 from thymio_sim_ros.web.hosts import host_name

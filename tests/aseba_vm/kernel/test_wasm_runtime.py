@@ -33,13 +33,13 @@ BATCH_SCRIPT = """
 import sys
 from dataclasses import replace
 from aseba_vm.kernel import wasm_runtime
-from thymio_sim_ros.loading import load_playground, read_assignments
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.files.loading import load_playground, read_assignments
+from thymio_sim_ros.engine.engine import Engine
 playground = load_playground("borderless")[1]
 start = playground.robots[0]
 robots = tuple(replace(start, name=f"r{n}", x_m=0.3 * (n % 5) - 0.6, y_m=0.3 * (n // 5) - 0.6) for n in range(20))
 shares = read_assignments("line_follower", [robot.name for robot in robots], "thymio")
-runner = Runner(replace(playground, robots=robots), {name: share.program for name, share in shares.items()})
+runner = Engine(replace(playground, robots=robots), {name: share.program for name, share in shares.items()})
 for _ in runner.steps(1.0):
     pass
 print([robot.pose for robot in runner.world.robots.values()])

@@ -6,7 +6,6 @@ import pytest
 
 from aseba_vm.languages import texts
 from aseba_vm.targets import THYMIO_II
-from thymio_sim_ros import resources
 from thymio_sim_ros.device.editor.help_order import ORDER
 from thymio_sim_ros.device.editor.language_service import (
     MOST_CHARACTERS,
@@ -19,6 +18,7 @@ from thymio_sim_ros.device.editor.language_service import (
 )
 from thymio_sim_ros.device.layout import PLAYGROUND, target
 from thymio_sim_ros.device.programs.program import load_program
+from thymio_sim_ros.files import resources
 
 FILE = """<network>
 <event size="1" name="ping"/>

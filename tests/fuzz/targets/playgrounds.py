@@ -15,7 +15,7 @@ from tests.sim.builders import PLAYGROUNDS
 from tests.sim.images import BLACK, CLEAR, RED, WHITE, png, png_uri, svg_uri
 from tests.sim.playground.importers.test_thesis import BORDERLESS
 from tests.sim.test_playground_fuzz import ASEBA
-from thymio_sim_ros.loading import is_playground_text, load_playground
+from thymio_sim_ros.files.loading import is_playground_text, load_playground
 from thymio_sim_ros.sim.formats import css, image_io, svg, svg_process, xml_tree
 from thymio_sim_ros.sim.formats.xml_tree import XmlError
 from thymio_sim_ros.sim.model.fields import FieldError

@@ -10,8 +10,8 @@ from importlib.util import find_spec
 
 from tests.fuzz.target import FOLDER, Target
 from tests.sim.builders import make
-from thymio_sim_ros.runlog import run_log
-from thymio_sim_ros.runlog.run_log import RunLog, RunLogError
+from thymio_sim_ros.engine import run_log
+from thymio_sim_ros.engine.run_log import RunLog, RunLogError
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.sweep.description import Description, read_description

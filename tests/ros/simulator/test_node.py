@@ -30,7 +30,7 @@ from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker, MarkerArray
 
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.ros.interface.convert_readings import yaw_of
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist

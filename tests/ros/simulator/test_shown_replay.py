@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import shipped
+from thymio_sim_ros.engine.run_log import RunLog
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
-from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.world import World
 

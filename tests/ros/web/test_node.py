@@ -10,8 +10,9 @@ import socket
 import pytest
 
 from tests.patience import PATIENCE_S
-from thymio_sim_ros import addresses, resources
 from thymio_sim_ros.bridge import Tokens
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.names import addresses
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.web import node
 from thymio_sim_ros.ros.web.node import WebPage, WebParams

@@ -255,7 +255,7 @@ def test_a_fault_of_the_text_is_told_with_its_place(text: str, message: str) -> 
 
 MEMORY = """
 import resource, time
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 text = {text}
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -22,6 +22,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from thymio_sim_ros.files.test_files import kept_files
 from thymio_sim_ros.grading.sandbox import namespaces, syscalls
 from thymio_sim_ros.grading.sandbox.confinement import Confinement, confine
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
@@ -30,7 +31,6 @@ from thymio_sim_ros.grading.sandbox.report_protocol import ForgedError, ReportPr
 from thymio_sim_ros.grading.sandbox.shown_paths import without_folders
 from thymio_sim_ros.grading.sandbox.usage import descendants
 from thymio_sim_ros.grading.sandbox.watched_process import Ended, LimitError, WatchedProcess
-from thymio_sim_ros.runlog.test_files import kept_files
 
 __all__ = ["Place", "supervise"]
 

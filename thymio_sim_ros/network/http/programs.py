@@ -9,9 +9,9 @@ from aseba_vm import AeslError, CompileError, aesl, compile
 from aseba_vm.aesl.network import with_vpl_events
 from aseba_vm.errors import TextError
 from aseba_vm.target import TargetDescription
-from thymio_sim_ros.block_files import BlocksError, open_program
 from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
 from thymio_sim_ros.device.programs.program_assignment import RobotId, assign_nodes, note_lines
+from thymio_sim_ros.files.block_files import BlocksError, open_program
 from thymio_sim_ros.network.http.replies import Definitions
 from thymio_sim_ros.network.http.requests import RequestError
 

@@ -27,7 +27,7 @@ from std_msgs.msg import String
 
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.device.options import OptionError
-from thymio_sim_ros.loading import shipped_behaviours
+from thymio_sim_ros.files.loading import shipped_behaviours
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba.bus import SLICE_S

@@ -9,7 +9,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId
-from thymio_sim_ros.loading import check_behaviour
+from thymio_sim_ros.files.loading import check_behaviour
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba import script_parameters
 from thymio_sim_ros.ros.aseba.parameters import WrongValueError

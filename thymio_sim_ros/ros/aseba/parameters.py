@@ -14,9 +14,9 @@ from rclpy.validate_namespace import validate_namespace
 
 from aseba_vm.frontend.lexer import is_name
 from aseba_vm.vm import MAX_BREAKPOINTS
-from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.files import resources
 from thymio_sim_ros.network.settings import HTTP_PORT, OFF, TDM_WS_PORT, NetworkSettings
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param

@@ -9,14 +9,14 @@ from typing import Any, overload
 from rclpy.node import Node
 
 from aseba_vm.targets import THYMIO_II
-from thymio_sim_ros import resources
 from thymio_sim_ros.device.behavior_host import MENU
 from thymio_sim_ros.device.firmware.sd_card import SdCardError
 from thymio_sim_ros.device.firmware.settings import SettingsError
 from thymio_sim_ros.device.layout import THYMIO, described
 from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId
-from thymio_sim_ros.loading import check_behaviour
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import check_behaviour
 from thymio_sim_ros.network.robot_target import Target, TargetError, parse_target
 from thymio_sim_ros.ros.aseba import script_parameters
 from thymio_sim_ros.ros.aseba.bus import Bus

@@ -8,7 +8,7 @@ from typing import Any
 
 from thymio_sim_ros.device.programs.program import load_file
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId, assign_programs
-from thymio_sim_ros.loading import read_text, text_of
+from thymio_sim_ros.files.loading import read_text, text_of
 
 __all__ = ["Script", "named", "named_robots", "script_of", "shares"]
 

@@ -11,8 +11,8 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from thymio_sim_ros import resources
-from thymio_sim_ros.loading import NO_PROGRAM, is_playground_text
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import NO_PROGRAM, is_playground_text
 
 __all__ = ["call_refusal", "parameter_refusal"]
 

@@ -25,11 +25,11 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
-from thymio_sim_ros.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Tokens
 from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 from thymio_sim_ros.bridge.protocol.messages import AssetResponse
 from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.names.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
 from thymio_sim_ros.ros.foxglove.graph import (

@@ -21,7 +21,7 @@ from rclpy.node import Node, NodeNameNonExistentError
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from thymio_sim_ros.lockstep.matching import fit
-from thymio_sim_ros.type_names import type_name
+from thymio_sim_ros.names.type_names import type_name
 
 __all__ = [
     "CLIENT",

@@ -18,7 +18,9 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter_service import ParameterService
 
-from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.engine.replay import last_run
+from thymio_sim_ros.engine.run_log import RunLogError
+from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.interface import driver_topics, qos
 from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
@@ -43,8 +45,6 @@ from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
 from thymio_sim_ros.ros.simulator.simulation_interfaces import services
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.ros.simulator.world_services import WorldServices
-from thymio_sim_ros.runlog.replay import last_run
-from thymio_sim_ros.runlog.run_log import RunLogError
 
 __all__ = ["Simulator", "SimulatorParams", "main"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros import resources
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.world_endpoints import SceneMessages

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rclpy.node import Node
 
+from thymio_sim_ros.engine.run_log import RunLog
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
-from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Recording"]

@@ -14,7 +14,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, RobotNames
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors

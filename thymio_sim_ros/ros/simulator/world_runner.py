@@ -14,6 +14,7 @@ from collections.abc import Callable
 from rclpy.executors import Executor
 from rclpy.node import Node
 
+from thymio_sim_ros.engine.replay import LoggedRun
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
@@ -24,7 +25,6 @@ from thymio_sim_ros.ros.simulator.prepared_playground import PreparedPlayground
 from thymio_sim_ros.ros.simulator.recording import Recording
 from thymio_sim_ros.ros.simulator.tick_scheduler import TickScheduler
 from thymio_sim_ros.ros.simulator.world_endpoints import WorldState
-from thymio_sim_ros.runlog.replay import LoggedRun
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import RobotStart

@@ -9,7 +9,7 @@ import sys
 from dataclasses import dataclass
 from functools import partial
 
-from thymio_sim_ros import registry
+from thymio_sim_ros.files import registry
 from thymio_sim_ros.sim.plugin_api.aseba_binding import NO_ACTUATOR_FACE, ActuatorFace
 from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin, isolated
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from thymio_sim_ros import registry
+from thymio_sim_ros.files import registry
 from thymio_sim_ros.sim.model.clock import NEVER_NS
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import NO_SENSOR_FACE, AsebaFace

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from thymio_sim_ros import registry
+from thymio_sim_ros.files import registry
 from thymio_sim_ros.sim.model.field_declarations import field_declarations, sample_values
 from thymio_sim_ros.sim.model.fields import image_keys, json_schema, read
 from thymio_sim_ros.sim.model.primitive_declarations import primitive_declarations

@@ -21,6 +21,7 @@ from rclpy.utilities import get_default_context, try_shutdown
 
 from thymio_sim_ros import course_packages
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
+from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections, wrong_qos
@@ -38,7 +39,6 @@ from thymio_sim_ros.testing.ros.program_files import find
 from thymio_sim_ros.testing.ros.programs import Programs
 from thymio_sim_ros.testing.ros.recorder import Recorder
 from thymio_sim_ros.testing.sources import beside
-from thymio_sim_ros.type_names import type_name
 
 __all__ = ["DEADLINE_S", "Ros"]
 

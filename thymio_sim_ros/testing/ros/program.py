@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from thymio_sim_ros import field_checks
+from thymio_sim_ros.course_packages import field_checks
 from thymio_sim_ros.lockstep.channel import Channel, ClosedError
 from thymio_sim_ros.lockstep.main import Options
 from thymio_sim_ros.lockstep.real_time import LAST_RESORT_S

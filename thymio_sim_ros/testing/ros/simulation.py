@@ -11,7 +11,7 @@ from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.program_assignment import RobotId
-from thymio_sim_ros.loading import robot_ids
+from thymio_sim_ros.files.loading import robot_ids
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.interface import qos

@@ -33,10 +33,10 @@ from rclpy.parameter import Parameter
 from rclpy.timer import Rate
 
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Side, wrong_type
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.ros import interruption
-from thymio_sim_ros.type_names import type_name
 
 __all__ = [
     "INSTEAD",

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Twist, Vecto
 from std_msgs.msg import Header
 
 from tests.ros.interface_types import interfaces
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, SimInterfaces
 
 GRAY = "#808080"

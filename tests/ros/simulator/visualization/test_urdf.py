@@ -8,8 +8,8 @@ import xml.etree.ElementTree as ET
 import pytest
 from visualization_msgs.msg import Marker
 
-from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.resources import playgrounds
+from thymio_sim_ros.files.loading import load_playground
+from thymio_sim_ros.files.resources import playgrounds
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.simulator.visualization.markers import playground_markers
 from thymio_sim_ros.ros.simulator.visualization.transforms import origin_of

@@ -11,7 +11,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.names.domain import describe_domain
 
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 

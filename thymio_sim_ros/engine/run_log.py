@@ -27,9 +27,9 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import thymio_sim_ros
+from thymio_sim_ros.engine import command_codec
+from thymio_sim_ros.engine.command_codec import CommandJsonError
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.runlog import command_codec
-from thymio_sim_ros.runlog.command_codec import CommandJsonError
 from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT
-from thymio_sim_ros import resources
-from thymio_sim_ros.loading import is_playground_text, load_playground, read_program, read_text
-from thymio_sim_ros.resources import ResourceError
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.loading import is_playground_text, load_playground, read_program, read_text
+from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
 OURS = json.dumps({"format": 1, "title": "Ours", "shapes": [FLOOR], "robots": [ROBOT]})

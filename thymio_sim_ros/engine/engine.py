@@ -19,7 +19,7 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
-from thymio_sim_ros.runlog.run_log import RunLog
+from thymio_sim_ros.engine.run_log import RunLog
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.clock import TICK_NS
@@ -29,7 +29,7 @@ from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
 from thymio_sim_ros.sim.sensors import all_sensors
 from thymio_sim_ros.sim.world import StepResult, World
 
-__all__ = ["Runner"]
+__all__ = ["Engine"]
 
 BUDGET = 5000
 """Instructions of a device per round of a tick; a longer handler continues in the next."""
@@ -40,7 +40,7 @@ MAX_ROUNDS = 10
 _SECOND_NS = 1_000_000_000
 
 
-class Runner:
+class Engine:
     """A world, and a device for each robot that has a program or a behaviour.
 
     `emitted` has the events of the last step as (robot, event), in order.

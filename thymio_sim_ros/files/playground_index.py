@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from pathlib import Path
 
-from thymio_sim_ros import resources
+from thymio_sim_ros.files import resources
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground import writer
 

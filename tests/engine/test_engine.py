@@ -15,13 +15,13 @@ from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runner import BUDGET, MAX_ROUNDS, Runner
+from thymio_sim_ros.engine.engine import BUDGET, MAX_ROUNDS, Engine
+from thymio_sim_ros.files.loading import load_playground, read_program
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import RobotStart
 
-RUNAWAYS = sorted((Path(__file__).parent / "data" / "runaway").glob("*.aesl"))
+RUNAWAYS = sorted((Path(__file__).parents[1] / "data" / "runaway").glob("*.aesl"))
 
 TALK = """<network><event size="1" name="hello"/><node name="thymio-II">
 var heard[2]
@@ -43,28 +43,28 @@ TWO = json.dumps(
 )
 
 
-def line_runner(seed):
-    return Runner(load_playground("line")[1], read_program("line_follower"), seed=seed)
+def line_follower_engine(seed):
+    return Engine(load_playground("line")[1], read_program("line_follower"), seed=seed)
 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_the_line_program_goes_round_without_leaving_the_line(seed):
-    assert farthest_in_laps(line_runner(seed), 1) < 0.02
+    assert farthest_in_laps(line_follower_engine(seed), 1) < 0.02
 
 
 @pytest.mark.parametrize("speed", [300, 500])
 def test_the_line_program_goes_round_five_times_at_any_speed(speed):
-    runner = line_runner(0)
-    runner.devices["thymio"].receive_event("speed", (speed,))
-    assert farthest_in_laps(runner, 5) < 0.02
+    engine = line_follower_engine(0)
+    engine.devices["thymio"].receive_event("speed", (speed,))
+    assert farthest_in_laps(engine, 5) < 0.02
 
 
 def test_the_line_program_emits_an_event_when_it_turns():
-    runner = line_runner(0)
+    engine = line_follower_engine(0)
     reported = []
     for _ in range(1000):
-        runner.step()
-        reported += [(robot, event.name, event.args) for robot, event in runner.emitted]
+        engine.step()
+        reported += [(robot, event.name, event.args) for robot, event in engine.emitted]
     assert reported[0] == ("thymio", "line", (0,))
     assert {args for _, _, args in reported} >= {(0,), (-1,)}
     assert all(before != after for before, after in itertools.pairwise(reported))
@@ -73,11 +73,11 @@ def test_the_line_program_emits_an_event_when_it_turns():
 def test_the_same_seed_gives_the_same_poses_bit_for_bit():
     poses = []
     for seed in (5, 5, 6):
-        runner = line_runner(seed)
+        engine = line_follower_engine(seed)
         track = []
         for _ in range(100):
-            runner.run(0.2)
-            track.append(runner.world.robots["thymio"].pose)
+            engine.run(0.2)
+            track.append(engine.world.robots["thymio"].pose)
         poses.append(track)
     assert poses[0] == poses[1]
     assert poses[0] != poses[2]
@@ -101,82 +101,82 @@ motor.left.target = 0
 def test_the_same_seed_gives_the_same_run_whatever_is_read():
     found = []
     for is_read in (False, True):
-        runner = Runner(playgrounds.loads(TWO, "two"), load_program(READER, "reader"), seed=3)
+        engine = Engine(playgrounds.loads(TWO, "two"), load_program(READER, "reader"), seed=3)
         for second in range(4):
-            runner.press("anna", "center", pressed=second == 2)
+            engine.press("anna", "center", pressed=second == 2)
             for _ in range(100):
                 if is_read:
-                    assert runner.step().readings
-                    _ = [device.variables.words() for device in runner.devices.values()]
+                    assert engine.step().readings
+                    _ = [device.variables.words() for device in engine.devices.values()]
                 else:
-                    runner.run(0.01)
-        words = [device.variables.words() for device in runner.devices.values()]
-        found.append((words, runner.world.snapshot()))
+                    engine.run(0.01)
+        words = [device.variables.words() for device in engine.devices.values()]
+        found.append((words, engine.world.snapshot()))
     assert found[0] == found[1]
 
 
 def test_a_variable_is_measured_when_it_is_read():
-    runner = Runner(load_playground("base")[1], load_program("motor.left.target = 100", "left"), noise=False)
-    variables = runner.devices["thymio"].variables
+    engine = Engine(load_playground("base")[1], load_program("motor.left.target = 100", "left"), noise=False)
+    variables = engine.devices["thymio"].variables
     for target in (100, 250):
         variables.set("motor.left.target", (target,))
-        runner.run(0.03)
+        engine.run(0.03)
         assert variables.get("motor.left.speed") == (target,)
 
 
 def test_a_value_written_to_a_measured_variable_stays_until_the_next_tick():
-    runner = Runner(load_playground("base")[1], load_program("", "none"), noise=False)
-    variables = runner.devices["thymio"].variables
-    runner.run(0.1)
+    engine = Engine(load_playground("base")[1], load_program("", "none"), noise=False)
+    variables = engine.devices["thymio"].variables
+    engine.run(0.1)
     variables.set("motor.left.speed", (7,))
     assert variables.get("motor.left.speed") == (7,)
-    runner.run(0.01)
+    engine.run(0.01)
     assert variables.get("motor.left.speed") == (0,)
 
 
 def test_the_event_of_a_sensor_that_measures_on_demand_comes_once_it_is_handled():
-    runner = Runner(load_playground("base")[1], load_program("var n = 0", "none"))
-    runner.run(0.5)
-    runner.load("thymio", load_program("var n = 0\nonevent motor\nn++", "motor"))
-    runner.run(0.5)
-    assert runner.devices["thymio"].variables.get("n") == (50,)
+    engine = Engine(load_playground("base")[1], load_program("var n = 0", "none"))
+    engine.run(0.5)
+    engine.load("thymio", load_program("var n = 0\nonevent motor\nn++", "motor"))
+    engine.run(0.5)
+    assert engine.devices["thymio"].variables.get("n") == (50,)
 
 
 def test_a_device_without_work_is_not_run(monkeypatch):
-    runner = Runner(load_playground("base")[1], load_program("timer.period[0] = 500\nonevent timer0", "t"), noise=False)
-    runner.run(1.0)
+    engine = Engine(load_playground("base")[1], load_program("timer.period[0] = 500\nonevent timer0", "t"), noise=False)
+    engine.run(1.0)
     runs = []
     run = AsebaDevice.run
-    monkeypatch.setattr(AsebaDevice, "run", lambda device, budget: (runs.append(runner.now_ns), run(device, budget)))
-    runner.run(1.0)
+    monkeypatch.setattr(AsebaDevice, "run", lambda device, budget: (runs.append(engine.now_ns), run(device, budget)))
+    engine.run(1.0)
     ticks = {now_ns // 10_000_000 for now_ns in runs}
     assert {150, 200} <= ticks
     assert len(ticks) < 30
 
 
 def test_reset_repeats_the_run():
-    runner = line_runner(1)
-    runner.run(5.0)
-    first = runner.world.robots["thymio"].pose
-    runner.reset()
-    assert runner.now_ns == 0
-    runner.run(5.0)
-    assert runner.world.robots["thymio"].pose == first
+    engine = line_follower_engine(1)
+    engine.run(5.0)
+    first = engine.world.robots["thymio"].pose
+    engine.reset()
+    assert engine.now_ns == 0
+    engine.run(5.0)
+    assert engine.world.robots["thymio"].pose == first
 
 
 def test_robots_hear_each_other_s_events_but_not_their_own():
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(TALK, "talk.aesl"))
-    runner.press("anna", "center")
-    assert runner.until(lambda: runner.devices["bert"].variables.get("heard") == (1, 42), 1.0)
-    assert runner.devices["anna"].variables.get("heard") == (0, 0)
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(TALK, "talk.aesl"))
+    engine.press("anna", "center")
+    assert engine.until(lambda: engine.devices["bert"].variables.get("heard") == (1, 42), 1.0)
+    assert engine.devices["anna"].variables.get("heard") == (0, 0)
 
 
 def test_every_event_of_one_handler_is_heard_in_the_same_tick():
     source = TALK.replace("emit hello 42", "emit hello 4\n        emit hello 2").replace("heard = [", "heard += [")
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "talk.aesl"))
-    runner.press("bert", "center")
-    assert runner.until(lambda: runner.devices["bert"].variables.get("button.center") == (1,), 1.0)
-    assert runner.devices["anna"].variables.get("heard") == (4, 6)
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(source, "talk.aesl"))
+    engine.press("bert", "center")
+    assert engine.until(lambda: engine.devices["bert"].variables.get("button.center") == (1,), 1.0)
+    assert engine.devices["anna"].variables.get("heard") == (4, 6)
 
 
 def test_robots_that_answer_each_other_for_ever_do_not_hold_the_world_up():
@@ -188,62 +188,62 @@ def test_robots_that_answer_each_other_for_ever_do_not_hold_the_world_up():
     n = n + 1
     emit ball
     </node></network>"""
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "ball.aesl"))
-    runner.press("anna", "center")
-    runner.run(1.0)
-    assert runner.devices["bert"].variables.get("n")[0] > 50
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(source, "ball.aesl"))
+    engine.press("anna", "center")
+    engine.run(1.0)
+    assert engine.devices["bert"].variables.get("n")[0] > 50
 
 
 def test_a_timer_started_at_the_beginning_fires_on_time():
     program = load_program("var n = 0\ntimer.period[0] = 100\nonevent timer0\nn++", "timer")
-    runner = Runner(load_playground("base")[1], program)
-    runner.run(0.09)
-    assert runner.devices["thymio"].variables.get("n") == (0,)
-    runner.run(0.01)
-    assert runner.devices["thymio"].variables.get("n") == (1,)
+    engine = Engine(load_playground("base")[1], program)
+    engine.run(0.09)
+    assert engine.devices["thymio"].variables.get("n") == (0,)
+    engine.run(0.01)
+    assert engine.devices["thymio"].variables.get("n") == (1,)
 
 
 def test_a_program_can_be_given_to_some_robots_only():
-    runner = Runner(playgrounds.loads(TWO, "two"), {"bert": load_program("motor.left.target = 100", "a")})
-    runner.run(1.0)
-    assert runner.world.robots["anna"].pose.yaw_rad == 0.0
-    assert runner.world.robots["bert"].pose.yaw_rad < -0.1
+    engine = Engine(playgrounds.loads(TWO, "two"), {"bert": load_program("motor.left.target = 100", "a")})
+    engine.run(1.0)
+    assert engine.world.robots["anna"].pose.yaw_rad == 0.0
+    assert engine.world.robots["bert"].pose.yaw_rad < -0.1
 
 
 def test_a_button_stops_the_line_program_and_lets_it_go_again():
-    runner = line_runner(0)
-    robot = runner.world.robots["thymio"]
-    runner.run(1.0)
-    runner.press("thymio", "center")
-    runner.run(0.3)
+    engine = line_follower_engine(0)
+    robot = engine.world.robots["thymio"]
+    engine.run(1.0)
+    engine.press("thymio", "center")
+    engine.run(0.3)
     stopped = robot.pose
-    runner.press("thymio", "center", pressed=False)
-    runner.run(1.0)
+    engine.press("thymio", "center", pressed=False)
+    engine.run(1.0)
     assert robot.pose == stopped
-    runner.press("thymio", "center")
-    runner.run(1.0)
+    engine.press("thymio", "center")
+    engine.run(1.0)
     assert robot.pose.x_m > stopped.x_m + 0.05
 
 
 def test_an_event_sets_the_speed_of_the_line_program():
-    runner = line_runner(0)
-    runner.run(1.0)
-    runner.devices["thymio"].receive_event("speed", (9999,))
-    runner.run(0.5)
-    assert runner.devices["thymio"].variables.get("cruise") == (500,)
+    engine = line_follower_engine(0)
+    engine.run(1.0)
+    engine.devices["thymio"].receive_event("speed", (9999,))
+    engine.run(0.5)
+    assert engine.devices["thymio"].variables.get("cruise") == (500,)
 
 
 def test_a_ros_command_takes_over_for_its_time():
-    runner = Runner(
+    engine = Engine(
         load_playground("base")[1], load_program("motor.left.target = 100\nmotor.right.target = 100", "a"), noise=False
     )
-    robot = runner.world.robots["thymio"]
-    runner.run(1.0)
+    robot = engine.world.robots["thymio"]
+    engine.run(1.0)
     before = robot.pose.x_m
-    runner.post("thymio", BodyTwist(-0.1, 0.0, 500_000_000))
-    runner.run(0.51)
+    engine.post("thymio", BodyTwist(-0.1, 0.0, 500_000_000))
+    engine.run(0.51)
     assert robot.pose.x_m == pytest.approx(before - 0.05, abs=0.002)
-    runner.run(1.0)
+    engine.run(1.0)
     assert robot.pose.x_m == pytest.approx(before - 0.05 + 0.0332, abs=0.002)
 
 
@@ -257,7 +257,7 @@ call sd.write([_id], n)
 
 def test_each_of_several_robots_has_a_card_of_its_own(tmp_path):
     options = DeviceOptions(card=tmp_path)
-    Runner(playgrounds.loads(TWO, "two"), load_program(NOTE, "note"), options=options)
+    Engine(playgrounds.loads(TWO, "two"), load_program(NOTE, "note"), options=options)
     found = {path.parent.name: path.read_bytes() for path in tmp_path.glob("*/u1.dat")}
     assert found == {"anna": b"\x01\x00", "bert": b"\x02\x00"}
 
@@ -265,19 +265,19 @@ def test_each_of_several_robots_has_a_card_of_its_own(tmp_path):
 @pytest.mark.parametrize(("network", "heard"), [(0, (1, 42)), (5, (0, 0))])
 def test_robots_of_different_radio_networks_do_not_hear_each_other(network, heard):
     setup = f"call _rf.setup(0, {network} * (_id - 1))\nonevent button.center"
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(TALK.replace("onevent button.center", setup), "talk"))
-    runner.press("anna", "center")
-    runner.run(0.5)
-    assert runner.devices["bert"].variables.get("heard") == heard
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(TALK.replace("onevent button.center", setup), "talk"))
+    engine.press("anna", "center")
+    engine.run(0.5)
+    assert engine.devices["bert"].variables.get("heard") == heard
 
 
 def test_a_sound_that_ends_raises_its_event_in_simulated_time():
     source = "var n = 0\ncall sound.freq(440, 30)\nonevent sound.finished\nn = n + 1"
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "sound"))
-    device = runner.devices["anna"]
-    assert runner.until(lambda: device.variables.get("n") == (1,), 1.0)
-    assert runner.now_ns == pytest.approx(30 * 16_384_000, abs=20_000_000)
-    runner.run(2.0)
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(source, "sound"))
+    device = engine.devices["anna"]
+    assert engine.until(lambda: device.variables.get("n") == (1,), 1.0)
+    assert engine.now_ns == pytest.approx(30 * 16_384_000, abs=20_000_000)
+    engine.run(2.0)
     assert device.variables.get("n") == (1,)
 
 
@@ -287,55 +287,55 @@ def test_the_robot_s_lights_show_an_obstacle_until_the_program_takes_them():
     world["shapes"].append(wall | {"color": "#ffffff"})
     playground = playgrounds.loads(json.dumps(world), "two")
     source = "onevent button.center\ncall leds.prox.h(1, 2, 3, 4, 5, 6, 7, 8)"
-    runner = Runner(playground, load_program(source, "lights"))
-    runner.run(0.5)
-    lights = dict(runner.world.snapshot().robots[0].leds)
+    engine = Engine(playground, load_program(source, "lights"))
+    engine.run(0.5)
+    lights = dict(engine.world.snapshot().robots[0].leds)
     assert lights["proximity"][2] == lights["proximity"][3] > 10
     assert lights["battery"] == (32, 32, 32)
-    runner.press("anna", "center")
-    runner.run(0.5)
-    assert dict(runner.world.snapshot().robots[0].leds)["proximity"] == (1, 2, 3, 4, 5, 6, 7, 8)
+    engine.press("anna", "center")
+    engine.run(0.5)
+    assert dict(engine.world.snapshot().robots[0].leds)["proximity"] == (1, 2, 3, 4, 5, 6, 7, 8)
 
 
 def test_a_reset_forgets_settings_and_radio():
     source = "var was\ncall _system.settings.read(0, was)\ncall _system.settings.write(0, 5)\ncall _rf.nodeid(77)"
     source += "\nonevent button.center\ncall _rf.setup(3, 4)"
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "test"))
-    assert runner.devices["bert"].node_id == 77
-    runner.press("bert", "center")
-    runner.run(0.1)
-    assert runner.devices["bert"].services.network == (3, 4)
-    runner.reset()
-    assert runner.devices["bert"].services.network == (0, 0)
-    assert runner.devices["bert"].variables.get("was") == (0,)
-    assert runner.devices["bert"].variables.get("_id") == (2,)
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(source, "test"))
+    assert engine.devices["bert"].node_id == 77
+    engine.press("bert", "center")
+    engine.run(0.1)
+    assert engine.devices["bert"].services.network == (3, 4)
+    engine.reset()
+    assert engine.devices["bert"].services.network == (0, 0)
+    assert engine.devices["bert"].variables.get("was") == (0,)
+    assert engine.devices["bert"].variables.get("_id") == (2,)
 
 
 def test_the_program_of_a_robot_that_left_rests_and_begins_anew_when_it_is_back():
     code = "var n = 0\ntimer.period[0] = 20\nonevent timer0\nn++\nmotor.left.target = n\nemit tick n"
     program = load_program(f'<network><event size="1" name="tick"/><node name="thymio-II">{code}</node></network>', "t")
-    runner = Runner(playgrounds.loads(TWO, "two"), program)
-    runner.run(0.5)
-    runner.world.remove("anna")
+    engine = Engine(playgrounds.loads(TWO, "two"), program)
+    engine.run(0.5)
+    engine.world.remove("anna")
     speakers = set()
     for _ in range(50):
-        runner.step()
-        speakers.update(robot for robot, _ in runner.emitted)
+        engine.step()
+        speakers.update(robot for robot, _ in engine.emitted)
     assert speakers == {"bert"}
-    runner.world.spawn(RobotStart("anna", 0.0, 0.5))
-    runner.run(0.5)
-    assert runner.devices["anna"].variables.get("n") == (24,)
-    assert runner.devices["bert"].variables.get("n") == (75,)
+    engine.world.spawn(RobotStart("anna", 0.0, 0.5))
+    engine.run(0.5)
+    assert engine.devices["anna"].variables.get("n") == (24,)
+    assert engine.devices["bert"].variables.get("n") == (75,)
 
 
 def test_a_world_that_is_reset_has_the_programs_of_robots_that_had_left():
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program("var n = 0\nonevent motor\nn++", "t"))
-    runner.run(0.5)
-    runner.world.remove("anna")
-    runner.run(0.5)
-    runner.reset()
-    runner.run(0.5)
-    assert [device.variables.get("n") for device in runner.devices.values()] == [(50,), (50,)]
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program("var n = 0\nonevent motor\nn++", "t"))
+    engine.run(0.5)
+    engine.world.remove("anna")
+    engine.run(0.5)
+    engine.reset()
+    engine.run(0.5)
+    assert [device.variables.get("n") for device in engine.devices.values()] == [(50,), (50,)]
 
 
 def test_a_robot_follows_the_line_that_another_one_draws():
@@ -347,37 +347,37 @@ def test_a_robot_follows_the_line_that_another_one_draws():
     ]
     world = {"format": 1, "title": "Drawing", "shapes": shapes, "robots": robots}
     playground = playgrounds.loads(json.dumps(world), "drawing")
-    runner = Runner(playground, {"follower": read_program("line_follower")}, noise=False)
+    engine = Engine(playground, {"follower": read_program("line_follower")}, noise=False)
     hold = WheelVelocities(0.0, 0.0)
     for _ in range(1800):
-        runner.post("painter", BodyTwist(0.1, 0.25))
-        runner.post("follower", hold)
-        runner.step()
-    painter, follower = (runner.world.robots[name] for name in ("painter", "follower"))
-    runner.post("painter", MoveRobot(0.9, 0.9, 0.0))
-    runner.post("follower", MoveRobot(0.0, -0.4, 0.0))
-    runner.devices["follower"].run_control.reset()
-    runner.devices["follower"].run_control.resume()
+        engine.post("painter", BodyTwist(0.1, 0.25))
+        engine.post("follower", hold)
+        engine.step()
+    painter, follower = (engine.world.robots[name] for name in ("painter", "follower"))
+    engine.post("painter", MoveRobot(0.9, 0.9, 0.0))
+    engine.post("follower", MoveRobot(0.0, -0.4, 0.0))
+    engine.devices["follower"].run_control.reset()
+    engine.devices["follower"].run_control.resume()
     way = []
     for _ in range(1500):
-        runner.step()
+        engine.step()
         way.append(math.hypot(follower.pose.x_m, follower.pose.y_m))
     assert painter.pose.x_m > 0.8
     assert all(0.35 < radius < 0.45 for radius in way)
     assert follower.pose.y_m > -0.3
 
 
-def runaway(path, engine, card):
+def runaway(path, translator, card):
     options = DeviceOptions(card=card, settings=card.with_name(f"{card.name}-settings"))
-    runner = Runner(playgrounds.loads(TWO, "two"), load_program(path.read_text(), path.name), options=options)
+    engine = Engine(playgrounds.loads(TWO, "two"), load_program(path.read_text(), path.name), options=options)
     reported = []
-    for device in runner.devices.values():
-        device._vm.use_engine(engine)
+    for device in engine.devices.values():
+        device._vm.use_engine(translator)
     for _ in range(4):
-        before = [device._vm.instructions for device in runner.devices.values()]
-        runner.step()
-        spent = [device._vm.instructions - each for device, each in zip(runner.devices.values(), before, strict=True)]
-        reported.append((spent, [device.variables.words() for device in runner.devices.values()], list(runner.emitted)))
+        before = [device._vm.instructions for device in engine.devices.values()]
+        engine.step()
+        spent = [device._vm.instructions - each for device, each in zip(engine.devices.values(), before, strict=True)]
+        reported.append((spent, [device.variables.words() for device in engine.devices.values()], list(engine.emitted)))
     return reported
 
 
@@ -386,5 +386,5 @@ def test_a_program_without_an_end_gets_its_budget_whatever_runs_it(path, tmp_pat
     wanted = runaway(path, INTERPRETER, tmp_path / INTERPRETER)
     longest_call = 2 * 0x10000 + 5000
     assert all(0 < sum(spent) <= len(spent) * (MAX_ROUNDS * BUDGET + longest_call) for spent, _, _ in wanted[:1])
-    for engine in TRANSLATORS:
-        assert runaway(path, engine, tmp_path / engine) == wanted
+    for translator in TRANSLATORS:
+        assert runaway(path, translator, tmp_path / translator) == wanted

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, box, make, shipped
-from thymio_sim_ros.loading import read_program
-from thymio_sim_ros.runlog.replay import replay
-from thymio_sim_ros.runlog.run_log import RunLog, RunLogError
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.replay import replay
+from thymio_sim_ros.engine.run_log import RunLog, RunLogError
+from thymio_sim_ros.files.loading import read_program
 from thymio_sim_ros.sim.commands import (
     Clap,
     Command,
@@ -81,7 +81,7 @@ def test_an_eventful_run_is_replayed_bit_for_bit(tmp_path: Path) -> None:
 def test_a_run_with_a_program_is_replayed_without_it(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    Runner(shipped("line"), read_program("line_follower"), seed=3, log=log).run(5.0)
+    Engine(shipped("line"), read_program("line_follower"), seed=3, log=log).run(5.0)
     log.close()
     assert replay(path).differs is None
 
@@ -92,16 +92,16 @@ def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
 ) -> None:
     """Twenty robots are a batch, compiled where wasmtime is installed; the log does not depend on that."""
 
-    def engine(name: str) -> None:
+    def choose(name: str) -> None:
         monkeypatch.undo()
         if name == "plain":
             monkeypatch.setattr("thymio_sim_ros.sim.kernel.memory.is_usable", lambda: False)
 
     path = tmp_path / "run.jsonl"
-    engine(recorded)
+    choose(recorded)
     log = log_to(path)
-    runner = Runner(shipped("classroom"), read_program("line_follower"), seed=5, log=log)
-    names = list(runner.world.robots)
+    engine = Engine(shipped("classroom"), read_program("line_follower"), seed=5, log=log)
+    names = list(engine.world.robots)
     whims: list[Command] = [
         Clap(200), Tap(), Lift(True), Lift(False),
         Tilt(0.3, -0.2), SetTemperature(31.5), RemoteKey(0, 80), SetBattery(3.5), SetAmbientLight(90),
@@ -111,16 +111,16 @@ def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
     ]  # fmt: skip
     dice = random.Random(5)
     for round_ in range(16):
-        runner.run(0.1)
-        runner.post(dice.choice(names), whims[round_ % len(whims)])
+        engine.run(0.1)
+        engine.post(dice.choice(names), whims[round_ % len(whims)])
         if round_ == 5:
-            runner.world.spawn(RobotStart("late", -1.9, -1.5, 0.3))
+            engine.world.spawn(RobotStart("late", -1.9, -1.5, 0.3))
         if round_ % 4 == 3:
-            runner.load(dice.choice(names), read_program(("explorer", "friendly", "fearful")[round_ % 3]))
+            engine.load(dice.choice(names), read_program(("explorer", "friendly", "fearful")[round_ % 3]))
         if round_ == 12:
-            runner.world.remove("late")
+            engine.world.remove("late")
     log.close()
-    engine("plain" if recorded == "compiled" else "compiled")
+    choose("plain" if recorded == "compiled" else "compiled")
     found = replay(path)
     assert (found.ticks, found.differs, found.is_complete) == (160, None, True)
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from thymio_sim_ros.runlog import command_codec
-from thymio_sim_ros.runlog.command_codec import CommandJsonError
+from thymio_sim_ros.engine import command_codec
+from thymio_sim_ros.engine.command_codec import CommandJsonError
 from thymio_sim_ros.sim.commands import (
     BodyTwist,
     Command,

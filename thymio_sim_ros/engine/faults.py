@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from thymio_sim_ros.device.programs.status import FAULT
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.sim.world import StepResult
 
-__all__ = ["RunnerFaults"]
+__all__ = ["ProgramFaults"]
 
 
-class RunnerFaults:
-    """Checks the robots of a runner after each step and reports faults and notices as lines of text.
+class ProgramFaults:
+    """Checks the robots of an engine after each step and reports faults and notices as lines of text.
 
     `first` holds the first fault of each robot whose program failed.
     """
 
-    def __init__(self, runner: Runner, report: Callable[[str], None]) -> None:
+    def __init__(self, engine: Engine, report: Callable[[str], None]) -> None:
         self.first: dict[str, str] = {}
-        self._runner, self._report = runner, report
+        self._engine, self._report = engine, report
         self._reported: set[tuple[str, str]] = set()
 
     def checked(self, steps: Iterable[StepResult]) -> Iterator[StepResult]:
@@ -30,7 +30,7 @@ class RunnerFaults:
             yield step
 
     def _check(self) -> None:
-        for robot, host in self._runner.hosts.items():
+        for robot, host in self._engine.hosts.items():
             for notice in host.pop_notices():
                 self._report_once(robot, notice)
             status = host.device.status
@@ -43,4 +43,4 @@ class RunnerFaults:
     def _report_once(self, robot: str, text: str) -> None:
         if (robot, text) not in self._reported:
             self._reported.add((robot, text))
-            self._report(f"{robot}, at {self._runner.now_ns / 1e9:.2f} s: {text}")
+            self._report(f"{robot}, at {self._engine.now_ns / 1e9:.2f} s: {text}")

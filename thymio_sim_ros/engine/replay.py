@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from thymio_sim_ros.runlog.run_log import LogEnded, LogEntry, RunLogError, TicksChecked, WorldStarted, digest, read
+from thymio_sim_ros.engine.run_log import LogEnded, LogEntry, RunLogError, TicksChecked, WorldStarted, digest, read
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned
 from thymio_sim_ros.sim.model.clock import TICK_NS

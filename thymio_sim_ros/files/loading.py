@@ -15,8 +15,6 @@ from aseba_vm import AeslError
 from aseba_vm.aesl import text_decoding
 from aseba_vm.aesl.foreign_files import looks_like_network, refuse_foreign
 from aseba_vm.errors import TextError
-from thymio_sim_ros import resources
-from thymio_sim_ros.block_files import BlocksError, Opened, open_program
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.programs.program import (
     NO_CONSTANTS,
@@ -27,6 +25,8 @@ from thymio_sim_ros.device.programs.program import (
     parse,
 )
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId, assign_programs
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.block_files import BlocksError, Opened, open_program
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.format_detection import MAX_BYTES, is_recognized
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError

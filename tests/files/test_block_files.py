@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 
 from tests.network.http.test_gateway import Bench
-from thymio_sim_ros import block_files, resources
-from thymio_sim_ros.block_files import BlocksError, is_of_blocks, open_program
 from thymio_sim_ros.cli.main import main
 from thymio_sim_ros.device.programs.program_assignment import RobotId
-from thymio_sim_ros.loading import read_text
-from thymio_sim_ros.resources import ResourceError
+from thymio_sim_ros.files import block_files, resources
+from thymio_sim_ros.files.block_files import BlocksError, is_of_blocks, open_program
+from thymio_sim_ros.files.loading import read_text
+from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.testing.sources import programs_of
 
-DATA = Path(__file__).parent / "data" / "web" / "blockly"
+DATA = Path(__file__).parents[1] / "data" / "web" / "blockly"
 WORKSPACE = DATA / "follow_line.xml"
 EXPECTED = (DATA / "follow_line.aseba").read_text(encoding="utf-8")
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.sim.builders import FLOOR, make, run, send
-from thymio_sim_ros.runlog.run_log import LogEnded, RunLog, RunLogError, TicksChecked, WorldStarted, read
+from thymio_sim_ros.engine.run_log import LogEnded, RunLog, RunLogError, TicksChecked, WorldStarted, read
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.input_recorder import Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.playground.reader import RobotStart

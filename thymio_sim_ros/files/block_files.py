@@ -17,8 +17,8 @@ from aseba_vm import AeslError
 from aseba_vm.aesl.foreign_files import refuse_foreign
 from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
-from thymio_sim_ros import resources
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.files import resources
 
 __all__ = ["BlocksError", "Opened", "is_of_blocks", "open_program"]
 

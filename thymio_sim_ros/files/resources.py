@@ -13,10 +13,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from thymio_sim_ros import registry
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.files import registry
 
-_PACKAGE = Path(__file__).resolve().parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 _PLAYGROUND_FILES = ("*.json", "*.playground")
 _SHARE = Path("share") / "thymio_sim_ros"
 

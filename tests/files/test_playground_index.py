@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros import resources
-from thymio_sim_ros.playground_index import PlaygroundIndex
+from thymio_sim_ros.files import resources
+from thymio_sim_ros.files.playground_index import PlaygroundIndex
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
