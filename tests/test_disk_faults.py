@@ -36,7 +36,6 @@ from thymio_sim_ros.grading.reports.texts import file_name
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.submissions import Submission
-from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.sweep.description import Description
 from thymio_sim_ros.sweep.grid import Sweep
 from thymio_sim_ros.sweep.run import failed_row
@@ -227,10 +226,10 @@ def test_a_file_is_the_old_or_the_new_one_wherever_the_disk_fails(
 def _logged(path: Path) -> None:
     with open(path, "w", encoding="utf-8", newline="\n") as file:
         log = RunLog(file)
-        world = World(make(), seed=3)
-        log.begin("faults", world)
+        engine = Engine(make(), seed=3)
+        log.begin("faults", engine)
         for _ in range(250):
-            world.step()
+            engine.step()
         log.close()
 
 

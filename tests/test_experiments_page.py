@@ -69,14 +69,15 @@ def test_what_the_table_says_can_be_done(tmp_path: Path) -> None:
     file = tmp_path / "run.jsonl"
     log = RunLog(file.open("w", encoding="utf-8", newline="\n"))
     options = {"motor_model": "firmware", "proximity_model": "cone"}
-    engine = Engine(playground, {"blue": program}, noise=False, log=log, **options)
+    engine = Engine(playground, {"blue": program}, noise=False, **options)
+    log.begin("two_robots", engine)
     engine.post("red", MotorTargets(100, 100))
     x_m = engine.world.robots["red"].pose.x_m
     assert engine.until(lambda: engine.world.robots["red"].pose.x_m > x_m + 0.01, 5)
     engine.press("blue", "forward")
     assert engine.until(lambda: engine.devices["blue"].variables.get("button.forward") == (1,), 1)
     engine.press("blue", "forward", pressed=False)
-    engine.devices["blue"].variables.set("leds.top", [32, 0, 0])
+    engine.set_variable("blue", "leds.top", [32, 0, 0])
     assert engine.emitted == []
     log.close()
     assert json.loads(file.read_text().splitlines()[-1]) == {"end": True}

@@ -247,7 +247,7 @@ def test_the_runner_lets_sensors_see_as_wanted(tmp_path):
     log = tmp_path / "run.jsonl"
     assert main.main(["runner", "--seconds", "0.1", "--proximity", "enki", "--log", str(log)]) == 0
     ((_, begun), *_) = run_log.read(log)
-    assert begun.options.proximity_model == "enki"
+    assert begun.start.world.proximity_model == "enki"
 
 
 def test_the_runner_stores_the_sound(capsys, tmp_path):
@@ -271,7 +271,7 @@ def test_a_run_that_is_interrupted_keeps_what_it_made(tmp_path, number):
     log, sound = tmp_path / "run.jsonl", tmp_path / "sound.wav"
     command = [*COMMAND, "runner", "--seconds", LONG_S, "--log", str(log), "--sound", str(sound)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
-        until(lambda: running.poll() is not None or (log.exists() and '"crc"' in log.read_text()))
+        until(lambda: running.poll() is not None or (log.exists() and '"state"' in log.read_text()))
         assert running.poll() is None, running.communicate()
         running.send_signal(number)
         output, errors = running.communicate(timeout=PATIENCE_S)

@@ -29,7 +29,7 @@ def test_the_command_reports_what_differs(tmp_path: Path, capsys: pytest.Capture
     capsys.readouterr()
     assert main.main(["replay", str(path)]) == DIFFERENT
     captured = capsys.readouterr()
-    assert captured.err.endswith("run 1, tick 1 differs from the log\n")
+    assert captured.err.endswith("run 1, tick 100 differs from the log\n")
     assert json.loads(captured.out)["identical"] is False
 
 

@@ -15,7 +15,8 @@ from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.engine.engine import BUDGET, MAX_ROUNDS, Engine
+from thymio_sim_ros.engine.devices import BUDGET, MAX_ROUNDS
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.files.loading import load_playground, read_program
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
 from thymio_sim_ros.sim.playground import reader as playgrounds
@@ -147,7 +148,7 @@ def test_a_device_without_work_is_not_run(monkeypatch):
     engine.run(1.0)
     runs = []
     run = AsebaDevice.run
-    monkeypatch.setattr(AsebaDevice, "run", lambda device, budget: (runs.append(engine.now_ns), run(device, budget)))
+    monkeypatch.setattr(AsebaDevice, "run", lambda device, budget: runs.append(engine.now_ns) or run(device, budget))
     engine.run(1.0)
     ticks = {now_ns // 10_000_000 for now_ns in runs}
     assert {150, 200} <= ticks

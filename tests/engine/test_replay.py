@@ -9,7 +9,10 @@ from pathlib import Path
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, box, make, shipped
+from thymio_sim_ros.device.programs.program import load_program
+from thymio_sim_ros.device.programs.status import PAUSED
 from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.inputs import BreakpointsSet, Controlled, EventSent, Input, Removed, VariableSet
 from thymio_sim_ros.engine.replay import replay
 from thymio_sim_ros.engine.run_log import RunLog, RunLogError
 from thymio_sim_ros.files.loading import read_program
@@ -37,7 +40,6 @@ from thymio_sim_ros.sim.commands import (
 )
 from thymio_sim_ros.sim.playground.placement import PlacementError
 from thymio_sim_ros.sim.playground.reader import RobotStart
-from thymio_sim_ros.sim.world import World
 
 CRATE = {**box(-0.5, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}
 
@@ -52,27 +54,27 @@ def test_an_eventful_run_is_replayed_bit_for_bit(tmp_path: Path) -> None:
     log = log_to(path)
     dice = random.Random(3)
     for seed in (1, 2):
-        world = World(make([FLOOR, CRATE, {**box(0.6, 0.0, 0.05, 1.0), "name": "wall"}]), seed=seed)
-        log.begin(f"world {seed}", world)
+        engine = Engine(make([FLOOR, CRATE, {**box(0.6, 0.0, 0.05, 1.0), "name": "wall"}]), seed=seed)
+        log.begin(f"world {seed}", engine)
         for tick in range(600):
             if tick == 300:
-                world.reset()
+                engine.reset()
             if tick % 200 == 100:
-                world.spawn(RobotStart(f"late_{tick}", 1.5, -1.5 + tick / 400, 0.3))
-            for robot in world.robots:
+                engine.spawn(RobotStart(f"late_{tick}", 1.5, -1.5 + tick / 400, 0.3))
+            for robot in engine.world.robots:
                 if dice.random() < 0.02:
-                    world.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
+                    engine.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
                 if dice.random() < 0.005:
-                    world.post(robot, SetPen(down=True, color=(dice.random(), 0.0, 0.0)))
+                    engine.post(robot, SetPen(down=True, color=(dice.random(), 0.0, 0.0)))
                 if dice.random() < 0.01:
                     try:
-                        world.post(robot, MoveRobot(dice.uniform(-2.2, 2.2), dice.uniform(-2, 2), 0.0))
-                        world.post("crate", MoveObject(dice.uniform(-2, 2), dice.uniform(-2, 2), 1.0))
+                        engine.post(robot, MoveRobot(dice.uniform(-2.2, 2.2), dice.uniform(-2, 2), 0.0))
+                        engine.post("crate", MoveObject(dice.uniform(-2, 2), dice.uniform(-2, 2), 1.0))
                     except PlacementError:
                         continue
             if tick % 200 == 190:
-                world.remove(next(reversed(world.robots)))
-            world.step()
+                engine.remove(next(reversed(engine.world.robots)))
+            engine.step()
     log.close()
     found = replay(path)
     assert (found.runs, found.ticks, found.differs, found.is_complete) == (4, 1200, None, True)
@@ -81,7 +83,9 @@ def test_an_eventful_run_is_replayed_bit_for_bit(tmp_path: Path) -> None:
 def test_a_run_with_a_program_is_replayed_without_it(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    Engine(shipped("line"), read_program("line_follower"), seed=3, log=log).run(5.0)
+    engine = Engine(shipped("line"), read_program("line_follower"), seed=3)
+    log.begin("line", engine)
+    engine.run(5.0)
     log.close()
     assert replay(path).differs is None
 
@@ -100,7 +104,8 @@ def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
     path = tmp_path / "run.jsonl"
     choose(recorded)
     log = log_to(path)
-    engine = Engine(shipped("classroom"), read_program("line_follower"), seed=5, log=log)
+    engine = Engine(shipped("classroom"), read_program("line_follower"), seed=5)
+    log.begin("classroom", engine)
     names = list(engine.world.robots)
     whims: list[Command] = [
         Clap(200), Tap(), Lift(True), Lift(False),
@@ -114,11 +119,11 @@ def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
         engine.run(0.1)
         engine.post(dice.choice(names), whims[round_ % len(whims)])
         if round_ == 5:
-            engine.world.spawn(RobotStart("late", -1.9, -1.5, 0.3))
+            engine.spawn(RobotStart("late", -1.9, -1.5, 0.3))
         if round_ % 4 == 3:
             engine.load(dice.choice(names), read_program(("explorer", "friendly", "fearful")[round_ % 3]))
         if round_ == 12:
-            engine.world.remove("late")
+            engine.remove("late")
     log.close()
     choose("plain" if recorded == "compiled" else "compiled")
     found = replay(path)
@@ -128,29 +133,63 @@ def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
 def test_refused_places_leave_no_trace(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    world = World(make([FLOOR, CRATE], (ROBOT,)), seed=1)
-    log.begin("world", world)
-    world.post("thymio", MotorTargets(200, 210))
+    engine = Engine(make([FLOOR, CRATE], (ROBOT,)), seed=1)
+    log.begin("world", engine)
+    engine.post("thymio", MotorTargets(200, 210))
     for tick in range(400):
         if tick % 7 == 0:
             with pytest.raises(PlacementError):
-                world.spawn(RobotStart("late", world.robots["thymio"].pose.x_m, 0.0))
-        world.step()
+                engine.spawn(RobotStart("late", engine.world.robots["thymio"].pose.x_m, 0.0))
+        engine.step()
     log.close()
     assert replay(path).differs is None
 
 
-@pytest.mark.parametrize(("tick", "digits"), [(1, 0), (250, 49), (500, 99)])
-def test_the_first_tick_that_differs_is_reported(tmp_path: Path, tick: int, digits: int) -> None:
+@pytest.mark.parametrize("second", [1, 3, 5])
+def test_the_first_second_that_differs_is_reported(tmp_path: Path, second: int) -> None:
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    world = World(make([FLOOR]), seed=1)
-    log.begin("world", world)
-    for _ in range(500):
-        world.step()
+    engine = Engine(make([FLOOR]), seed=1)
+    log.begin("world", engine)
+    engine.run(5.0)
     log.close()
     lines = path.read_text().splitlines()
-    row = 2 + (tick - 1) // 100
+    row = 1 + second
+    data = json.loads(lines[row])
+    data["state"] = "0" * 16
+    path.write_text("\n".join([*lines[:row], json.dumps(data), *lines[row + 1 :]]) + "\n")
+    found = replay(path)
+    assert (found.differs, found.ticks) == ((1, 100 * second), 100 * second)
+
+
+def test_another_command_makes_a_difference(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    engine = Engine(make([FLOOR]), seed=1)
+    log.begin("world", engine)
+    engine.run(1.4)
+    engine.post("thymio", MotorTargets(100, 100))
+    engine.run(1.0)
+    log.close()
+    path.write_text(path.read_text().replace('"left": 100', '"left": 101'))
+    assert replay(path).differs == (1, 200)
+
+
+VERSION_1 = Path(__file__).parents[1] / "data" / "runlog" / "version-1.jsonl"
+
+
+def test_a_log_of_version_1_is_replayed() -> None:
+    """It has what the program commanded in place of the program, and a digest of each tick."""
+    found = replay(VERSION_1)
+    assert (found.runs, found.ticks, found.differs, found.is_complete) == (2, 570, None, True)
+
+
+@pytest.mark.parametrize(("tick", "digits"), [(1, 0), (150, 49), (200, 99)])
+def test_its_first_tick_that_differs_is_reported(tmp_path: Path, tick: int, digits: int) -> None:
+    path = tmp_path / "run.jsonl"
+    lines = VERSION_1.read_text().splitlines()
+    rows = [row for row, line in enumerate(lines) if line.startswith('{"ticks"')]
+    row = rows[(tick - 1) // 100]
     data = json.loads(lines[row])
     crc = data["crc"]
     data["crc"] = crc[: digits * 8] + ("0" if crc[digits * 8] != "0" else "1") + crc[digits * 8 + 1 :]
@@ -159,27 +198,87 @@ def test_the_first_tick_that_differs_is_reported(tmp_path: Path, tick: int, digi
     assert (found.differs, found.ticks) == ((1, tick), tick)
 
 
-def test_another_command_makes_a_difference(tmp_path: Path) -> None:
+PROGRAM = """
+var n = 0
+timer.period[0] = 50
+onevent timer0
+n++
+emit tick n
+onevent prox
+leds.top = [n % 32, 0, 0]
+onevent hello
+n = event.args[0]
+"""
+FILE = f"""<!DOCTYPE aesl-source><network><event size="1" name="tick"/><event size="1" name="hello"/>
+<constant name="PART" value="7"/><node nodeId="1" name="thymio-II">{PROGRAM}</node></network>"""
+
+
+def test_what_a_pupil_does_to_a_program_is_replayed(tmp_path: Path) -> None:
+    """Loads, runs, steps, breakpoints, variables and events, on two robots, with a reset."""
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    world = World(make([FLOOR]), seed=1)
-    log.begin("world", world)
-    for tick in range(100):
-        if tick == 40:
-            world.post("thymio", MotorTargets(100, 100))
-        world.step()
+    engine = Engine(shipped("two_robots"), load_program(FILE, "mine.aesl"), seed=7)
+    log.begin("two_robots", engine)
+    engine.run(0.53)
+    first, second = engine.devices
+    engine.apply(BreakpointsSet(first, (7,)))
+    engine.run(0.5)
+    assert engine.devices[first].status.state == PAUSED
+    for action in ("step", "step_line", "run", "pause", "run"):
+        engine.apply(Controlled(first, action))
+        engine.run(0.07)
+    engine.set_variable(second, "n", [500])
+    engine.send_event("hello", [41], [second])
+    engine.run(0.01)
+    assert engine.devices[second].variables.get("n")[0] == 41
+    engine.load(first, load_program("motor.left.target = 200\nmotor.right.target = 180", "drive"))
+    engine.apply(BreakpointsSet(first, ()))
+    engine.run(1.0)
+    engine.apply(Controlled(second, "stop"))
+    engine.run(0.5)
+    engine.reset()
+    engine.apply(Controlled(first, "switch_off"))
+    engine.run(0.33)
     log.close()
-    path.write_text(path.read_text().replace('"left": 100', '"left": 101'))
-    assert replay(path).differs == (1, 41)
+    found = replay(path)
+    assert (found.runs, found.differs, found.is_complete) == (2, None, True)
+    for input_ in ("Controlled", "BreakpointsSet", "VariableSet", "EventSent"):
+        assert any(input_ in line for line in path.read_text().splitlines())
+    changed = path.read_text().replace('"words": [500]', '"words": [499]').replace('"args": [41]', '"args": [42]')
+    path.write_text(changed)
+    assert replay(path).differs is not None
+
+
+@pytest.mark.parametrize(
+    ("happened", "error"),
+    [
+        (Controlled("thymio", "fly"), ValueError),
+        (Controlled("ghost", "run"), KeyError),
+        (VariableSet("thymio", "n", (1, 2)), ValueError),
+        (VariableSet("thymio", "nothing", (1,)), KeyError),
+        (EventSent(("thymio",), "nothing", ()), KeyError),
+        (BreakpointsSet("ghost", (1,)), KeyError),
+        (Removed("ghost"), KeyError),
+    ],
+)
+def test_an_input_that_is_refused_is_not_in_the_log(tmp_path: Path, happened: Input, error: type[Exception]) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    engine = Engine(shipped("line"), load_program("var n = 0", "n"))
+    log.begin("line", engine)
+    with pytest.raises(error):
+        engine.apply(happened)
+    log.close()
+    assert len(path.read_text().splitlines()) == 4  # format, world, state, end
 
 
 def test_a_log_without_its_end_is_replayed_as_far_as_it_goes(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    world = World(make([FLOOR]), seed=1)
-    log.begin("world", world)
+    engine = Engine(make([FLOOR]), seed=1)
+    log.begin("world", engine)
     for _ in range(250):
-        world.step()
+        engine.step()
     log.close()
     path.write_text("".join(path.read_text().splitlines(keepends=True)[:-2]))
     found = replay(path)
@@ -194,18 +293,16 @@ def test_a_log_without_its_end_is_replayed_as_far_as_it_goes(tmp_path: Path) -> 
         (lambda lines: [lines[0], lines[1].replace('"default"', '"sonar"'), *lines[2:]], "line 2: .*sonar"),
         (lambda lines: [*lines[:2], '{"tick": -5, "remove": "x"}', *lines[2:]], "line 3: found tick -5, expected 0"),
         (lambda lines: [*lines[:3], '{"tick": 0, "remove": "x"}', *lines[3:]], "line 4: found tick 0, expected 1 or"),
-        (
-            lambda lines: [*lines[:2], '{"tick": 1000000, "remove": "x"}', *lines[2:]],
-            "line 4: found the first 1 ticks after an input at tick 1000000",
-        ),
+        (lambda lines: [*lines[:2], '{"tick": 5, "remove": "x"}', *lines[2:]], "line 4: found tick 1, expected 5"),
+        (lambda lines: [*lines[:2], '{"tick": 999999, "state": ""}', *lines[2:]], "line 3: found tick 999999, "),
     ],
 )
 def test_a_log_in_disorder_is_refused(tmp_path: Path, change: object, text: str) -> None:
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    world = World(make([FLOOR]))
-    log.begin("world", world)
-    world.step()
+    engine = Engine(make([FLOOR]))
+    log.begin("world", engine)
+    engine.step()
     log.close()
     assert callable(change)
     path.write_text("".join(f"{line}\n" for line in change(path.read_text().splitlines())))

@@ -48,7 +48,7 @@ def test_moving_objects_have_their_own_markers(ros, simulation):
     assert shown(objects[-1]) == {"solid/can": 0.15}
     ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
     sim.until(lambda: shown(objects[-1])["solid/can"] > 0.25)
-    sim.world.post("can", MoveObject(5.0, 0.0, 0.0))
+    sim.engine.post("can", MoveObject(5.0, 0.0, 0.0))
     sim.until(lambda: shown(objects[-1]) == {})
     sim.simulator.runner.reset()
     ros.until(lambda: shown(objects[-1]) == {"solid/can": 0.15})
@@ -67,7 +67,7 @@ def test_an_added_robot_has_topics_until_it_is_removed(ros, simulation):
     states = ros.collect(String, "/simulator/_state", transient_local=True)
     old = ros.collect(Odometry, "/_ground_truth/odom")
     sim.until(lambda: old)
-    sim.world.spawn(RobotStart("late", -0.5, 0.0, 1.0))
+    sim.engine.spawn(RobotStart("late", -0.5, 0.0, 1.0))
     sim.tick()
     new = ros.collect(Odometry, "/late/_ground_truth/odom")
     sim.until(lambda: new)
@@ -76,7 +76,7 @@ def test_an_added_robot_has_topics_until_it_is_removed(ros, simulation):
     publisher = ros.publisher(Twist, "/late/cmd_vel")
     publisher.publish(Twist(linear=Vector3(x=0.1)))
     sim.until(lambda: math.dist((new[-1].pose.pose.position.x, new[-1].pose.pose.position.y), (-0.5, 0.0)) > 0.05)
-    sim.world.remove("late")
+    sim.engine.remove("late")
     sim.step(0.1)
     ros.until(lambda: [robot["name"] for robot in json.loads(states[-1].data)["robots"]] == [""])
     count = len(old)
@@ -90,7 +90,7 @@ def test_the_static_frames_of_an_added_robot_are_published(simulation, monkeypat
     sim = simulation(playground=PUSHING)
     reported = []
     monkeypatch.setattr(sim.simulator.endpoints._transforms, "set_robots", reported.append)
-    sim.world.spawn(RobotStart("late", -0.5, 0.0))
+    sim.engine.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.02)
     assert [[names.frame("base_link") for names in robots] for robots in reported] == [["base_link", "late/base_link"]]
 
@@ -98,8 +98,8 @@ def test_the_static_frames_of_an_added_robot_are_published(simulation, monkeypat
 def test_reset_brings_back_the_robots_of_the_playground(ros, simulation):
     sim = simulation(playground=PUSHING)
     odometry = ros.collect(Odometry, "/_ground_truth/odom")
-    sim.world.remove("thymio")
-    sim.world.spawn(RobotStart("late", -0.5, 0.0))
+    sim.engine.remove("thymio")
+    sim.engine.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.1)
     sim.simulator.runner.reset()
     odometry.clear()
@@ -124,7 +124,7 @@ def test_a_log_of_the_node_replays(ros, simulation, tmp_path):
     sim = simulation(playground=PUSHING, log=str(path), seed=3, cmd_vel_timeout=0.0)
     ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.1)
-    sim.world.spawn(RobotStart("late", -0.5, 0.0))
+    sim.engine.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.3)
     sim.simulator.runner.reset()
     sim.step(0.3)

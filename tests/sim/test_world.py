@@ -7,7 +7,6 @@ import hashlib
 import math
 import random
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 
@@ -257,25 +256,6 @@ def test_readings_are_the_same_whatever_is_wanted(wanted: set[str]) -> None:
         left_out |= {row[1] for row in expected.readings} - {row[1] for row in found.readings}
     assert left_out >= {"motor", "buttons", "proximity"} - wanted
     assert everything.snapshot() == some.snapshot()
-
-
-def test_a_recorder_gets_all_readings() -> None:
-    class Recorder:
-        def __init__(self) -> None:
-            self.sensors: set[str] = set()
-
-        def record(self, tick: int, event: object) -> None:
-            """Inputs are of no interest here."""
-
-        def record_step(self, result: Any) -> None:
-            self.sensors.update(sensor for _, sensor, _ in result[1])
-
-    world = World(make([FLOOR]))
-    world.step(frozenset())
-    world.recorder = recorder = Recorder()
-    for _ in range(10):
-        world.step(frozenset())
-    assert recorder.sensors >= {"motor", "pose", "buttons", "proximity"}
 
 
 def test_a_stateless_sensor_can_be_read_at_any_time() -> None:

@@ -54,8 +54,9 @@ def run(argv: Sequence[str]) -> int:
             motor_model=options.motors,
             proximity_model=options.proximity,
             seed=options.seed,
-            log=log,
         )
+        if log is not None:
+            log.begin(playground.name, engine)
         faults = ProgramFaults(engine, _print_error)
         started = time.perf_counter()
         with StopSignal() as stop:

@@ -84,6 +84,16 @@ class BehaviorHost:
         self._loaded: list[ThymioProgram] = []
         """The programs that were loaded with their text, the last one at the end."""
 
+    @property
+    def behaviour(self) -> str:
+        """Name of the built-in program that `restart` starts; "" if it starts that of the user."""
+        return self._first if isinstance(self._first, str) else ""
+
+    @property
+    def user_program(self) -> ThymioProgram | None:
+        """The program of the user, which `restart` starts or which waits in the menu."""
+        return self._user_program if isinstance(self._first, str) else self._first
+
     def load(self, program: ThymioProgram) -> None:
         """Load a user program: stop the current one and the wheels, and start it."""
         self._set_user_program(program)

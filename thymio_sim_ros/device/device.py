@@ -251,13 +251,15 @@ class AsebaDevice:
         self.services.advance(now_ns, self._vm.variables.words[self._intensity])
         self._now_ns = now_ns
 
-    def run(self, budget: int) -> None:
+    def run(self, budget: int) -> int:
         """Execute handlers until no event is pending or the budget of instructions is used up.
 
-        Native calls and events count as several instructions (`costs`).
+        Native calls and events count as several instructions (`costs`). Returns the number of instructions.
         """
+        before = self._vm.instructions
         self._scheduler.run(budget, self.run_control.process_messages)
         self.run_control.prepare_event()
+        return self._vm.instructions - before
 
     def pop_commands(self) -> list[Command]:
         """Return and clear the commands for the actuators.

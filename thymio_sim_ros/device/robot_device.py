@@ -130,8 +130,8 @@ class RobotDevice(Protocol):
     def advance(self, now_ns: int) -> None:
         """Advance the time."""
 
-    def run(self, budget: int) -> None:
-        """Execute handlers."""
+    def run(self, budget: int) -> int:
+        """Execute handlers; return the number of instructions."""
 
     def pop_commands(self) -> list[Command]:
         """Return and clear the commands for the actuators."""

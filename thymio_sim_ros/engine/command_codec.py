@@ -12,7 +12,7 @@ from typing import Any
 
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.commands import Command, MoveObject
+from thymio_sim_ros.sim.commands import MoveObject
 from thymio_sim_ros.sim.stimuli import all_stimuli
 
 __all__ = ["CommandJsonError", "decode", "encode", "kinds"]
@@ -28,15 +28,18 @@ def kinds() -> dict[str, type[Any]]:
     return {kind.__name__: kind for kind in (*taken, MoveObject)}
 
 
-def encode(command: Command) -> tuple[str, dict[str, Any]]:
-    """Return the name of the type of a command, and its fields; bytes become base64."""
-    members = dataclasses.fields(command)  # type: ignore[arg-type]  # every command is a dataclass, plug-ins' too
+def encode(command: Any) -> tuple[str, dict[str, Any]]:
+    """Return the name of the type of a command or another dataclass, and its fields; bytes become base64."""
+    members = dataclasses.fields(command)
     return type(command).__name__, {member.name: _write(getattr(command, member.name)) for member in members}
 
 
-def decode(name: object, values: object) -> Command:
-    """Return the command with this type and these fields, as from `encode`. Raises CommandJsonError."""
-    known = kinds()
+def decode(name: object, values: object, known: Mapping[str, type[Any]] | None = None) -> Any:
+    """Return the command with this type and these fields, as from `encode`. Raises CommandJsonError.
+
+    `known`: types by name in place of commands.
+    """
+    known = kinds() if known is None else known
     if not isinstance(name, str) or name not in known:
         raise CommandJsonError(f"found the command {name!r}, expected one of {', '.join(sorted(known))}")
     kind = known[name]
@@ -47,7 +50,7 @@ def decode(name: object, values: object) -> Command:
     if sorted(values) != sorted(members):
         raise CommandJsonError(f"{name}: found {', '.join(values) or 'nothing'}, expected {', '.join(members)}")
     try:
-        command: Command = kind(**{member: _read(hints[member], values[member]) for member in members})
+        command = kind(**{member: _read(hints[member], values[member]) for member in members})
     except (ValueError, OverflowError) as error:
         raise CommandJsonError(f"{name}: {error}") from error
     return command

@@ -1,9 +1,9 @@
-"""World and devices in lock-step, in one thread, without ROS: tests, batch runs, benchmarks.
+"""World and devices in lock-step: the only owner of simulated time, and of what happens in which order.
 
 One step: (1) the world ticks; (2) each device gets its readings; (3) the devices that are due run in the order of the
 playground, and emitted events are forwarded to the other devices until none is pending; (4) the commands are posted to
-the world and take effect in the next tick. All devices share one Aseba bus; an event is not sent back to its sender.
-The same playground, programs and seed give the same run bit for bit, whatever is read.
+the world and take effect in the next tick. Between steps, inputs are applied (`inputs.py`). The same start and the same
+inputs at the same ticks give the same run bit for bit, whatever is read.
 
 What measures in every tick without noise or memory, such as the speeds of the motors, is measured when a program runs
 or its variables are read (`AsebaDevice.measure_on_read`), unless a program handles its event.
@@ -11,7 +11,9 @@ or its variables are read (`AsebaDevice.measure_on_read`), unless a program hand
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behavior_host import BehaviorHost
@@ -19,37 +21,48 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
-from thymio_sim_ros.engine.run_log import RunLog
+from thymio_sim_ros.engine.devices import Devices
+from thymio_sim_ros.engine.inputs import (
+    CONTROLS,
+    BreakpointsSet,
+    Controlled,
+    DeviceStart,
+    EventSent,
+    Input,
+    Loaded,
+    Posted,
+    Recorder,
+    Removed,
+    Reset,
+    RunStart,
+    Spawned,
+    VariableSet,
+)
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
-from thymio_sim_ros.sim.playground.reader import Playground
+from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
 from thymio_sim_ros.sim.sensors import all_sensors
 from thymio_sim_ros.sim.world import StepResult, World
 
-__all__ = ["Engine"]
+__all__ = ["DIGEST_TICKS", "Engine"]
 
-BUDGET = 5000
-"""Instructions of a device per round of a tick; a longer handler continues in the next."""
-
-MAX_ROUNDS = 10
-"""Rounds per tick in which robots may react to events of others; the rest continues in the next tick."""
+DIGEST_TICKS = 100
+"""Ticks between two digests of the state that a recorder gets: one second."""
 
 _SECOND_NS = 1_000_000_000
+_DIGEST_BYTES = 8
 
 
 class Engine:
-    """A world, and a device for each robot that has a program or a behaviour.
-
-    `emitted` has the events of the last step as (robot, event), in order.
-    """
+    """A world, and a device for each robot that has a program or a behaviour."""
 
     def __init__(
         self,
         playground: Playground,
-        programs: Mapping[str, ThymioProgram] | ThymioProgram | None = None,
+        programs: Mapping[str, ThymioProgram | DeviceStart] | ThymioProgram | None = None,
         *,
         behaviour: str = "",
         options: DeviceOptions = DEFAULTS,
@@ -57,14 +70,15 @@ class Engine:
         proximity_model: str = PROXIMITY_MODELS[0],
         seed: int = 0,
         noise: bool = True,
-        log: RunLog | None = None,
+        periods_ns: Mapping[str, int] | None = None,
         ground: Ground | None = None,
     ) -> None:
         """Create the world and a device for each robot with a program: one program for all, or one by robot name.
 
-        With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
-        SdCardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
+        With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu. A
+        `DeviceStart` in place of a program says all of one robot. `periods_ns`: the sensors that measure, see `World`.
         A `ground` of the playground that exists already, from a run that has ended, need not be painted again.
+        SdCardError, SettingsError: a folder of the options cannot be used.
         """
         self.world = World(
             playground,
@@ -72,22 +86,23 @@ class Engine:
             noise=noise,
             motor_model=motor_model,
             proximity_model=proximity_model,
+            periods_ns=periods_ns,
             ground=ground,
         )
-        if log is not None:
-            log.begin(playground.name, self.world)
-        if isinstance(programs, ThymioProgram):
-            programs = dict.fromkeys(self.world.robots, programs)
-        numbers = {name: number for number, name in enumerate(self.world.robots, start=1)}
-        wanted = self.world.robots if behaviour else programs or {}
-        alone = len(numbers) == 1
-        self.devices = {
-            name: AsebaDevice(node_id=numbers[name], options=options.for_robot(name, alone=alone)) for name in wanted
-        }
+        starts = _device_starts(list(self.world.robots), programs, behaviour)
+        self.start = RunStart(playground, self.world.options, starts, options)
+        """What the run started with, since the last reset."""
+        self.recorder: Recorder | None = None
+        """Gets the inputs from now on, and digests of the state."""
+        self._devices = Devices(self._choose_fed)
+        alone = len(self.world.robots) == 1
+        for name, started in starts.items():
+            device = AsebaDevice(node_id=started.number, options=options.for_robot(name, alone=alone))
+            self._devices.hosts[name] = BehaviorHost(device)
+        self.devices = {name: host.device for name, host in self.hosts.items()}
+        """The device of each robot that has one."""
         self._robot_changes = -1
-        """`world.robot_changes` when `_present` was updated."""
-        self._present: dict[str, AsebaDevice] = {}
-        """Devices of the robots that are in the world; the others do not run."""
+        """`world.robot_changes` when the present devices were updated."""
         self._device_of_robot: list[AsebaDevice | None] = []
         """The device of each robot in the world, in its order."""
         self._bound = frozenset(bindings.sensor_names()) if self.devices else frozenset()
@@ -99,33 +114,59 @@ class Engine:
         """Sensors whose readings are fed to the devices."""
         self._wanted_events: list[frozenset[int]] = []
         """The local events that the devices wanted when `_fed` was chosen."""
-        self.emitted: list[tuple[str, EmittedEvent]] = []
         for name, device in self.devices.items():
             device.measure_on_read(self._on_read, self._measuring(name))
-        self.hosts = {name: BehaviorHost(device) for name, device in self.devices.items()}
         for name, host in self.hosts.items():
-            program = (programs or {}).get(name)
-            if behaviour:
-                host.start(behaviour, program)
-            elif program is not None:
-                host.load(program)
-        self._start()
+            started = starts[name]
+            if started.behaviour:
+                host.start(started.behaviour, started.program)
+            elif started.program is not None:
+                host.load(started.program)
+        self._begin()
+
+    @classmethod
+    def of(cls, start: RunStart, ground: Ground | None = None) -> Engine:
+        """Return an engine that starts so. Raises ValueError for wrong options."""
+        world = start.world
+        return cls(
+            start.playground,
+            start.devices,
+            options=start.options,
+            motor_model=world.motor_model,
+            proximity_model=world.proximity_model,
+            seed=world.seed,
+            noise=world.noise,
+            periods_ns=None if world.periods_ns is None else dict(world.periods_ns),
+            ground=ground,
+        )
+
+    @property
+    def hosts(self) -> Mapping[str, BehaviorHost]:
+        """The selection of the program of each robot that has a device."""
+        return self._devices.hosts
+
+    @property
+    def emitted(self) -> Sequence[tuple[str, EmittedEvent]]:
+        """The events of the last step as (robot, event), in order."""
+        return self._devices.emitted
 
     @property
     def now_ns(self) -> int:
         """Simulated time."""
         return self.world.now_ns
 
+    @property
+    def tick(self) -> int:
+        """Number of ticks since the start or the last reset."""
+        return self.world.now_ns // TICK_NS
+
     def step(self, sensors: Collection[str] | None = None) -> StepResult:
         """Run one tick of the world and of the programs.
 
         `sensors`: names of the sensors whose readings the result must have; None: all. See `World.step`.
         """
-        now_ns = self.world.now_ns
-        for device in self._present.values():
-            if device.due.ns <= now_ns:  # as it is after another program was loaded
-                self._choose_fed()
-                break
+        if self._devices.is_due(self.world.now_ns):  # as it is after another program was loaded
+            self._choose_fed()
         wanted = sensors if sensors is None else self._fed if not sensors else self._fed.union(sensors)
         result = self.world.step(wanted)
         if self.devices:
@@ -134,14 +175,9 @@ class Engine:
             if isinstance(result.readings, ReadingTable):
                 self._feed(result.readings, result.now_ns)
             self._run_devices()
+        if self.recorder is not None and self.tick % DIGEST_TICKS == 0:
+            self.recorder.record_digest(self.tick, self.digest())
         return result
-
-    def _feed(self, table: ReadingTable, now_ns: int) -> None:
-        for sensor, readings in table.columns:
-            if sensor in self._bound:
-                for device, reading in zip(self._device_of_robot, readings, strict=True):
-                    if device is not None and reading is not None:
-                        device.feed(sensor, reading.words, now_ns)
 
     def run(self, seconds: float) -> None:
         """Run for this many simulated seconds."""
@@ -162,35 +198,149 @@ class Engine:
             self.step(())
         return True
 
+    def apply(self, happened: Input) -> None:
+        """Apply an input now, and give it to the recorder if it is accepted.
+
+        Raises what the world raises for commands and robots (`World.post`, `spawn`, `remove`), KeyError for a robot
+        without a device, an unknown variable or event, and ValueError for a wrong number of words or control.
+        """
+        tick = self.tick
+        match happened:
+            case Posted(name, command):
+                self.world.post(name, command)
+            case Spawned(start):
+                self.world.spawn(start)
+            case Removed(name):
+                self.world.remove(name)
+            case Reset():
+                self._reset()
+            case Loaded(robot, program):
+                self._load(robot, program)
+            case Controlled(robot, action):
+                self._control(robot, action)
+            case BreakpointsSet(robot, lines):
+                self.devices[robot].run_control.set_breakpoints(lines)
+            case VariableSet(robot, variable, words):
+                self.devices[robot].variables.set(variable, words)
+            case EventSent(robots, event, args, source):
+                self._receive_event(robots, event, args, source)
+        if self.recorder is not None:
+            self.recorder.record(tick, happened)
+
     def post(self, robot: str, command: Command) -> None:
-        """Post a command for a robot; it takes effect in the next tick."""
-        self.world.post(robot, command)
+        """Post a command for a robot or an object; it takes effect in the next tick. Raises as `World.post` does."""
+        self.apply(Posted(robot, command))
 
     def press(self, robot: str, button: str, *, pressed: bool = True) -> None:
         """Press or release a button."""
         self.post(robot, PressButton(button, pressed))
 
+    def spawn(self, start: RobotStart) -> None:
+        """Add a robot at once. Raises as `World.spawn` does."""
+        self.apply(Spawned(start))
+
+    def remove(self, robot: str) -> None:
+        """Remove a robot at once; raises KeyError for an unknown name."""
+        self.apply(Removed(robot))
+
     def load(self, robot: str, program: ThymioProgram) -> None:
         """Load another program, which starts now. Raises KeyError for a robot without a device."""
-        self._update_present_devices()
-        self.devices[robot].end_tick(self.now_ns)
-        self.hosts[robot].load(program)
-        self._choose_fed()
-        self._run_devices()
+        self.apply(Loaded(robot, program))
+
+    def send_event(self, event: str, args: Sequence[int] = (), robots: Collection[str] | None = None) -> None:
+        """Send a global event to the programs that declare it, or to those of these robots.
+
+        They handle it in the next tick. Raises KeyError if one of the given robots, or no robot, declares it.
+        """
+        if robots is None:
+            robots = [name for name, device in self.devices.items() if device.declares(event)]
+            if not robots:
+                raise KeyError(event)
+        self.apply(EventSent(tuple(robots), event, tuple(args)))
+
+    def set_variable(self, robot: str, variable: str, words: Sequence[int]) -> None:
+        """Write a whole variable of a program. Raises KeyError for an unknown name, ValueError for wrong words."""
+        self.apply(VariableSet(robot, variable, tuple(words)))
 
     def reset(self) -> None:
         """Reset world, noise and programs to the start."""
+        self.apply(Reset())
+
+    def end(self) -> None:
+        """Give the last state to the recorder, which gets nothing more."""
+        recorder, self.recorder = self.recorder, None
+        if recorder is not None:
+            recorder.record_digest(self.tick, self.digest())
+
+    def digest(self) -> str:
+        """Digest of the visible state, exact to the bit: poses, lights and variables, as 16 hexadecimal digits."""
+        shown = self.world.snapshot()
+        state = (
+            shown.now_ns,
+            [(one.name, one.pose, one.tilt, one.height_m, one.wheel_angles_rad, one.leds) for one in shown.robots],
+            shown.objects,
+            [(name, device.variables.words(), device.status) for name, device in self.devices.items()],
+        )
+        return hashlib.blake2b(repr(state).encode(), digest_size=_DIGEST_BYTES).hexdigest()
+
+    def _load(self, robot: str, program: ThymioProgram) -> None:
+        self._update_present_devices()
+        self.devices[robot].end_tick(self.now_ns)
+        self._devices.hosts[robot].load(program)
+        self._run_at_once()
+
+    def _control(self, robot: str, action: str) -> None:
+        if action not in CONTROLS:
+            raise ValueError(f"control: found '{action}', expected one of {', '.join(CONTROLS)}")
+        host = self.hosts[robot]
+        if action == "run":
+            host.resume()
+        else:
+            getattr(host.device.run_control, action)()
+        self._run_at_once()
+
+    def _receive_event(self, robots: Sequence[str], event: str, args: Sequence[int], source: int) -> None:
+        devices = [self.devices[robot] for robot in robots]
+        if not all(device.declares(event) for device in devices):
+            raise KeyError(event)
+        for device in devices:
+            device.receive_event(event, args, source=source)
+
+    def _reset(self) -> None:
+        if self.recorder is not None:
+            self.recorder.record_digest(self.tick, self.digest())
+        starts = {
+            name: replace(started, program=host.user_program, behaviour=host.behaviour)
+            for (name, started), host in zip(self.start.devices.items(), self.hosts.values(), strict=True)
+        }
+        self.start = replace(self.start, devices=starts)
         self.world.reset()
         for host in self.hosts.values():
             host.restart()
-        self._start()
+        self._begin()
 
-    def _start(self) -> None:
-        self._present = dict(self.devices)
-        for device in self._present.values():
+    def _begin(self) -> None:
+        self._devices.present = dict(self.devices)
+        for device in self.devices.values():
             device.advance(self.now_ns)
         self._run_devices()
         self._choose_fed()
+
+    def _run_at_once(self) -> None:
+        """Run the devices between two ticks, after an input whose effect is visible before the next one."""
+        self._choose_fed()
+        self._run_devices()
+
+    def _run_devices(self) -> None:
+        for name, command in self._devices.run(self.now_ns):
+            self.world.post(name, command)
+
+    def _feed(self, table: ReadingTable, now_ns: int) -> None:
+        for sensor, readings in table.columns:
+            if sensor in self._bound:
+                for device, reading in zip(self._device_of_robot, readings, strict=True):
+                    if device is not None and reading is not None:
+                        device.feed(sensor, reading.words, now_ns)
 
     def _choose_fed(self) -> None:
         """Choose the sensors whose readings are fed; the others are measured when variables are read."""
@@ -209,7 +359,7 @@ class Engine:
 
         def measure() -> Iterable[tuple[str, Sequence[int]]]:
             nonlocal measured_ns
-            if measured_ns == self.world.now_ns or robot not in self._present:
+            if measured_ns == self.world.now_ns or robot not in self._devices.present:
                 return ()
             measured_ns = self.world.now_ns
             readings = ((sensor, self.world.read(robot, sensor)) for sensor in self._on_read - self._fed)
@@ -222,45 +372,28 @@ class Engine:
         robots, self._robot_changes = self.world.robots, self.world.robot_changes
         present = {name: device for name, device in self.devices.items() if name in robots}
         for name in present:
-            if name not in self._present:
+            if name not in self._devices.present:
                 self.hosts[name].restart()
-        self._present = present
+        self._devices.present = present
         self._device_of_robot = [present.get(name) for name in robots]
 
-    def _run_devices(self) -> None:
-        """Run the devices that are due, and those that receive their events."""
-        self.emitted.clear()
-        now_ns, due, advanced = self.world.now_ns, [], set()
-        for _ in range(MAX_ROUNDS):
-            due = [(name, device) for name, device in self._present.items() if device.due.ns <= now_ns]
-            if not due:
-                return
-            for name, device in due:
-                if name not in advanced:
-                    advanced.add(name)
-                    device.advance(now_ns)
-                device.run(BUDGET)
-            senders = [name for name, device in due if device.has_emitted]
-            if sum(self._forward_events(name, self.hosts[name]) for name in senders) == 0:
-                break
-        for name, device in due:
-            for command in device.pop_commands():
-                self.world.post(name, command)
 
-    def _forward_events(self, name: str, sender: BehaviorHost) -> int:
-        """Forward the emitted events of a device, or change its program; return how many devices have new work."""
-        running = sender.program
-        events = sender.pop_events()
-        woken = int(sender.program is not running)
-        if woken:
-            self._choose_fed()
-        for event in events:
-            self.emitted.append((name, event))
-            for device in self._present.values():
-                if device is not sender.device and device.receives_from(sender.device) and device.declares(event.name):
-                    device.receive_event(event.name, event.args, source=sender.device.node_id)
-                    woken += 1
-        return woken
+def _device_starts(
+    robots: Sequence[str],
+    programs: Mapping[str, ThymioProgram | DeviceStart] | ThymioProgram | None,
+    behaviour: str,
+) -> dict[str, DeviceStart]:
+    """Return the start of each robot that has a device; robots are numbered in their order."""
+    if isinstance(programs, ThymioProgram):
+        programs = dict.fromkeys(robots, programs)
+    starts = {}
+    for number, name in enumerate(robots, start=1):
+        given = (programs or {}).get(name)
+        if isinstance(given, DeviceStart):
+            starts[name] = given
+        elif behaviour or given is not None:
+            starts[name] = DeviceStart(number, given, behaviour)
+    return starts
 
 
 def _ticks(seconds: float) -> int:

@@ -1,19 +1,27 @@
-"""Run logs: all inputs of worlds, from which a run can be repeated bit for bit.
+"""Run logs: the start of each run and all its inputs, from which it can be repeated bit for bit.
 
-Version 1 is JSON lines in UTF-8:
+Version 2 is JSON lines in UTF-8:
 
-    {"format": "thymio-sim run log", "version": 1, "made_by": "0.1.0"}
-    {"world": {"name": "line", "playground": "the file's text", "seed": 0, "noise": true, …}}
-    {"tick": 0, "to": "thymio", "do": "MotorTargets", "with": {"left": 100, "right": 100}}
+    {"format": "thymio-sim run log", "version": 2, "made_by": "0.1.0"}
+    {"world": {"name": "line", "playground": "the file's text", "seed": 0, "programs": [{"text": …}], …}}
+    {"tick": 0, "to": "thymio", "do": "SetPen", "with": {"down": true, …}}
     {"tick": 250, "spawn": {"name": "late", "x_m": 0.5, "y_m": 0.0}}
+    {"tick": 260, "load": "thymio", "program": {"name": "mine.aesl", "text": …}}
+    {"tick": 270, "input": "Controlled", "with": {"robot": "thymio", "action": "pause"}}
     {"tick": 300, "remove": "late"}
-    {"tick": 300, "reset": true}
-    {"ticks": 100, "crc": "eight hexadecimal digits for each of these ticks"}
+    {"tick": 300, "state": "16 hexadecimal digits"}
+    {"tick": 300, "reset": true, "programs": […], "devices": {…}}
     {"end": true}
 
-`tick` is the number of ticks that had passed; it counts from 0 after `world` and `reset`. `crc` has the CRC-32 of the
-result (`repr` of readings and contacts) of each tick since the previous such line. A log without its last line was cut
-off, perhaps within a line; it is valid up to there.
+`tick` is the number of ticks that had passed; it counts from 0 after `world` and `reset`. `state` is `Engine.digest`,
+in each second and at the end of a run. A log without its last line was cut off, perhaps within a line; it is valid up
+to the last `state`.
+
+Logs of version 1 can be read as well. They have no programs, but what these commanded, and in place of `state`
+
+    {"ticks": 100, "crc": "eight hexadecimal digits for each of these ticks"}
+
+with the CRC-32 of the result (`repr` of readings and contacts) of each tick since the previous such line.
 """
 
 from __future__ import annotations
@@ -22,28 +30,51 @@ import json
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
 import thymio_sim_ros
-from thymio_sim_ros.engine import command_codec
+from aseba_vm import AeslError
+from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.engine.command_codec import CommandJsonError
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.input_codec import (
+    read_devices,
+    read_input,
+    read_start,
+    write_devices,
+    write_input,
+    write_start,
+)
+from thymio_sim_ros.engine.inputs import DeviceStart, Input, Reset, RunStart
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
-from thymio_sim_ros.sim.playground import reader as playgrounds
-from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError, RobotStart
-from thymio_sim_ros.sim.playground.writer import dumps
-from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
-__all__ = ["LogEnded", "LogEntry", "RunLog", "RunLogError", "TicksChecked", "WorldStarted", "digest", "made_by", "read"]
+__all__ = [
+    "LogEnded",
+    "LogEntry",
+    "RunLog",
+    "RunLogError",
+    "StateSeen",
+    "TicksChecked",
+    "WorldReset",
+    "WorldStarted",
+    "digest",
+    "made_by",
+    "read",
+]
 
 FORMAT = "thymio-sim run log"
-VERSION = 1
-_TICKS_PER_LINE = 100
-_WRONG = (ValueError, KeyError, TypeError, OverflowError, RecursionError, FieldError, PlaygroundError, CommandJsonError)
+VERSION = 2
+VERSIONS = (1, VERSION)
+"""The versions that can be read."""
+_WRONG = (
+    ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, RecursionError,
+    FieldError, PlaygroundError, CommandJsonError, ProgramError, AeslError,
+)  # fmt: skip
 """Exceptions caused by an invalid line."""
 _DIGITS = 8
 
@@ -58,16 +89,23 @@ class RunLogError(ThymioSimError):
 
 @dataclass(frozen=True, slots=True)
 class WorldStarted:
-    """Start of a world."""
+    """Start of a world; `name` is that of its playground."""
 
     name: str
-    playground: Playground
-    options: WorldOptions
+    start: RunStart
+
+
+@dataclass(frozen=True, slots=True)
+class StateSeen:
+    """Digest of the state after so many ticks."""
+
+    tick: int
+    digest: str
 
 
 @dataclass(frozen=True, slots=True)
 class TicksChecked:
-    """Digests of the results of ticks, in order."""
+    """Digests of the results of ticks, in order, in a log of version 1."""
 
     crcs: tuple[str, ...]
 
@@ -77,17 +115,25 @@ class LogEnded:
     """End of a complete log."""
 
 
-LogEntry = WorldStarted | TicksChecked | LogEnded | tuple[int, Input]
+@dataclass(frozen=True, slots=True)
+class WorldReset:
+    """The run was reset after so many ticks; `devices`: what these start with, None as before."""
+
+    tick: int
+    devices: Mapping[str, DeviceStart] | None
+
+
+LogEntry = WorldStarted | WorldReset | StateSeen | TicksChecked | LogEnded | tuple[int, Input]
 """Content of a line; an input has the tick after which it came."""
 
 
 def digest(result: object) -> str:
-    """Digest of the result of a tick: 8 hexadecimal digits."""
+    """Digest of the result of a tick in a log of version 1: 8 hexadecimal digits."""
     return f"{zlib.crc32(repr(result).encode()):0{_DIGITS}x}"
 
 
 class RunLog:
-    """Writes a log; the input recorder of one world at a time. Invariant: the file always ends with a whole line.
+    """Writes a log; the recorder of one engine at a time. Invariant: the file always ends with a whole line.
 
     If the file can no longer be written, `on_error` is called once and the log ends; without it OSError is raised, with
     the name of the file.
@@ -96,52 +142,42 @@ class RunLog:
     def __init__(self, file: TextIO, *, on_error: Callable[[OSError], None] | None = None) -> None:
         self._file: TextIO | None = file
         self._on_error = on_error
-        self._crcs: list[str] = []
+        self._engine: Engine | None = None
         self._write({"format": FORMAT, "version": VERSION, "made_by": thymio_sim_ros.__version__})
 
-    def begin(self, name: str, world: World) -> None:
-        """Start to record a new world."""
-        self._flush()
-        head = {"name": name, "playground": dumps(world.playground), **asdict(world.options)}
-        self._write({"world": head})
-        world.recorder = self
+    def begin(self, name: str, engine: Engine) -> None:
+        """Start to record an engine that has not run; `name` is that of its playground. The one before ends."""
+        self._end()
+        self._write({"world": write_start(name, engine.start)})
+        engine.recorder, self._engine = self, engine
 
     def record(self, tick: int, happened: Input) -> None:
-        """Record an input after `tick` ticks."""
-        match happened:
-            case Posted(name, command):
-                kind, values = command_codec.encode(command)
-                self._write({"tick": tick, "to": name, "do": kind, "with": values})
-            case Spawned(start):
-                self._write({"tick": tick, "spawn": fields.write(start)})
-            case Removed(name):
-                self._write({"tick": tick, "remove": name})
-            case Reset():
-                self._flush()
-                self._write({"tick": tick, "reset": True})
+        """Record an input after `tick` ticks; with a reset, what the devices start with from then on."""
+        line = {"tick": tick, **write_input(happened)}
+        if isinstance(happened, Reset) and self._engine is not None:
+            line |= write_devices(self._engine.start.devices)
+        self._write(line)
 
-    def record_step(self, result: object) -> None:
-        """Record the result of a step."""
-        self._crcs.append(digest(result))
-        if len(self._crcs) == _TICKS_PER_LINE:
-            self._flush()
+    def record_digest(self, tick: int, digest: str) -> None:
+        """Record the digest of the state after `tick` ticks."""
+        self._write({"tick": tick, "state": digest})
+        if self._file is not None:
+            with self._guarded(self._file):
+                self._file.flush()
 
     def close(self) -> None:
         """Write the last lines and close the file."""
-        self._flush()
+        self._end()
         self._write({"end": True})
         file, self._file = self._file, None
         if file is not None:
             with self._guarded(file):
                 file.close()
 
-    def _flush(self) -> None:
-        if self._crcs:
-            self._write({"ticks": len(self._crcs), "crc": "".join(self._crcs)})
-            self._crcs.clear()
-            if self._file is not None:
-                with self._guarded(self._file):
-                    self._file.flush()
+    def _end(self) -> None:
+        engine, self._engine = self._engine, None
+        if engine is not None:
+            engine.end()
 
     def _write(self, line: Mapping[str, Any]) -> None:
         if self._file is not None:
@@ -195,35 +231,27 @@ def made_by(path: Path) -> str:
 def _check_head(data: object) -> None:
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise ValueError(f"found something else, expected a {FORMAT}")
-    if data.get("version") != VERSION:
-        raise ValueError(f"found version {data.get('version')!r}, expected {VERSION}")
+    if data.get("version") not in VERSIONS:
+        raise ValueError(f"found version {data.get('version')!r}, expected one of {', '.join(map(str, VERSIONS))}")
 
 
-def _line(data: object) -> LogEntry:
+def _line(data: Any) -> LogEntry:
     match data:
         case {"world": dict(head)}:
-            return _world_started(head)
+            return WorldStarted(*read_start(head))
+        case {"tick": int(tick), "state": str(state)}:
+            return StateSeen(tick, state)
         case {"ticks": int(ticks), "crc": str(crc)} if len(crc) == ticks * _DIGITS:
             return TicksChecked(tuple(crc[start : start + _DIGITS] for start in range(0, len(crc), _DIGITS)))
         case {"end": True}:
             return LogEnded()
-        case {"tick": int(tick), "to": str(name), "do": kind, "with": values}:
-            return tick, Posted(name, command_codec.decode(kind, values))
-        case {"tick": int(tick), "spawn": start}:
-            return tick, Spawned(fields.read(RobotStart, start, "spawn"))
-        case {"tick": int(tick), "remove": str(name)}:
-            return tick, Removed(name)
+        case {"tick": int(tick), "reset": True, "programs": _, "devices": _}:
+            return WorldReset(tick, read_devices(data))
         case {"tick": int(tick), "reset": True}:
-            return tick, Reset()
+            return WorldReset(tick, None)
+        case {"tick": int(tick), **members} if (happened := read_input(members)) is not None:
+            return tick, happened
     raise ValueError(f"found {fields.describe(data)}, expected a line of a {FORMAT}")
-
-
-def _world_started(head: dict[str, Any]) -> WorldStarted:
-    name, text, periods = head.pop("name"), head.pop("playground"), head.pop("periods_ns")
-    if not isinstance(name, str) or not isinstance(text, str):
-        raise ValueError("found a world whose name or playground is no text, expected both")
-    pairs = None if periods is None else tuple((str(sensor), int(period_ns)) for sensor, period_ns in periods)
-    return WorldStarted(name, playgrounds.loads(text, name), WorldOptions(**head, periods_ns=pairs))
 
 
 def _explained(error: Exception) -> str:
@@ -233,6 +261,6 @@ def _explained(error: Exception) -> str:
         return f"found nesting without measure, expected a line of a {FORMAT}"
     if isinstance(error, json.JSONDecodeError):
         return f"found no JSON (column {error.colno}: {error.msg}), expected a line of a {FORMAT}"
-    if isinstance(error, KeyError | TypeError):
+    if isinstance(error, KeyError | TypeError | AttributeError | IndexError):
         return f"found a world with {error}, expected name, playground and all options"
     return str(error)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -16,7 +17,6 @@ from thymio_sim_ros.sim.batch.robot_batch import RobotBatch
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, Lift, MoveObject, MoveRobot, SetMotorModel, SetPen
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport, nearest_floor
 from thymio_sim_ros.sim.ground.sampling import Ground
-from thymio_sim_ros.sim.input_recorder import Input, InputRecorder, Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
@@ -36,12 +36,23 @@ from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 from thymio_sim_ros.sim.stimuli import all_stimuli
 
-__all__ = ["TICK_NS", "StepResult", "World"]
+__all__ = ["TICK_NS", "StepResult", "World", "WorldOptions"]
 
 _TICK_S = TICK_NS * 1e-9
 _NO_CLEARANCE = (0.0, 0.0, 0.0)
 _ON_EDGE_M = 1e-9
 """Positions so little outside of a ground are on its edge."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldOptions:
+    """The options of a world besides its playground; `periods_ns` as pairs, None for the periods of the sensors."""
+
+    seed: int
+    noise: bool
+    proximity_model: str
+    motor_model: str
+    periods_ns: tuple[tuple[str, int], ...] | None = None
 
 
 class StepResult(NamedTuple):
@@ -92,8 +103,6 @@ class World:
         self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
         self.robot_changes = 0
         """Number of robots added and removed so far."""
-        self.recorder: InputRecorder | None = None
-        """Gets all inputs and results from now on."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
         self._floor_support = FloorSupport(playground.floors)
         self._fixed = Occupied(footprint_of(solid) for solid in playground.solids if solid.is_fixed)
@@ -101,7 +110,6 @@ class World:
 
     def reset(self) -> None:
         """Restore the initial state: time 0, robots at their start poses, the same noise, no pending commands."""
-        self._record(Reset())
         self._begin()
 
     def _begin(self) -> None:
@@ -174,8 +182,6 @@ class World:
                 raise TypeError(f"an object accepts no {type(command).__name__}")
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
             self._check_place(footprint_of(movable.solid.at(pose)))
-        if self.recorder is not None:
-            self._record(Posted(name, command))
         self._posted.append((name, command))
 
     def check_ground(self, name: str, x_m: float, y_m: float) -> None:
@@ -203,7 +209,6 @@ class World:
         except FieldError as error:
             raise ValueError(str(error)) from error
         self._check_place(footprint_of_robot(start.name, start.pose))
-        self._record(Spawned(start))
         rows = self._batch.rows
         self._add(start)
         self._batch = RobotBatch(self._robots.values(), self._shared, rows)
@@ -215,7 +220,6 @@ class World:
         rows = self._batch.rows
         self._physics.remove_robot(gone.body)
         self._shared.forget(gone)
-        self._record(Removed(robot))
         self._posted = [(name, command) for name, command in self._posted if name != robot]
         self._batch = RobotBatch(self._robots.values(), self._shared, rows)
 
@@ -223,20 +227,16 @@ class World:
         """Advance the world by one tick.
 
         `sensors`: names of the sensors whose readings are wanted; None: all. Of the others, those that are stateless do
-        not measure. The run is the same, and so are all readings, whatever is wanted. A recorder wants all.
+        not measure. The run is the same, and so are all readings, whatever is wanted.
         """
-        wanted = None if self.recorder is not None else sensors
-        if wanted is not self._wanted:
-            self._select(wanted)
+        if sensors is not self._wanted:
+            self._select(sensors)
         if self._posted:
             self._apply_commands()
         self._batch.act(_TICK_S)
         contacts = self._move_bodies()
         now_ns = self._clock.advance()
-        result = StepResult(now_ns, self._batch.measure(self._schedule.due(now_ns)), contacts)
-        if self.recorder is not None:
-            self.recorder.record_step((now_ns, tuple(result.readings), contacts))
-        return result
+        return StepResult(now_ns, self._batch.measure(self._schedule.due(now_ns)), contacts)
 
     def read(self, robot: str, sensor: str) -> Reading | None:
         """Return what a stateless sensor measures now. Raises KeyError for an unknown robot or sensor."""
@@ -305,10 +305,6 @@ class World:
         """Return whether a robot is lifted after the pending commands."""
         lifts = [command for name, command in self._posted if name == robot.name and isinstance(command, Lift)]
         return lifts[-1].is_lifted if lifts else robot.is_lifted
-
-    def _record(self, event: Input) -> None:
-        if self.recorder is not None:
-            self.recorder.record(self._clock.now_ns // TICK_NS, event)
 
     def _apply_commands(self) -> None:
         posted, self._posted = self._posted, []

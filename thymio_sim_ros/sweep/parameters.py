@@ -74,10 +74,10 @@ def start(run: Run) -> Engine:
         seed=run.seed,
         ground=_ground(run.playground, _fields(run)),
     )
-    for device in engine.devices.values():
+    for robot, device in engine.devices.items():
         for name, word in variables:
             if name in device.variables.addresses():
-                device.variables.set(name, [word])
+                engine.set_variable(robot, name, [word])
     return engine
 
 

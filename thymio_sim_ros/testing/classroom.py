@@ -65,7 +65,9 @@ class Classroom:
         else:
             own = programs_of(programs, self._ids, folder)
         self._log = None if run_log is None else RunLog(run_log.open("w", encoding="utf-8", newline="\n"))
-        self.engine = Engine(loaded, own, seed=seed, noise=noise, log=self._log)
+        self.engine = Engine(loaded, own, seed=seed, noise=noise)
+        if self._log is not None:
+            self._log.begin(loaded.name, self.engine)
         self.robots: Mapping[str, Thymio] = {name: Thymio(name, self) for name in names}
         self._record_events()
 
@@ -142,14 +144,18 @@ class Classroom:
         self.engine.load(robot, programs_of(program, {robot: self._ids[robot]}, self._folder)[robot])
         self._record_events()
 
+    def set_variable(self, robot: str, variable: str, words: Sequence[int]) -> None:
+        """Write a whole variable of a program. Raises KeyError for an unknown name, ValueError for wrong words."""
+        self.engine.set_variable(robot, variable, words)
+
     def emit(self, event: str, args: Sequence[int]) -> None:
         """Send an event to all robots that declare it, in the next tick. Raises LookupError if there is none."""
-        listeners = [device for device in self.engine.devices.values() if device.declares(event)]
-        if not listeners:
+        try:
+            self.engine.send_event(event, args)
+        except KeyError as error:
             known = sorted({name for host in self.engine.hosts.values() for name, _ in host.program.events})
-            raise LookupError(f"no program declares the event '{event}', only {', '.join(known) or 'none'}")
-        for device in listeners:
-            device.receive_event(event, args)
+            text = f"no program declares the event '{event}', only {', '.join(known) or 'none'}"
+            raise LookupError(text) from error
 
     def _record_events(self) -> None:
         for name, event in self.engine.emitted:

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.device.robot_device import RobotDevice
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL
@@ -54,6 +55,10 @@ class Stage(Protocol):
     def world(self) -> World:
         """The world as it is now."""
 
+    @property
+    def engine(self) -> Engine:
+        """World and devices, to which commands are posted."""
+
     def run(self, seconds: float) -> None:
         """Let simulated time pass."""
 
@@ -65,6 +70,9 @@ class Stage(Protocol):
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Give a robot a program."""
+
+    def set_variable(self, robot: str, variable: str, words: Sequence[int]) -> None:
+        """Write a variable of a program."""
 
     def emit(self, event: str, args: Sequence[int]) -> None:
         """Send an event to all robots that declare it."""
@@ -173,7 +181,7 @@ class Thymio:
     def __setitem__(self, variable: str, value: int | Sequence[int]) -> None:
         device = self._machine().device
         self._check_variable(device, variable)
-        device.variables.set(variable, [value] if isinstance(value, int) else value)
+        self.stage.set_variable(self.name, variable, [value] if isinstance(value, int) else value)
 
     # --- what people do to it ---
 
@@ -230,7 +238,7 @@ class Thymio:
 
     def post(self, command: Command) -> None:
         """Post a command of `thymio_sim_ros.sim.commands`; it takes effect in the next tick."""
-        self.stage.world.post(self.name, command)
+        self.stage.engine.post(self.name, command)
 
     def level(self, group: str) -> tuple[int, ...]:
         """How bright the lights of a group shine, 0…32; KeyError with the groups there are."""

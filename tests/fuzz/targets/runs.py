@@ -11,9 +11,9 @@ from importlib.util import find_spec
 from tests.fuzz.target import FOLDER, Target
 from tests.sim.builders import make
 from thymio_sim_ros.engine import run_log
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.run_log import RunLog, RunLogError
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.sweep.description import Description, read_description
 from thymio_sim_ros.sweep.errors import SweepError
 from thymio_sim_ros.sweep.grid import Sweep
@@ -63,12 +63,12 @@ def _table(suffix: str, data: bytes) -> None:
 def _logs() -> Iterator[bytes]:
     file = _KeptText()
     log = RunLog(file)
-    world = World(make(), seed=3)
-    log.begin("fuzz", world)
-    (robot,) = world.robots
-    world.post(robot, MotorTargets(100, 50))
+    engine = Engine(make(), seed=3)
+    log.begin("fuzz", engine)
+    (robot,) = engine.world.robots
+    engine.post(robot, MotorTargets(100, 50))
     for _ in range(3):
-        world.step()
+        engine.step()
     log.close()
     yield file.text.encode()
     first, _, *rest = file.text.splitlines(keepends=True)

@@ -30,11 +30,11 @@ from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker, MarkerArray
 
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.ros.interface.convert_readings import yaw_of
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist
-from thymio_sim_ros.sim.world import World
 
 WALL_AHEAD = json.dumps(
     {
@@ -297,17 +297,17 @@ def test_the_playground_can_be_changed_and_a_bad_one_is_refused(ros, simulation)
     assert len(sim.world.robots) == 1
 
 
-def test_a_change_of_playground_and_seed_builds_one_world_of_both(ros, simulation, monkeypatch):
+def test_a_change_of_playground_and_seed_builds_one_engine_of_both(ros, simulation, monkeypatch):
     sim = simulation(playground="base")
     built = []
     monkeypatch.setattr(
-        "thymio_sim_ros.ros.simulator.prepared_playground.World",
-        lambda *args, **options: built.append(World(*args, **options)) or built[-1],
+        "thymio_sim_ros.ros.simulator.prepared_playground.Engine",
+        lambda *args, **options: built.append(Engine(*args, **options)) or built[-1],
     )
     wanted = [Parameter("seed", value=7), Parameter("playground", value="obstacle")]
     request = SetParametersAtomically.Request(parameters=[parameter.to_parameter_msg() for parameter in wanted])
     assert ros.call(SetParametersAtomically, "/simulator/set_parameters_atomically", request).result.successful
-    assert built == [sim.world]
+    assert built == [sim.engine]
     assert sim.world.options.seed == 7
     assert sim.world.playground.title == load_playground("obstacle")[1].title
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import shipped
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.run_log import RunLog
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.world import World
 
 TICKS = 500
 
@@ -17,18 +17,18 @@ TICKS = 500
 def logged(tmp_path):
     """A log of two runs, and the poses after each tick of the second one."""
     path = tmp_path / "run.jsonl"
-    world = World(shipped("obstacle"), seed=4)
+    engine = Engine(shipped("obstacle"), seed=4)
     log = RunLog(path.open("w", encoding="utf-8"))
-    log.begin("obstacle", world)
+    log.begin("obstacle", engine)
     for _ in range(50):
-        world.step()
-    world.reset()
+        engine.step()
+    engine.reset()
     poses = []
     for tick in range(TICKS):
         if tick in (100, 400):
-            world.post("thymio", MotorTargets(tick, 200))
-        world.step()
-        poses.append(world.robots["thymio"].pose)
+            engine.post("thymio", MotorTargets(tick, 200))
+        engine.step()
+        poses.append(engine.world.robots["thymio"].pose)
     log.close()
     return path, poses
 
@@ -57,7 +57,7 @@ def test_another_time_and_another_playground(simulation, logged):
     sim = simulation(replay=str(path), replay_from=4.5)
     assert pose(sim) == poses[449]
     runner = sim.simulator.runner
-    runner.replace(runner.prepared, World(shipped("obstacle"), seed=4))
+    runner.replace(runner.prepared, Engine(shipped("obstacle"), seed=4))
     runner.advance(300)
     assert pose(sim) == poses[0]  # it stands: the inputs of the log belong to the replay only
 

@@ -20,11 +20,13 @@ __all__ = [
     "ThymioProgram",
     "is_skipped",
     "load_file",
+    "load_node",
     "load_program",
     "memory_use",
     "of_node",
     "other_device_note",
     "parse",
+    "place_of",
     "select",
 ]
 
@@ -119,6 +121,20 @@ def load_file(
             notes.append(format_message("note-left-out-node", (node.name, str(error))))
     others = tuple(dict.fromkeys(node.name for node in selection.others))
     return ThymioFile(tuple(programs), others, tuple(notes))
+
+
+def load_node(
+    text: str, name: str, place: int, layout: str = THYMIO, *, constants: Mapping[str, int] = NO_CONSTANTS
+) -> ThymioProgram:
+    """Compile one node of a text, by its place in the file. Raises IndexError, AeslError or ProgramError."""
+    network = parse(text, constants)
+    return _compile(name, text, network.nodes[place], network, layout, is_one=True)
+
+
+def place_of(program: ThymioProgram) -> int:
+    """Place of the node of a program in its file, for `load_node`."""
+    nodes = parse(program.text).nodes
+    return next(at for at, node in enumerate(nodes) if (node.name, node.code) == (program.node.name, program.source))
 
 
 def of_node(

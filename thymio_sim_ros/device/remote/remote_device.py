@@ -128,9 +128,10 @@ class RemoteDevice:
     def advance(self, now_ns: int) -> None:
         """Do nothing: the robot has a clock of its own."""
 
-    def run(self, budget: int) -> None:
+    def run(self, budget: int) -> int:
         """Send what waits to be sent; the robot executes its program itself."""
         self.on_run()
+        return 0
 
     def pop_commands(self) -> list[Command]:
         """Return no commands: the robot executes them itself."""

@@ -38,7 +38,7 @@ from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.local_commands import LocalCommands
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams, SimulatorParams
-from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_world
+from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_engine
 from thymio_sim_ros.ros.simulator.recording import Recording
 from thymio_sim_ros.ros.simulator.robot_access import RobotAccess
 from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
@@ -55,7 +55,7 @@ HEARTBEAT_NS = SECOND_NS
 class Simulator:
     """The simulator node.
 
-    `runner` owns the world, `endpoints` what is published, `params` the current parameters. Invariant: only `run_once`
+    `runner` owns the engine, `endpoints` what is published, `params` the current parameters. Invariant: only `run_once`
     and callbacks of `node` use them. `local_commands` takes commands from other threads.
     """
 
@@ -95,7 +95,7 @@ class Simulator:
             if logged is None:
                 prepared = self._loader.load(values.playground)
             else:
-                prepared = PreparedPlayground.of(logged.start.name, logged.start.playground, values)
+                prepared = PreparedPlayground.of(logged.name, logged.start.playground, values)
             self._recording = Recording(self.node, values.log)
         except (*LOAD_ERRORS, RunLogError) as error:
             self.node.destroy_node()
@@ -107,9 +107,9 @@ class Simulator:
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
         self._robot_options = replace(values.endpoint_options, extra=extra)
         if logged is None:
-            world = new_world(prepared.playground, values, prepared.ground)
+            engine = new_engine(prepared.playground, values, prepared.ground)
         else:
-            world = logged.new_world(prepared.ground)
+            engine = logged.new_engine(prepared.ground)
         self._connections = Connections(self.node, values.switched_off)
         self.runner = WorldRunner(
             self.node,
@@ -119,7 +119,7 @@ class Simulator:
             self._messages,
             self._recording,
             prepared,
-            world,
+            engine,
             logged,
         )
         self.runner.start()

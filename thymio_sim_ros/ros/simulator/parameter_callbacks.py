@@ -8,12 +8,12 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.ros.rclpy_ext.parameters import by_name, changes, refusal, updated
 from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
-from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_world
+from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_engine
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
-from thymio_sim_ros.sim.world import World
 
 __all__ = ["ParameterCallbacks", "reject_sim_time"]
 
@@ -31,15 +31,15 @@ def reject_sim_time(node: Node) -> None:
 class ParameterCallbacks:
     """The parameter callbacks of the node.
 
-    A changed playground becomes a world while it is checked, so that applying it cannot fail; a rejected value changes
-    nothing.
+    A changed playground becomes an engine while it is checked, so that applying it cannot fail; a rejected value
+    changes nothing.
     """
 
     def __init__(
         self, node: Node, params: CurrentParams, loader: DeferredLoad[PreparedPlayground], runner: WorldRunner
     ) -> None:
         self._node, self._params, self._loader, self._runner = node, params, loader, runner
-        self._accepted: tuple[PreparedPlayground, World] | None = None
+        self._accepted: tuple[PreparedPlayground, Engine] | None = None
         """The playground that was checked last, if it differs from the current one."""
         self.has_loaded = False
         """Whether the last change created a world, also from a file of the same name."""
@@ -73,7 +73,7 @@ class ParameterCallbacks:
         if playground is None:
             return SetParametersResult(successful=True)
         try:
-            self._accepted = self._new_world(playground, parameters)
+            self._accepted = self._new_engine(playground, parameters)
         except LOAD_ERRORS as error:
             return _rejected(str(error))
         except Exception as error:  # internal error while reading a file: the node continues
@@ -83,13 +83,13 @@ class ParameterCallbacks:
             return _rejected(f"{type(error).__name__}: {error}")
         return SetParametersResult(successful=True)
 
-    def _new_world(self, value: str, parameters: list[Parameter]) -> tuple[PreparedPlayground, World] | None:
-        """Return a playground and its world, or None if it is the current one. Raises one of `LOAD_ERRORS`."""
+    def _new_engine(self, value: str, parameters: list[Parameter]) -> tuple[PreparedPlayground, Engine] | None:
+        """Return a playground and its engine, or None if it is the current one. Raises one of `LOAD_ERRORS`."""
         prepared = self._loader.load(value)
         if value == self._params.values.playground and prepared.playground == self._runner.world.playground:
             return None
         chosen = updated(self._params.values, parameters)
-        return prepared, new_world(prepared.playground, chosen, prepared.ground)
+        return prepared, new_engine(prepared.playground, chosen, prepared.ground)
 
     def _apply(self, parameters: list[Parameter]) -> None:
         if not self._has_own(parameters):
@@ -99,12 +99,12 @@ class ParameterCallbacks:
         if "real_time_factor" in changed:
             self._runner.scheduler.set_factor(values.real_time_factor)
         if "playground" in changed and self._accepted is not None:
-            (prepared, world), self._accepted = self._accepted, None
-            self._runner.replace(prepared, world)
+            (prepared, engine), self._accepted = self._accepted, None
+            self._runner.replace(prepared, engine)
             self.has_loaded = True
         elif "seed" in changed:
+            self._runner.replace(self._runner.prepared, new_engine(self._runner.world.playground, values))
             self.has_loaded = True
-            self._runner.replace(self._runner.prepared, new_world(self._runner.world.playground, values))
         self._runner.publish_state()
 
 

@@ -1,9 +1,10 @@
-"""Loads a playground and everything slow that is derived from it, on any thread, before a world is created."""
+"""Loads a playground and everything slow that is derived from it, on any thread, before an engine is created."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
@@ -11,9 +12,8 @@ from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.world_endpoints import SceneMessages
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
-from thymio_sim_ros.sim.world import World
 
-__all__ = ["LOAD_ERRORS", "PreparedPlayground", "new_world"]
+__all__ = ["LOAD_ERRORS", "PreparedPlayground", "new_engine"]
 
 LOAD_ERRORS = (PlaygroundError, resources.ResourceError, StartError, OSError)
 """What `PreparedPlayground.load` raises for a value that the user can correct."""
@@ -21,7 +21,7 @@ LOAD_ERRORS = (PlaygroundError, resources.ResourceError, StartError, OSError)
 
 @dataclass(frozen=True, slots=True)
 class PreparedPlayground:
-    """A playground with renamed robots, and the slow results derived from it, ready for a world."""
+    """A playground with renamed robots, and the slow results derived from it, ready for an engine."""
 
     name: str
     playground: Playground
@@ -41,9 +41,9 @@ class PreparedPlayground:
         return cls(name, playground, Ground(playground.floors, playground.paints), scene)
 
 
-def new_world(playground: Playground, chosen: SimulatorParams, ground: Ground | None = None) -> World:
-    """Return a new world of a playground; `ground` saves the time to derive it."""
-    return World(
+def new_engine(playground: Playground, chosen: SimulatorParams, ground: Ground | None = None) -> Engine:
+    """Return a new engine for a playground; `ground` saves the time to derive it."""
+    return Engine(
         playground,
         seed=chosen.seed,
         noise=chosen.noise,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rclpy.node import Node
 
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.run_log import RunLog
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
-from thymio_sim_ros.sim.world import World
 
 __all__ = ["Recording"]
 
@@ -26,10 +26,10 @@ class Recording:
         except OSError as error:
             raise StartError(f"log '{path}': {error.strerror}, expected a writable file") from error
 
-    def begin(self, name: str, world: World) -> None:
-        """Record a new world from its start; `name` is that of the playground."""
+    def begin(self, name: str, engine: Engine) -> None:
+        """Record an engine from its start; `name` is that of the playground."""
         if self._log is not None:
-            self._log.begin(name, world)
+            self._log.begin(name, engine)
 
     def close(self) -> None:
         """Complete and close the file. May be called twice."""

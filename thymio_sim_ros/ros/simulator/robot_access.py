@@ -50,7 +50,7 @@ class RobotAccess:
         if isinstance(command, MoveRobot):
             self._runner.move(self._robot, command.x_m, command.y_m, command.yaw_rad)
         else:
-            world.post(self._robot, command)
+            self._runner.engine.post(self._robot, command)
 
     def _frames(self) -> Mapping[str, Pose]:
         robot = self._runner.world.robots.get(self._robot)

@@ -1,4 +1,4 @@
-"""Owns the world and its time: steps, pauses, resets and replaces it, and publishes the results.
+"""Owns the engine: steps, pauses, resets and replaces it, and publishes the results.
 
 Ticks that no subscriber could see are deferred and executed together, at the latest when a message arrives; the command
 in it takes effect in the next tick, as if no tick had been deferred.
@@ -14,6 +14,7 @@ from collections.abc import Callable
 from rclpy.executors import Executor
 from rclpy.node import Node
 
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.replay import LoggedRun
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
@@ -37,7 +38,7 @@ MAX_NOTES = 20
 
 
 class WorldRunner:
-    """Runs one world at a time. Invariant: only the thread of the node's executor calls it and touches the world."""
+    """Runs one engine at a time. Invariant: only the thread of the node's executor calls it and touches the engine."""
 
     def __init__(
         self,
@@ -48,15 +49,15 @@ class WorldRunner:
         messages: MessageReports,
         recording: Recording,
         prepared: PreparedPlayground,
-        world: World,
+        engine: Engine,
         logged: LoggedRun | None = None,
     ) -> None:
-        """`start` publishes the world; endpoints may use this object only then. `logged`: what happens in the world."""
+        """`start` publishes the world; endpoints may use this object only then. `logged`: the run that is shown."""
         self._node, self._params, self._endpoints, self._recording = node, params, endpoints, recording
         self._connections, self._messages = connections, messages
         self.prepared = prepared
         """The playground of the world."""
-        self.world = world
+        self.engine = engine
         self._logged = logged
         self.paused = params.values.start_paused or logged is not None
         self.scheduler = TickScheduler(
@@ -69,17 +70,22 @@ class WorldRunner:
         """Whether callbacks may execute deferred ticks: not within a tick, nor without a thread that runs the node."""
         self._published_fallen: frozenset[str] = frozenset()
 
+    @property
+    def world(self) -> World:
+        """The world of the engine, to read."""
+        return self.engine.world
+
     def start(self) -> None:
         """Log the notes about the playground, begin its recording and publish its start."""
         for note in self.world.playground.notes:
             self._node.get_logger().warning(f"playground {self.prepared.name}: {note}")
-        self._recording.begin(self.prepared.name, self.world)
+        self._recording.begin(self.prepared.name, self.engine)
         self._publish_start()
 
-    def replace(self, prepared: PreparedPlayground, world: World) -> None:
-        """Run another world from its start; a replay ends."""
+    def replace(self, prepared: PreparedPlayground, engine: Engine) -> None:
+        """Run another engine from its start; a replay ends."""
         self._logged = None
-        self.prepared, self.world = prepared, world
+        self.prepared, self.engine = prepared, engine
         self.start()
         # Parts of the world before refer to each other; the collector, which does not count their megabytes, is late.
         gc.collect()
@@ -129,7 +135,7 @@ class WorldRunner:
 
     def reset(self) -> None:
         """Reset world, time and noise to the start."""
-        self.world.reset()
+        self.engine.reset()
         self._publish_start()
 
     def spawn(self, start: RobotStart) -> None:
@@ -140,7 +146,7 @@ class WorldRunner:
         """
         self._endpoints.robots.check_name(start.name)
         self.world.check_ground(start.name, start.x_m, start.y_m)
-        self.world.spawn(start)
+        self.engine.spawn(start)
 
     def move(self, name: str, x_m: float, y_m: float, yaw_rad: float) -> None:
         """Move a robot or object to a position on a ground; a lifted robot to any position.
@@ -152,7 +158,7 @@ class WorldRunner:
         if robot is None or not robot.is_lifted:
             self.world.check_ground(name, x_m, y_m)
         command = MoveObject if robot is None else MoveRobot
-        self.world.post(name, command(x_m, y_m, yaw_rad))
+        self.engine.post(name, command(x_m, y_m, yaw_rad))
 
     def update_robots(self) -> None:
         """Create or destroy topics and frames if robots were added or removed."""
@@ -188,8 +194,8 @@ class WorldRunner:
         self.update_robots()
         for _ in range(ticks):
             if self._logged is not None:
-                self._logged.repeat_inputs(self.world)
-            result = self.world.step(endpoints.demand.sensors)
+                self._logged.repeat_inputs(self.engine)
+            result = self.engine.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
             if self.paused:
                 endpoints.clock.publish(result.now_ns, last=True)

@@ -143,7 +143,7 @@ class WorldServices:
         world = self._runner.world
         if name not in world.robots:
             raise ValueError(_unknown(name, tuple(world.robots)))
-        world.remove(name)
+        self._runner.engine.remove(name)
 
     def _set_pose(self, name: str, value: ParameterValue) -> None:
         self._move(name, *_pose_of(name, value))

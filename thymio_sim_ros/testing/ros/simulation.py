@@ -11,6 +11,7 @@ from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.device.programs.program_assignment import RobotId
+from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.files.loading import robot_ids
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
@@ -56,6 +57,11 @@ class Simulation:
     def world(self) -> World:
         """The world itself (ground truth)."""
         return self.simulator.runner.world
+
+    @property
+    def engine(self) -> Engine:
+        """The engine of the simulator, to which commands are posted."""
+        return self.simulator.runner.engine
 
     @property
     def now(self) -> float:
@@ -170,6 +176,13 @@ class Simulation:
         if ports is None:
             raise LookupError(_NO_MACHINE.format(robot))
         ports.load(programs_of(program, {robot: self._id_of(robot)}, self._folder)[robot])
+
+    def set_variable(self, robot: str, variable: str, words: Sequence[int]) -> None:
+        """Write a whole variable of the program of a robot. Raises LookupError if it has no machine."""
+        ports = self.machine(robot)
+        if ports is None:
+            raise LookupError(_NO_MACHINE.format(robot))
+        ports.device.variables.set(variable, words)
 
     def _id_of(self, robot: str) -> RobotId:
         names = list(self.simulator.endpoints.robots.names)

@@ -198,5 +198,5 @@ class Entities:
     def _delete(self, request: Any, response: Any) -> None:
         if self._known(request.entity) != ROBOT:
             raise RefusedError(FAILED, f"'{request.entity}' belongs to the playground: only robots can be deleted")
-        self._runner.world.remove(request.entity)
+        self._runner.engine.remove(request.entity)
         self._runner.update_robots()
