@@ -14,7 +14,7 @@ from thymio_sim_ros.cli import grade as command
 from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.cli.main import main
 from thymio_sim_ros.grading import grader
-from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.errors import DestroyedError, GradingError
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
 
 engine = pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
@@ -156,6 +156,38 @@ def test_a_submission_that_no_machine_could_grade_is_said_and_repeated(
     sandbox.runs.clear()
     assert main(GRADE) == 0
     assert sandbox.runs == ["bad"]
+
+
+@pytest.mark.parametrize(
+    ("fault", "verdict", "code"),
+    [
+        (GradingError("the sandbox ended with code 1: OSError"), "could not be graded", command.FAILED),
+        (DestroyedError("the sandbox ended with code -9"), "the tests were ended from outside", 0),
+        (Report({}, remark="stopped before the first test: exit code 1"), "could not be graded", 0),
+    ],
+)
+def test_a_fault_of_the_machine_is_no_fault_of_the_pupil(
+    sandbox: Sandbox, monkeypatch: pytest.MonkeyPatch, fault: GradingError | Report, verdict: str, code: int
+) -> None:
+    run_job = sandbox.run_job
+
+    def faulty(job: Job) -> Report:
+        if job.submission.get("a.py") != b"bad":
+            return run_job(job)
+        if isinstance(fault, Report):
+            return fault
+        raise fault
+
+    def run_all(function, tasks, **_):  # type: ignore[no-untyped-def]
+        yield [(index, engine._run_one(function, task)) for index, task in enumerate(tasks)]
+
+    monkeypatch.setattr(grader, "run_job", faulty)
+    monkeypatch.setattr(engine, "run_all", run_all)
+    assert main(GRADE) == code
+    page = next(Path("grades/pupils").glob("Ben-*/index.html")).read_text()
+    assert verdict in page
+    assert "code 1" not in page
+    assert points() == {"Anna": "2", "Ben": "0", "Cleo": "0"}
 
 
 def test_a_worker_without_the_isolation_grades_nobody(sandbox: Sandbox, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -107,7 +107,7 @@ PUPILS = {
     "Import error": Pupil("import numppy", "0", "failed"),
     "No function": Pupil("def stear(prox): return 1, 1", "0", "failed"),
     "Empty": Pupil("", "0", "failed"),
-    "Nothing": Pupil(None, "0", "no file was handed in"),
+    "Nothing": Pupil(None, "0", "no file was handed in: hand in controller.py"),
     "Exits": Pupil(acting("sys.exit(0)"), "0", "failed"),
     "Ends the process": Pupil(acting("os._exit(0)"), "0", "crashed"),
     "Segmentation fault": Pupil(acting("import ctypes; ctypes.string_at(0)"), "0", "crashed"),

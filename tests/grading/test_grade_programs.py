@@ -89,9 +89,9 @@ def test_programs_are_graded_and_cannot_end_the_grader(tmp_path: Path, level: st
     output = grade(tmp_path, {"Good": GOOD, "Hostile": HOSTILE, "Noisy": NOISY, "Fails": FAILS}, level)
     assert points(output) == {"Good": "2", "Hostile": "0", "Noisy": "0", "Fails": "0"}
     pages = {name: next(output.glob(f"pupils/{name}-*/index.html")).read_text() for name in ("Noisy", "Fails")}
-    assert "it printed more than 10 MB" in pages["Noisy"]
+    assert "the program printed more than 10 MB" in pages["Noisy"]
     assert "output limit" in pages["Noisy"]
-    assert "it wrote more than the 64 MB of files that it may write" in pages["Fails"]
+    assert "the program wrote more than 64 MB" in pages["Fails"]
     assert "printed before" in pages["Fails"]
     assert all(
         folder not in "".join(pages.values())

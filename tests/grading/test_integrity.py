@@ -70,7 +70,9 @@ def test_what_is_replaced_is_found(
 ) -> None:
     assert functions.replaced() == []
     replace(module)
-    assert functions.replaced() == [f"the submission replaced test_of_an_assignment.{name}, a function of the tests"]
+    assert functions.replaced() == [
+        f"the submission replaced test_of_an_assignment.{name}, a function of the tests: remove that"
+    ]
 
 
 def test_a_method_of_a_fixture_that_is_replaced_is_found(
@@ -88,7 +90,7 @@ def test_a_function_of_python_that_is_replaced_is_found(
     with monkeypatch.context() as patched:
         patched.setattr(owner, name, other)
         messages = functions.replaced()
-    assert messages == [f"the submission replaced {owner.__name__}.{name}, a function of the tests"]
+    assert messages == [f"the submission replaced {owner.__name__}.{name}, a function of the tests: remove that"]
 
 
 def test_a_world_that_runs_replaces_nothing(module: ModuleType, functions: TestFunctions) -> None:

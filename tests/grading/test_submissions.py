@@ -169,9 +169,9 @@ def test_a_rejected_file_in_a_zip_of_the_class_costs_its_own_submission_only(tmp
             archive.writestr(name, content)
     assert {name: one.problem for name, one in found(tmp_path / "class.zip").items()} == {
         "anna": "",
-        "ben": "more than 8 MB, unpacked",
-        "cleo": "cleo/a.aesl is a symbolic link; expected a file or folder",
-        "dora": "the zip has the path 'dora/../../evil'; expected paths inside of it",
+        "ben": "more than 8 MB, unpacked: hand in only what the task asks for",
+        "cleo": "cleo/a.aesl is a link (symbolic link) to something else: hand in the file or folder itself",
+        "dora": "'dora/../../evil' leads out of the zip: pack the folder of your work again",
         "eve": "",
     }
 
@@ -198,7 +198,7 @@ def test_an_encrypted_zip_is_a_row_with_a_reason(tmp_path: Path) -> None:
     data = bytearray(zipped({"a.aesl": b"1"}))
     data[data.index(b"PK\x01\x02") + 8] |= 1
     (tmp_path / "anna.zip").write_bytes(data)
-    assert found(tmp_path)["anna"].problem == "a.aesl is encrypted; expected a zip without a password"
+    assert found(tmp_path)["anna"].problem == "a.aesl has a password: pack a zip without a password"
 
 
 def test_names_of_a_mac_are_read_as_they_were_written(tmp_path: Path) -> None:
@@ -222,7 +222,7 @@ def test_pupils_of_the_same_name_stay_apart(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["../evil.aesl", "/etc/evil", "a/../../evil", "C:/evil", "..\\evil"])
 def test_a_zip_with_a_path_that_leads_out_is_a_row_with_a_reason(tmp_path: Path, name: str) -> None:
     (tmp_path / "anna.zip").write_bytes(zipped({name: b""}))
-    assert "expected paths inside of it" in found(tmp_path)["anna"].problem
+    assert "leads out of the zip" in found(tmp_path)["anna"].problem
 
 
 def test_links_are_rejected_in_folders_and_zips(tmp_path: Path) -> None:
@@ -247,7 +247,7 @@ def test_a_zip_bomb_is_rejected_before_it_is_unpacked(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "anna.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("zeros", bytes(archives.MAX_BYTES + 1))
     assert (tmp_path / "anna.zip").stat().st_size < 20_000
-    assert found(tmp_path)["anna"].problem == "more than 8 MB, unpacked"
+    assert found(tmp_path)["anna"].problem == "more than 8 MB, unpacked: hand in only what the task asks for"
 
 
 def test_a_zip_that_lies_about_its_size_is_rejected(tmp_path: Path) -> None:
@@ -266,7 +266,7 @@ def test_a_damaged_zip_is_a_row_with_a_reason(tmp_path: Path, content: bytes) ->
 
 def test_too_many_files_are_rejected(tmp_path: Path) -> None:
     (tmp_path / "anna.zip").write_bytes(zipped({f"f{number}": b"" for number in range(archives.MAX_FILES + 1)}))
-    assert found(tmp_path)["anna"].problem == "more than 300 files"
+    assert found(tmp_path)["anna"].problem == "more than 300 files: hand in only what the task asks for"
 
 
 def test_a_class_that_is_missing_or_empty_is_an_error(tmp_path: Path) -> None:
@@ -284,8 +284,13 @@ def test_a_class_that_is_missing_or_empty_is_an_error(tmp_path: Path) -> None:
         ({"f.aesl": b""}, ("f.aesl",), {"f.aesl"}, ""),
         ({"work/f.aesl": b"", "work/m.json": b""}, ("f.aesl",), {"f.aesl", "m.json"}, ""),
         ({"anna final.aesl": b""}, ("f.aesl",), {"f.aesl"}, ""),
-        ({"a.aesl": b"", "b.aesl": b""}, ("f.aesl",), {"a.aesl", "b.aesl"}, "no file f.aesl; found a.aesl, b.aesl"),
-        ({"a.txt": b""}, ("f.aesl",), {"a.txt"}, "no file f.aesl; found a.txt"),
+        (
+            {"a.aesl": b"", "b.aesl": b""},
+            ("f.aesl",),
+            {"a.aesl", "b.aesl"},
+            "no file f.aesl: hand in one file with this name; found a.aesl, b.aesl",
+        ),
+        ({"a.txt": b""}, ("f.aesl",), {"a.txt"}, "no file f.aesl: hand in one file with this name; found a.txt"),
         (
             {"p/setup.py": b"", "p/p/f.py": b"", "p/p/g.py": b""},
             ("f.py",),
@@ -296,14 +301,19 @@ def test_a_class_that_is_missing_or_empty_is_an_error(tmp_path: Path) -> None:
             {"r.txt": b"", "a/f.py": b"", "b/f.py": b""},
             ("f.py",),
             {"r.txt", "a/f.py", "b/f.py"},
-            "no file f.py; found a/f.py, b/f.py, r.txt",
+            "no file f.py: hand in one file with this name; found a/f.py, b/f.py, r.txt",
         ),
         ({"F.AESL": b""}, ("f.aesl",), {"f.aesl"}, ""),
         ({"work.zip": zipped({"w/f.aesl": b""}), "w/notes.pdf": b""}, ("f.aesl",), {"f.aesl", "notes.pdf"}, ""),
         ({"f.aesl": b"", "old.zip": b"no zip"}, ("f.aesl",), {"f.aesl", "old.zip"}, ""),
         ({"x" * 256 + "/f.aesl": b""}, ("f.aesl",), {"f.aesl"}, ""),
-        ({"f.aesl": b"", "a": b"", "a/b": b""}, ("f.aesl",), {"f.aesl", "a", "a/b"}, "a is both a file and a folder"),
-        ({}, ("f.aesl",), set(), "no file was handed in"),
+        (
+            {"f.aesl": b"", "a": b"", "a/b": b""},
+            ("f.aesl",),
+            {"f.aesl", "a", "a/b"},
+            "a is both a file and a folder: give one of them another name",
+        ),
+        ({}, ("f.aesl",), set(), "no file was handed in: hand in f.aesl"),
     ],
 )
 def test_expected_files_are_found_under_other_names(
@@ -353,7 +363,9 @@ def test_a_copy_beside_the_expected_file_is_remarked() -> None:
 def test_copies_that_differ_are_not_chosen_from() -> None:
     files = {"follower (1).aesl": b"1", "follower (2).aesl": b"2"}
     problem = prepared(Submission("anna", files=files), ["follower.aesl"]).problem
-    assert problem == "no file follower.aesl; found follower (1).aesl, follower (2).aesl"
+    assert (
+        problem == "no file follower.aesl: hand in one file with this name; found follower (1).aesl, follower (2).aesl"
+    )
 
 
 def test_another_number_is_another_file() -> None:

@@ -20,6 +20,7 @@ __all__ = [
     "RejectedError",
     "check_paths",
     "is_clutter",
+    "is_link",
     "is_zip",
     "read_class_zip",
     "read_folder",
@@ -49,8 +50,16 @@ _CANNOT_UNPACK = (
 """Exceptions for a damaged, encrypted or unusual archive; IndexError: an entry without a name."""
 
 
+_ONLY_NEEDED = "hand in only what the task asks for"
+
+
 class RejectedError(ThymioSimError):
     """Files that are not accepted; the text is one line for the teacher's table."""
+
+
+def is_link(name: str) -> str:
+    """The reason why a link is rejected."""
+    return f"{name} is a link (symbolic link) to something else: hand in the file or folder itself"
 
 
 def is_clutter(path: str) -> bool:
@@ -82,7 +91,7 @@ def _walk(folder: Path) -> list[Path]:
         for name in (*folders, *names):
             if os.path.islink(os.path.join(parent, name)):
                 shown = Path(parent, name).relative_to(folder).as_posix()
-                raise RejectedError(f"{shown} is a symbolic link; expected a file or folder")
+                raise RejectedError(is_link(shown))
         found += [Path(parent, name) for name in names]
         _check_size(0, len(found), MAX_BYTES, MAX_FILES)
     return found
@@ -93,7 +102,7 @@ def _opened(path: Path, name: str) -> io.BufferedReader:
     opened = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     if not stat.S_ISREG(os.fstat(opened).st_mode):
         os.close(opened)
-        raise RejectedError(f"{name} is neither a file nor a folder")
+        raise RejectedError(f"{name} is neither a file nor a folder: hand in a file, a folder or a zip")
     return os.fdopen(opened, "rb")
 
 
@@ -109,7 +118,7 @@ def read_zip(data: bytes) -> dict[str, bytes]:
         _check_size(sum(entry.file_size for _, entry in entries), len(entries), MAX_BYTES, MAX_FILES)
         for name, entry in entries:
             if name in files:
-                raise RejectedError(f"the zip has {name} twice")
+                raise _twice(name)
             _check_inside(name)
             files[name] = _read_entry(archive, name, entry, MAX_BYTES - size)
             size += len(files[name])
@@ -139,7 +148,7 @@ def read_class_zip(data: bytes) -> dict[str, bytes | RejectedError | None]:
                 _check_inside(name)
                 _check_size(entry.file_size, 1, MAX_BYTES, 1)
                 content = _read_entry(archive, name, entry, entry.file_size)
-                files[name] = RejectedError(f"the zip has {name} twice") if name in files else content
+                files[name] = _twice(name) if name in files else content
             except RejectedError as error:
                 files[name] = error
     return files
@@ -151,7 +160,7 @@ def _opened_zip(data: bytes) -> Iterator[zipfile.ZipFile]:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             yield archive
     except _CANNOT_UNPACK as error:
-        raise RejectedError(f"a zip that cannot be read: {error}") from error
+        raise _unreadable(error) from error
 
 
 def _entries(archive: zipfile.ZipFile) -> list[tuple[str, zipfile.ZipInfo]]:
@@ -176,14 +185,22 @@ def _composed(name: str) -> str:
 def _read_entry(archive: zipfile.ZipFile, name: str, entry: zipfile.ZipInfo, limit: int) -> bytes:
     """Read an entry, at most one byte more than the limit: declared sizes may be false."""
     if stat.S_ISLNK(entry.external_attr >> 16):
-        raise RejectedError(f"{name} is a symbolic link; expected a file or folder")
+        raise RejectedError(is_link(name))
     if entry.flag_bits & _ENCRYPTED:
-        raise RejectedError(f"{name} is encrypted; expected a zip without a password")
+        raise RejectedError(f"{name} has a password: pack a zip without a password")
     try:
         with archive.open(entry) as opened:
             return opened.read(limit + 1)
     except _CANNOT_UNPACK as error:
-        raise RejectedError(f"a zip that cannot be read: {error}") from error
+        raise _unreadable(error) from error
+
+
+def _unreadable(error: Exception) -> RejectedError:
+    return RejectedError(f"the zip cannot be read: pack the files again ({error})")
+
+
+def _twice(name: str) -> RejectedError:
+    return RejectedError(f"the zip has {name} twice: pack it with one of them")
 
 
 def unpack(files: Content) -> dict[str, bytes]:
@@ -212,18 +229,18 @@ def check_paths(names: Collection[str]) -> None:
         if len(name) > MAX_PATH or any(
             len(part.encode("utf-8", "replace")) > MAX_NAME_BYTES for part in name.split("/")
         ):
-            raise RejectedError(f"a path is too long: {name[:60]!r}…")
+            raise RejectedError(f"the name of a file or folder is too long: give {name[:60]!r}… a shorter one")
         if name in folders:
-            raise RejectedError(f"{name} is both a file and a folder")
+            raise RejectedError(f"{name} is both a file and a folder: give one of them another name")
 
 
 def _check_inside(name: str) -> None:
     if name.startswith("/") or ".." in name.split("/") or ":" in name.split("/")[0] or "\0" in name:
-        raise RejectedError(f"the zip has the path {name[:60]!r}; expected paths inside of it")
+        raise RejectedError(f"{name[:60]!r} leads out of the zip: pack the folder of your work again")
 
 
 def _check_size(size: int, files: int, max_bytes: int, max_files: int) -> None:
     if size > max_bytes:
-        raise RejectedError(f"more than {max_bytes // 1_000_000} MB, unpacked")
+        raise RejectedError(f"more than {max_bytes // 1_000_000} MB, unpacked: {_ONLY_NEEDED}")
     if files > max_files:
-        raise RejectedError(f"more than {max_files} files")
+        raise RejectedError(f"more than {max_files} files: {_ONLY_NEEDED}")

@@ -23,7 +23,10 @@ from typing import Any
 
 from thymio_sim_ros.grading.errors import GradingError
 
-__all__ = ["Assignment", "Limits", "load"]
+__all__ = ["MAX_FILES", "Assignment", "Limits", "load"]
+
+MAX_FILES = 20_000
+"""Files and folders that a submission may have at the same time."""
 
 _LISTS = ("tests", "hidden", "files", "data")
 

@@ -8,15 +8,20 @@ from thymio_sim_ros.grading.results import GradedTest
 from thymio_sim_ros.grading.sandbox.job import Outcome, Report
 from thymio_sim_ros.grading.submissions import Submission
 
-__all__ = ["common_failure", "fails_in_setup"]
+__all__ = ["common_failure", "did_not_begin", "fails_in_setup"]
 
 _STARTED = "before the first test"
 """Part of the remark of a submission whose tests did not begin."""
 
 
+def did_not_begin(report: Report) -> bool:
+    """Whether the tests of a submission ended before anything of it was loaded."""
+    return _STARTED in report.remark
+
+
 def fails_in_setup(submission: Submission, report: Report) -> bool:
     """Whether the tests of a submission did not begin, or one failed before it, without naming its files."""
-    return _STARTED in report.remark or any(_reason(submission, one) for one in report.outcomes.values())
+    return did_not_begin(report) or any(_reason(submission, one) for one in report.outcomes.values())
 
 
 def common_failure(graded: Iterable[tuple[Submission, Report]], tests: Sequence[GradedTest]) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import socket
 from collections.abc import Generator, Sequence
 from contextlib import closing
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 
 from thymio_sim_ros.batch_runs.failure import Failure
 from thymio_sim_ros.grading.assignment import Assignment, Limits
-from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.common_failure import did_not_begin
+from thymio_sim_ros.grading.errors import DestroyedError, GradingError
 from thymio_sim_ros.grading.limit_reasons import limit_in
 from thymio_sim_ros.grading.results import Graded, GradedTest, Verdict
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
@@ -22,6 +22,8 @@ __all__ = ["collect", "graded", "run_submission", "run_submissions"]
 
 _NO_VERDICT = "not run"
 _NOT_GRADED = "could not be graded"
+_ASK = f"{_NOT_GRADED}: ask your teacher, it is not the fault of your program"
+_DESTROYED = "the tests were ended from outside, perhaps by the program: remove what ends other programs"
 
 
 def collect(assignment: Assignment, level: str) -> tuple[GradedTest, ...]:
@@ -64,7 +66,7 @@ def run_submissions(
 def run_submission(submission: Submission, *, assignment: Assignment, tests: tuple[str, ...], level: str) -> Report:
     """Run the tests on a submission. One that destroys its sandbox has a report with a remark and no verdicts.
 
-    Raises GradingError if this machine does not have the level of isolation.
+    Raises GradingError if this machine does not have the level of isolation, or the sandbox fails by itself.
     """
     if reason := _why_unavailable(level):
         raise GradingError(f"isolation {level} is not available on {socket.gethostname()}: {reason}")
@@ -74,8 +76,8 @@ def run_submission(submission: Submission, *, assignment: Assignment, tests: tup
         job = Job(level, part.tests, part.content, submission.files, selected, part.limits, assignment.expected)
         try:
             report = run_job(job)
-        except GradingError as error:
-            return Report({}, remark=str(error))
+        except DestroyedError as error:
+            return Report({}, remark=f"{_DESTROYED} ({error})")
         if report.remark:  # what is printed beside hidden tests is not for pupils
             said = () if assignment.hidden.issuperset(part.tests) else report.notes
             return Report({}, remark=": ".join([report.remark, *said]))
@@ -93,21 +95,21 @@ def graded(
     if report is None:
         return _without_points(submission, tests, submission.problem)
     if isinstance(report, Failure):
-        result = _without_points(submission, tests, _NOT_GRADED)
-        return replace(result, remark=f"{_NOT_GRADED}: {report.reason}", for_pupil=_NOT_GRADED)
+        return _without_points(submission, tests, f"{_NOT_GRADED}: {report.reason}", for_pupil=_ASK)
     if report.remark:
-        return _without_points(submission, tests, report.remark)
+        return _without_points(submission, tests, report.remark, for_pupil=_ASK if did_not_begin(report) else "")
     return Graded(submission, [_verdict(test, report.outcomes.get(test.name), limits) for test in tests])
 
 
 def _verdict(test: GradedTest, outcome: Outcome | None, limits: Limits) -> Verdict:
     if outcome is None:
-        return Verdict(test, _NO_VERDICT, "a limit of the submission as a whole was reached before")
+        return Verdict(test, _NO_VERDICT, "it was not run: the tests before it took all the time that there is")
     verdict, message = outcome.outcome, outcome.message
     if verdict == "failed" and (found := limit_in(message, limits)):
         verdict, message = found[0], f"{found[1]}\n\n{message}"
     return Verdict(test, verdict, message, outcome.output, outcome.cpu_s, outcome.files)
 
 
-def _without_points(submission: Submission, tests: Sequence[GradedTest], remark: str) -> Graded:
-    return Graded(submission, [Verdict(test, _NO_VERDICT, remark) for test in tests], remark)
+def _without_points(submission: Submission, tests: Sequence[GradedTest], remark: str, *, for_pupil: str = "") -> Graded:
+    verdicts = [Verdict(test, _NO_VERDICT, for_pupil or remark) for test in tests]
+    return Graded(submission, verdicts, remark, for_pupil)

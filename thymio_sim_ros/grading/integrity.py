@@ -57,7 +57,7 @@ class TestFunctions:
             for name, value in list(vars(owner).items())
             if name not in names and _code(value) and (isinstance(owner, type) or hasattr(builtins, name))
         ]
-        return [f"the submission replaced {path}, a function of the tests" for path in [*changed, *added]]
+        return [f"the submission replaced {path}, a function of the tests: remove that" for path in [*changed, *added]]
 
 
 def _is_of_tests(module: ModuleType, folder: Path) -> bool:

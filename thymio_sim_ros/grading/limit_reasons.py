@@ -1,4 +1,4 @@
-"""Limits that a program meets as an error of its own, such as a full disk, recognized in messages of tests."""
+"""Reasons for limits, in words for pupils; recognizes limits that a program meets as an error, such as a full disk."""
 
 from __future__ import annotations
 
@@ -6,32 +6,40 @@ import re
 from collections.abc import Mapping
 from dataclasses import asdict
 
-from thymio_sim_ros.grading.assignment import Limits
+from thymio_sim_ros.grading.assignment import MAX_FILES, Limits
 
-__all__ = ["limit_in"]
+__all__ = ["limit_in", "reason"]
 
-_SIGNS: Mapping[str, tuple[str, str]] = {
-    "output limit": (r"printed more than [\d.]+ MB", "it printed more than {output_mb:g} MB"),
-    "disk limit": (
-        r"\[Errno (?:27|28|122)\]|the disk is full|No usable temporary directory",
-        "it wrote more than the {disk_mb:g} MB of files that it may write",
-    ),
-    "memory limit": (
-        r"\bMemoryError\b|\[Errno 12\]|bad_alloc|Cannot allocate memory",
-        "it needed more than the {memory_mb:g} MB of memory that it may use",
-    ),
-    "process limit": (
-        r"can't start new thread|\[Errno 11\]",
-        "it started more than the {processes} processes and threads that it may have at the same time",
-    ),
-    "file limit": (r"\[Errno 24\]", "it opened too many files at the same time"),
+_REASONS: Mapping[str, str] = {
+    "CPU time limit": "the program computed for more than {cpu_s:g} s: look for a loop that never ends",
+    "idle limit": "the program did nothing for {idle_s:g} s: look for a sleep, or a wait that never ends",
+    "wall-clock limit": "the program took more than {wall_s:g} s for all tests: look for long waits",
+    "output limit": "the program printed more than {output_mb:g} MB: look for a print() in a loop that never ends",
+    "disk limit": "the program wrote more than {disk_mb:g} MB or {files} files: look for a loop that never ends",
+    "memory limit": "the program needed more than {memory_mb:g} MB of memory: look for a list that keeps growing",
+    "process limit": "the program started more than {processes} processes and threads: look for a loop that never ends",
+    "file limit": "the program has too many open files: close each one after use",
 }
-"""Outcomes: what the message of a test has, and what it means."""
+"""What each outcome means, and what to do."""
+
+_SIGNS: Mapping[str, str] = {
+    "output limit": r"printed more than [\d.]+ MB",
+    "disk limit": r"\[Errno (?:27|28|122)\]|the disk is full|No usable temporary directory",
+    "memory limit": r"MemoryError\b|\[Errno 12\]|bad_alloc|(?i:cannot allocate memory)|Unable to allocate \S+ \wiB",
+    "process limit": r"can't start new thread|\[Errno 11\]",
+    "file limit": r"\[Errno 24\]",
+}
+"""Outcomes: what the message of a test has."""
+
+
+def reason(outcome: str, limits: Limits) -> str:
+    """Return what a limit means, given by its outcome, and what to do."""
+    return _REASONS[outcome].format(**asdict(limits), files=MAX_FILES)
 
 
 def limit_in(message: str, limits: Limits) -> tuple[str, str] | None:
     """Return the outcome and the reason, if a message of a test that failed has an error by which a limit shows."""
-    for outcome, (sign, reason) in _SIGNS.items():
+    for outcome, sign in _SIGNS.items():
         if re.search(sign, message):
-            return outcome, reason.format(**asdict(limits))
+            return outcome, reason(outcome, limits)
     return None

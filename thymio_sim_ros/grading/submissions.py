@@ -20,6 +20,7 @@ from thymio_sim_ros.grading.archives import (
     RejectedError,
     check_paths,
     is_clutter,
+    is_link,
     is_zip,
     read_class_zip,
     read_folder,
@@ -95,9 +96,9 @@ def prepared(submission: Submission, expected: Iterable[str]) -> Submission:
     """
     if submission.problem:
         return submission
-    if not submission.files:
-        return replace(submission, problem="no file was handed in")
     expected = tuple(expected)
+    if not submission.files:
+        return replace(submission, problem=f"no file was handed in: hand in {', '.join(expected) or 'your work'}")
     try:
         result = _with_expected(submission, submission.files, expected)
         if result.problem and any(map(is_zip, submission.files)):
@@ -125,7 +126,7 @@ def _with_expected(submission: Submission, files: Content, expected: Collection[
         found = next((some[0] for some in (named, copies, copied_blocks, same, blocks) if len(some) == 1), None)
         if found is None:
             listed = ", ".join(sorted(files)[:5])
-            return replace(submission, problem=f"no file {wanted}; found {listed}")
+            return replace(submission, problem=f"no file {wanted}: hand in one file with this name; found {listed}")
         if found in named:  # with what it imports or reads beside it
             folder = found.removesuffix(wanted)
             beside = {name.removeprefix(folder): data for name, data in files.items() if name.startswith(folder)}
@@ -189,10 +190,10 @@ def _by_top(files: Mapping[str, _Read]) -> dict[str, dict[str, _Read]]:
 def _from_path(path: Path, pupils: Mapping[str, gradescope.Pupil]) -> Submission:
     try:
         if path.is_symlink():
-            raise RejectedError(f"{path.name} is a symbolic link; expected a file or folder")
+            raise RejectedError(is_link(path.name))
         content = read_folder(path) if path.is_dir() else {"": next(iter(read_folder(path).values()))}
     except (RejectedError, OSError) as error:
-        reason = f"{path.name}: {error.strerror}" if isinstance(error, OSError) else str(error)
+        reason = f"{path.name} cannot be read: {error.strerror}" if isinstance(error, OSError) else str(error)
         owner, _ = _owner(path.name, pupils, is_folder=path.is_dir() and not path.is_symlink())
         return replace(owner, problem=reason)
     return _from_files(path.name, content, pupils)

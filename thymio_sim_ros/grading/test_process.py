@@ -12,8 +12,9 @@ import json
 import linecache
 import os
 import sys
+import traceback
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,13 @@ __all__ = ["GradingPlugin", "main"]
 
 _LONGEST = 20_000
 """Characters of a message that are reported."""
+
+_ENDS: Mapping[type[BaseException], str] = {
+    SystemExit: "exit()",
+    KeyboardInterrupt: "KeyboardInterrupt",
+    pytest.exit.Exception: "pytest.exit()",
+}
+"""Exceptions that end Python or pytest, and what raises them."""
 
 
 def main(argv: Sequence[str]) -> None:
@@ -98,6 +106,7 @@ class GradingPlugin:
         self._failures: list[str] = []
         """Exceptions of the test that runs, whatever its reports say."""
         self._path = list(sys.path)
+        self._tests = os.getcwd()
         self._has_run = False
 
     @pytest.hookimpl(trylast=True)
@@ -152,6 +161,21 @@ class GradingPlugin:
         """Keep the report of a phase."""
         self._reports.append(report)
 
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_setup(self) -> Generator[None, object, object]:
+        """Keep the submission from ending the tests."""
+        return (yield from _not_ended(self._tests))
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_call(self) -> Generator[None, object, object]:
+        """Keep the submission from ending the tests."""
+        return (yield from _not_ended(self._tests))
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_teardown(self) -> Generator[None, object, object]:
+        """Keep the submission from ending the tests."""
+        return (yield from _not_ended(self._tests))
+
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
         """Draw the paths of the robots when a test fails, while they are there."""
@@ -178,6 +202,21 @@ class GradingPlugin:
             self._send("end")
         else:
             self._send("broken", message="\n".join(self._broken) or "pytest ended before it had collected the tests")
+
+
+def _not_ended(folder: str) -> Generator[None, object, object]:
+    """Run a phase of a test, in which exceptions that end Python or pytest are failures of this test.
+
+    `folder`: where the files are whose lines are named.
+    """
+    try:
+        return (yield)
+    except tuple(_ENDS) as error:
+        frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.startswith(f"{folder}/")]
+        where = f"{frames[-1].filename}, line {frames[-1].lineno}: " if frames else ""
+        what = next(text for kind, text in _ENDS.items() if isinstance(error, kind))
+        text = f"{where}{what} ends the program before the test is over: remove it"
+        raise pytest.fail.Exception(text, pytrace=False) from None
 
 
 def _message(report: pytest.TestReport) -> str:

@@ -47,6 +47,13 @@ def test_pages_escape_text_and_pictures() -> None:
         assert "onload" not in page
 
 
+def test_the_reason_of_a_submission_without_points_is_on_its_page_once() -> None:
+    verdicts = [Verdict(replace(TEST, name=f"test_a.py::test_{number}"), "not run", "no file") for number in range(3)]
+    page = submission_page(Graded(Submission("Anna"), verdicts, "no file"), {})
+    assert page.count("no file") == 1
+    assert page.count("not run") == 3
+
+
 def test_names_of_files_depend_on_the_owner_only_and_stay_readable() -> None:
     names = {
         name: file_name(Graded(Submission(name, identifier), []))

@@ -47,6 +47,8 @@ def submission_page(graded: Graded, logs: Mapping[str, str]) -> str:
     parts += [_row(name, verdict) for name, verdict in zip(names, graded.verdicts, strict=True)]
     parts.append("</table>\n")
     for name, verdict in zip(names, graded.verdicts, strict=True):
+        if graded.remark and not verdict.files:  # all messages are the remark
+            continue
         parts += _details(name, verdict, logs.get(verdict.test.name, ""))
     return "".join([*parts, "</body></html>\n"])
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.grading.assignment import Limits
 from thymio_sim_ros.grading.sandbox import landlock, seccomp, syscalls
-from thymio_sim_ros.grading.sandbox.readable import PACKAGE_FOLDER
 
 __all__ = ["Confinement", "confine"]
 
@@ -32,6 +31,8 @@ class Confinement:
     """Processes of the user that are not in the sandbox, where the kernel counts them too."""
     writable: tuple[str, ...] | None = None
     readable: tuple[str, ...] = ()
+    listable: tuple[str, ...] = ()
+    """Folders whose names can be read, where Landlock hides others."""
 
 
 def confine(confinement: Confinement) -> None:
@@ -53,7 +54,7 @@ def confine(confinement: Confinement) -> None:
     syscalls.drop_capabilities()
     syscalls.forbid_new_privileges()
     if confinement.writable is not None:
-        landlock.restrict(confinement.readable, str(PACKAGE_FOLDER), confinement.writable)
+        landlock.restrict(confinement.readable, confinement.listable, confinement.writable)
     seccomp.restrict()
 
 

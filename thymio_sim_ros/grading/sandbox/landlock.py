@@ -30,7 +30,7 @@ def version() -> int:
         return 0
 
 
-def restrict(readable: Sequence[str], listable: str, writable: Sequence[str]) -> None:
+def restrict(readable: Sequence[str], listable: Sequence[str], writable: Sequence[str]) -> None:
     """Allow this process and its descendants to read these paths and to write some folders, and nothing else.
 
     The names of the files below `listable` can be read, too, as Python does with the folder of a package.
@@ -46,7 +46,8 @@ def restrict(readable: Sequence[str], listable: str, writable: Sequence[str]) ->
     rules = syscalls.syscall(_CREATE_RULESET, attributes, ctypes.c_size_t(size), ctypes.c_uint32(0))
     for path in readable:
         _allow(rules, path, (_EXECUTE | _READ_FILE | _READ_DIR) & rights)
-    _allow(rules, listable, _READ_DIR)
+    for path in listable:
+        _allow(rules, path, _READ_DIR)
     _allow(rules, "/proc", (_READ_FILE | _READ_DIR) & rights)
     for name in DEVICES:
         _allow(rules, f"/dev/{name}", (_READ_FILE | 2) & rights)

@@ -15,7 +15,7 @@ from pathlib import Path
 from thymio_sim_ros.grading.sandbox import namespaces, syscalls
 from thymio_sim_ros.grading.sandbox.confinement import Confinement
 from thymio_sim_ros.grading.sandbox.job import Job
-from thymio_sim_ros.grading.sandbox.readable import readable_paths
+from thymio_sim_ros.grading.sandbox.readable import PACKAGE_FOLDER, readable_paths
 from thymio_sim_ros.grading.sandbox.supervisor import Place, supervise
 
 __all__ = ["main"]
@@ -41,6 +41,7 @@ def main() -> int:
             0 if user is not None else _threads_of_user(),
             tuple(f"{folder}/{name}" for name in ("work", "tmp", "out")) if has_landlock else None,
             (*readable_paths(), f"{folder}/assignment") if has_landlock else (),
+            (str(PACKAGE_FOLDER), folder) if has_landlock else (),
         )
         _print(job, Place(Path(folder), confinement, has_own_processes=False, has_own_disk=False))
     return 0

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Mapping
 
 from thymio_sim_ros.grading.assignment import Limits
-from thymio_sim_ros.grading.errors import GradingError
+from thymio_sim_ros.grading.errors import DestroyedError, GradingError
 from thymio_sim_ros.grading.sandbox.job import Job, Report
 from thymio_sim_ros.grading.sandbox.readable import python_path
 
@@ -56,7 +56,10 @@ def why_unavailable(level: str) -> str:
 
 
 def run_job(job: Job) -> Report:
-    """Run a job in a sandbox of its level. Raises GradingError if the sandbox cannot be entered or is destroyed."""
+    """Run a job in a sandbox of its level.
+
+    Raises DestroyedError if the sandbox was ended, GradingError if it cannot be entered or fails by itself.
+    """
     limit = job.limits.wall_s + _GRACE_S
     environment = {**os.environ, "PYTHONPATH": python_path()}
     with subprocess.Popen(
@@ -69,11 +72,12 @@ def run_job(job: Job) -> Report:
         try:
             output, errors = process.communicate(pickle.dumps(job), timeout=limit)
         except subprocess.TimeoutExpired:
-            raise GradingError(f"the sandbox did not end within {limit:g} s") from None
+            raise DestroyedError(f"the sandbox did not end within {limit:g} s") from None
         finally:
             process.kill()  # with it, the kernel ends its namespaces
     try:
         return Report.from_json(output.decode())
     except ValueError:
         said = errors.decode("utf-8", "replace").strip().rpartition("\n")[2]
-        raise GradingError(f"the sandbox ended with code {process.returncode}: {said or 'no message'}") from None
+        kind = DestroyedError if process.returncode < 0 else GradingError
+        raise kind(f"the sandbox ended with code {process.returncode}: {said or 'no message'}") from None

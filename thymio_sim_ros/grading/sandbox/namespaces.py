@@ -13,6 +13,7 @@ import struct
 from collections.abc import Callable
 from pathlib import Path
 
+from thymio_sim_ros.grading.assignment import MAX_FILES
 from thymio_sim_ros.grading.sandbox import syscalls
 from thymio_sim_ros.grading.sandbox.readable import DEVICES, readable_paths
 
@@ -79,7 +80,7 @@ def bind_read_only(source: Path, target: Path) -> None:
 def _build_root(disk_bytes: int, readable: list[str]) -> None:
     syscalls.mount("none", "/", flags=syscalls.MS_REC | syscalls.MS_PRIVATE)
     # Bind mounts are made from the old root, before anything is mounted over its folders.
-    options = f"size={disk_bytes},nr_inodes=20000,mode=755"
+    options = f"size={disk_bytes},nr_inodes={MAX_FILES},mode=755"
     os.chdir("/")
     syscalls.mount("tmpfs", _NEW_ROOT, "tmpfs", syscalls.MS_NOSUID | syscalls.MS_NODEV, options)
     os.mkdir(f"{_NEW_ROOT}/{_OLD_ROOT}")

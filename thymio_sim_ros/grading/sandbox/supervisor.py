@@ -37,6 +37,7 @@ __all__ = ["Place", "supervise"]
 _TEST_PROCESS = "thymio_sim_ros.grading.test_process"
 _KEPT_BYTES = 3_000_000
 """Largest file that is kept to explain a failure."""
+_INSTEAD = "remove what writes to or closes files that the program has not opened"
 _FULL, _NOT_WRITTEN = 3, 4
 """Exit codes of the process that writes the files of a test."""
 _ENVIRONMENT = ("LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "ROS_DISTRO", "RMW_IMPLEMENTATION")
@@ -101,16 +102,18 @@ class _Supervisor:
         try:
             return self._follow(process, protocol, work)
         except ForgedError as error:
-            self.remark = f"the report of the tests was manipulated: {error}"
+            self.remark = f"the report of the tests was manipulated ({error}): {_INSTEAD}"
         except (Ended, LimitError) as error:
-            is_limit = isinstance(error, LimitError)
             outcome = error.outcome if isinstance(error, LimitError) else "crashed"
-            if protocol.current:
-                self._end_test(process, protocol.current, outcome, str(error))
-                return not (isinstance(error, LimitError) and error.is_final)
-            where = "before the first test" if protocol.collected is None or not self.outcomes else "between two tests"
+            if protocol.current or self.outcomes:
+                # Between two tests, what a former one has left costs the next one.
+                test = next((test for test in selected or () if test not in self.outcomes), "")
+                if test:
+                    self._end_test(process, test, outcome, str(error))
+                return bool(test) and not (isinstance(error, LimitError) and error.is_final)
             said = process.last_line()
-            self.remark = f"{outcome if is_limit else 'stopped'} {where}: {error}"
+            how = f"{outcome} before the first test: {error}"
+            self.remark = f"stopped before the first test: {error.how}" if isinstance(error, Ended) else how
             self.notes = (said,) if said else ()
         finally:
             process.close(self._kill_all)
@@ -133,6 +136,7 @@ class _Supervisor:
                 self._write_afresh()
                 process.send("go")
             elif kind == "result":
+                process.check_disk()
                 self._end_test(process, str(data["test"]), str(data["outcome"]), str(data["message"]), data["phase"])
             elif kind == "end":
                 return True
@@ -218,7 +222,9 @@ class _Supervisor:
                 os._exit(_NOT_WRITTEN)
         code = os.waitstatus_to_exitcode(os.waitpid(writer, 0)[1])
         if code == _FULL:
-            raise LimitError("disk limit", "the files that it wrote leave no room for those of the next test")
+            raise LimitError(
+                "disk limit", "the files of the program leave no room for the next test: write less, or delete files"
+            )
         try:
             if code:
                 raise OSError(f"exit code {code}")

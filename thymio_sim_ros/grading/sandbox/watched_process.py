@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.grading.assignment import Limits
+from thymio_sim_ros.grading.assignment import MAX_FILES, Limits
+from thymio_sim_ros.grading.limit_reasons import reason
 from thymio_sim_ros.grading.sandbox.usage import descendants, memory_used, used
 
 __all__ = ["Ended", "LimitError", "WatchedProcess"]
@@ -37,7 +38,11 @@ class LimitError(ThymioSimError):
 
 
 class Ended(ThymioSimError):  # noqa: N818  (no error of the supervisor)
-    """The process has ended; the text says how."""
+    """The process has ended; the text is for pupils, `how` is the exit code or signal."""
+
+    def __init__(self, text: str, how: str) -> None:
+        super().__init__(text)
+        self.how = how
 
 
 class WatchedProcess:
@@ -106,7 +111,7 @@ class WatchedProcess:
                 if self._process.poll() is not None:
                     yield from self._read_report()
                     self._read_output()
-                    raise Ended(_how_it_ended(self._process.returncode))
+                    raise _ended(self._process.returncode)
                 next_check = time.monotonic() + POLL_S
 
     def take_output(self) -> tuple[str, float]:
@@ -144,7 +149,9 @@ class WatchedProcess:
             *complete, self._lines = self._lines.split(b"\n")
             yield from complete
             if len(self._lines) > _LINE_BYTES:
-                raise LimitError("output limit", "the report has a line without end")
+                raise LimitError(
+                    "output limit", "the program disturbed the report of the tests: remove what writes to it"
+                )
 
     def _read_output(self) -> None:
         while chunk := _read(self._output, self._selector):
@@ -153,33 +160,36 @@ class WatchedProcess:
                 self._head, chunk = self._head + chunk[:room], chunk[room:]
             self._tail = (self._tail + chunk)[-_KEPT:]
             if self._size > self._limits.output_mb * 1e6:
-                raise LimitError("output limit", f"it printed more than {self._limits.output_mb:g} MB")
+                raise LimitError("output limit", reason("output limit", self._limits))
 
     def _check_limits(self) -> None:
         limits, now = self._limits, time.monotonic()
         memory_limit = int(limits.memory_mb * 1e6)
         self._polls += 1
         if self._polls % _MEMORY_POLLS == 0 and memory_used(memory_limit) > memory_limit:
-            raise LimitError("memory limit", f"it used more than {limits.memory_mb:g} MB of memory")
+            raise LimitError("memory limit", reason("memory limit", limits))
         usage = used()
         if usage.cpu_s > limits.total_cpu_s:
-            raise LimitError(
-                "CPU time limit", f"it computed for more than {limits.total_cpu_s:g} s in all tests", is_final=True
-            )
+            text = f"the program computed for more than {limits.total_cpu_s:g} s in all tests: look for slow loops"
+            raise LimitError("CPU time limit", text, is_final=True)
         if usage.cpu_s - self._test_began_s > limits.cpu_s:
-            text = f"it computed for more than {limits.cpu_s:g} s: perhaps in a loop without an end"
-            raise LimitError("CPU time limit", text)
+            raise LimitError("CPU time limit", reason("CPU time limit", limits))
         since, cpu_s = self._idle_from
         if usage.is_working or usage.cpu_s - cpu_s > max(0.02, _IDLE_SHARE * (now - since)):
             self._idle_from = (now, usage.cpu_s)
         elif now - since > limits.idle_s:
-            text = f"it did nothing for {limits.idle_s:g} s: it sleeps, or waits for something that does not come"
-            raise LimitError("idle limit", text)
+            raise LimitError("idle limit", reason("idle limit", limits))
         if now > self._ends_at:
-            text = f"it took more than {limits.wall_s:g} s of real time in all tests, the last resort"
-            raise LimitError("wall-clock limit", text, is_final=True)
-        if self._disk_folder is not None and _disk_use(self._disk_folder) > limits.disk_mb * 1e6:
-            raise LimitError("disk limit", f"it wrote more than {limits.disk_mb:g} MB of files")
+            raise LimitError("wall-clock limit", reason("wall-clock limit", limits), is_final=True)
+        self.check_disk()
+
+    def check_disk(self) -> None:
+        """Raise LimitError for too many files, where no file system limits them."""
+        if self._disk_folder is None:
+            return
+        size, files = _disk_use(self._disk_folder)
+        if size > self._limits.disk_mb * 1e6 or files > MAX_FILES:
+            raise LimitError("disk limit", reason("disk limit", self._limits))
 
 
 def _read(file: int, selector: selectors.BaseSelector) -> bytes:
@@ -192,15 +202,17 @@ def _read(file: int, selector: selectors.BaseSelector) -> bytes:
     return chunk
 
 
-def _disk_use(folder: Path) -> int:
-    size = 0
-    for parent, _, names in os.walk(folder):
+def _disk_use(folder: Path) -> tuple[int, int]:
+    """Size of all files below a folder in bytes, and number of files and folders."""
+    size = files = 0
+    for parent, folders, names in os.walk(folder):
+        files += len(folders) + len(names)
         for name in names:
             try:
                 size += os.lstat(os.path.join(parent, name)).st_blocks * 512
             except OSError:
                 continue
-    return size
+    return size, files
 
 
 def _reap() -> None:
@@ -213,7 +225,10 @@ def _reap() -> None:
         pass
 
 
-def _how_it_ended(code: int) -> str:
+def _ended(code: int) -> Ended:
     if code >= 0:
-        return f"the process of the test ended, with exit code {code}"
-    return f"the process of the test was ended by {signal.Signals(-code).name}"
+        text = "the program ended before the test was over: remove what ends it, such as os._exit()"
+        return Ended(text, f"the process of the test ended, with exit code {code}")
+    name = signal.Signals(-code).name
+    text = f"the program crashed or was ended ({name}): find the line with print(), or remove what ends programs"
+    return Ended(text, f"the process of the test was ended by {name}")
