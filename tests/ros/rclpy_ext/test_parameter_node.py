@@ -194,6 +194,13 @@ def test_a_wrong_value_has_the_same_sentence_at_the_start_and_later(ros, name, v
     assert str(failed.value) == f"parameter {name} of started: {sentence}"
 
 
+@pytest.mark.parametrize("name", ["use_sim_time", "start_type_description_service"])
+def test_a_start_value_of_a_parameter_of_rclpy_has_the_same_sentence(ros, name):
+    with pytest.raises(StartError) as failed:
+        ParameterNode("started", context=ros.context, parameter_overrides=[Parameter(name, value=5)])
+    assert str(failed.value) == f"parameter {name} of started: found 5, expected true or false"
+
+
 @pytest.mark.parametrize(
     ("name", "near"),
     [

@@ -19,11 +19,13 @@ from typing import Any
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.context import Context
+from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.node import Node
 from rclpy.parameter import Parameter, get_parameter_value
 
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.callback_groups import forget_destroyed
+from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 
 __all__ = ["ParameterNode", "parameter_node"]
 
@@ -61,10 +63,15 @@ class ParameterNode(Node):
                 empty for one without such an effect.
             has_acted: Whether the parameters that were set again have just had an effect.
             options: Options of rclpy's node.
+
+        Raises StartError for a start value of a parameter of rclpy, such as `use_sim_time`, that has another type.
         """
         self._is_set_again, self._is_free = is_set_again, is_free
         self._repeat, self._has_acted = repeat, has_acted
-        super().__init__(name, context=context, allow_undeclared_parameters=is_free is not None, **options)
+        try:
+            super().__init__(name, context=context, allow_undeclared_parameters=is_free is not None, **options)
+        except InvalidParameterTypeException as error:
+            raise StartError(parameters.start_refusal_of_rclpy(self) or str(error)) from error
         forget_destroyed(self)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:

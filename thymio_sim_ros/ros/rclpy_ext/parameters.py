@@ -47,6 +47,7 @@ _EXPECTED: Mapping[Parameter.Type, str] = {
 _SHOWN = 60
 """Characters of a wrong value that a message has at most; a program or a playground is longer."""
 
+_BOOLS_OF_RCL = ("use_sim_time", "start_type_description_service")
 _OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
 
 
@@ -206,6 +207,14 @@ def _start_refusal(node: Node, one: Declared) -> str:
     descriptor.type = Parameter.Type.from_parameter_value(one.default).value
     given = node._parameter_overrides.get(one.name)  # rclpy has no public accessor
     return "" if given is None else misfit(given, descriptor)
+
+
+def start_refusal_of_rclpy(node: Node) -> str:
+    """Return which parameter that rclpy declares itself has a start value of another type, or an empty text."""
+    expected = ParameterDescriptor(type=Parameter.Type.BOOL.value)
+    given = {name: one for name, one in node._parameter_overrides.items() if name in _BOOLS_OF_RCL}
+    reasons = ((name, misfit(one, expected)) for name, one in given.items())
+    return next((f"parameter {name} of {node.get_name()}: {reason}" for name, reason in reasons if reason), "")
 
 
 def misfit(wanted: Parameter, descriptor: ParameterDescriptor) -> str:
