@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import pytest
+import rclpy
 from geometry_msgs.msg import Twist
+from rcl_interfaces.msg import Log
+from rclpy.context import Context
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Bool, String
@@ -227,6 +231,23 @@ def test_a_refresh_of_many_topics_goes_on_where_it_stopped(ros, monkeypatch):
     assert slices > len(names) / 2
     assert sorted(counted) == names
     topics.close()
+
+
+def test_a_topic_that_this_process_uses_with_another_type_is_named_with_both(ros, studio):
+    logs = ros.collect(Log, "/rosout", where=lambda log: "not bridged" in log.msg)
+    context = Context()
+    rclpy.init(context=context, domain_id=ros.domain)
+    try:
+        other = Node("other", context=context, enable_rosout=False)
+        other.create_publisher(Twist, "/chat", 10)
+        assert studio.channel("/chat").schema_name == "geometry_msgs/msg/Twist"
+        ros.node.create_subscription(String, "/chat", lambda _: None, 10)
+        studio.subscribe(1, "/chat")
+        ros.until(lambda: logs)
+    finally:
+        context.try_shutdown()
+    found, expected = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
+    assert logs[0].msg == f"topic /chat is not bridged: found {found}, expected {expected} that this process uses there"
 
 
 def test_a_vanished_topic_is_taken_away(ros, studio):

@@ -202,6 +202,16 @@ def test_a_misspelled_parameter_is_reported_with_the_nearest_name(ros_domain, lo
     ]
 
 
+def test_a_wrong_file_of_parameters_is_reported_with_its_line(capfd, tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("simulator:\n  seed: 1\n")
+    for name, found in ((str(path), "at line 2"), ("/nowhere/mine.yaml", "Error opening YAML file")):
+        assert run_main(lambda context: pytest.fail("started"), ["--ros-args", "--params-file", name]) == 2
+        (line,) = [line for line in capfd.readouterr().err.splitlines() if line.startswith("thymio-sim: ")]
+        assert f"'--params-file {name}': " in line
+        assert line.endswith(found)
+
+
 @pytest.mark.parametrize(("argument", "code"), [("--help", 0), ("playground:=maze", 2), ("extra", 2)])
 def test_an_argument_outside_ros_args_is_reported_and_nothing_starts(capfd, argument, code):
     assert run_main(lambda context: pytest.fail("started"), [argument, "--ros-args", "-p", "seed:=1"]) == code

@@ -247,8 +247,11 @@ class Topics:
             topic.subscription = self._node.create_subscription(
                 topic.message_type, topic.channel.topic, forward, qos.profile, raw=True
             )
-        except RCLError as error:  # this process uses the topic with another type
-            self._refuse(topic.channel.topic, topic.channel.schema_name, str(error))
+        except RCLError:  # this process uses the topic with another type
+            name, found = topic.channel.topic, topic.channel.schema_name
+            types = dict(self._node.get_topic_names_and_types()).get(name, [])
+            others = " or ".join(kind for kind in types if kind != found)
+            self._refuse(name, found, f"found {found}, expected {others or 'the type'} that this process uses there")
             return
         topic.qos = qos
 

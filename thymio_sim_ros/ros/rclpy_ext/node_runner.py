@@ -325,8 +325,10 @@ def _init(words: Sequence[str], context: Context) -> None:
     except UnknownROSArgsError as error:
         raise StartError(f"not ROS arguments: {error}") from error
     except RCLError as error:
-        reason = str(error).removeprefix("failed to initialize rcl: ").partition(". Error:")[0]
-        raise StartError(f"ROS cannot be initialized: {reason}") from error
+        reason, _, detail = str(error).removeprefix("failed to initialize rcl: ").partition(". Error: ")
+        is_of_file = "--params-file" in reason  # only there is the detail for a user: what is wrong in which line
+        detail = f": {detail.partition(', at ')[0]}" if is_of_file and detail else ""
+        raise StartError(f"ROS cannot be initialized: {reason}{detail}") from error
 
 
 class _ExitWatchdog:
