@@ -38,8 +38,28 @@ test("problems of blocks and files have an exit code and a text in the language"
   assert.equal((await run(["missing.xml"], read)).exit, 2);
 });
 
+test("it prints a file with blocks for a text, for a workspace, and for a file of VPL", async () => {
+  const text = "onevent button.left\n\twhen button.left == 1 do\n\t\tcall prox.comm.enable(1)\n\tend\n";
+  const { output, errors, exit } = await run(["--blocks", "a.aseba"], reading(text));
+  assert.deepEqual([errors, exit], ["", 0]);
+  assert.equal((await run(["a.aesl"], reading(output))).output, text);
+  assert.equal((await run(["--blocks", "b.aesl"], reading(output))).output, output);
+  const workspace = await run(["--blocks", "follow_line.xml"], read);
+  assert.equal((await run(["a.aesl"], reading(workspace.output))).output, golden("follow_line.aseba"));
+  const vpl = await run(["--blocks", "../vpl/avoid.aesl"], read);
+  assert.deepEqual([vpl.errors, vpl.exit], ["", 0]);
+  assert.match((await run(["a.aesl"], reading(vpl.output))).output, /onevent prox/);
+});
+
+test("a text without blocks is refused with the line and the text of it", async () => {
+  const answer = await run(["--blocks", "a.aseba"], reading("var a\ncall math.rand(a)\n"));
+  assert.deepEqual(answer, { output: "", errors: "a.aseba: Line 2 of the text has no block: call math.rand(a)\n", exit: 1 });
+  assert.equal((await run(["--blocks", "a.aesl"], reading("<network>"))).exit, 2);
+  assert.equal((await run(["--blocks", "a.sb3"], reading("PK"))).exit, 2);
+});
+
 test("wrong usage is explained", async () => {
-  for (const command of [[], ["a", "b"], ["--wrong", "a"], ["--lang", "xx", "a"]]) {
+  for (const command of [[], ["a", "b"], ["--wrong", "a"], ["--lang", "xx", "a"], ["--compare", "--blocks", "a"]]) {
     assert.equal((await run(command, read)).exit, 2);
   }
   assert.match((await run(["--help"], read)).output, /^usage:/);

@@ -3,9 +3,11 @@ import { test } from "node:test";
 
 import { blocksOfText } from "../../web_ui/blockly/from_text.js";
 import { generate } from "../../web_ui/blockly/generator.js";
+import { THYMIO } from "../../web_ui/blockly/blocks/index.js";
 import { allBlocks } from "../../web_ui/blockly/state.js";
+import { newBlock } from "../../web_ui/blockly/toolbox.js";
 import { readVpl } from "../../web_ui/vpl/file.js";
-import { asBlocks } from "../../web_ui/vpl/as_blocks.js";
+import { asBlocks } from "../../web_ui/blockly/as_blocks.js";
 import { sampleText } from "../../web_ui/vpl/view/samples.js";
 import { readFile } from "../../web_ui/blockly/file.js";
 import { golden } from "./blockly_support.js";
@@ -28,10 +30,38 @@ function parts(code) {
   return [declared.sort(), others];
 }
 
-for (const name of ["avoid_obstacles", "follow_line", "robot_names", "subroutines", "vpl_tilt"]) {
+const TEXTS = ["actuators", "avoid_obstacles", "events", "follow_line", "leds", "logic", "loops", "math", "robot_names"];
+for (const name of [...TEXTS, "sensors", "subroutines", "variables", "vpl_tilt"]) {
   test(`the blocks of the text of ${name} give that text`, () => {
     const code = golden(`${name}.aseba`).replace(/^\s*#.*\n/gm, "");
     assert.deepEqual(parts(again(code)), parts(code));
+  });
+}
+
+/** A program that uses a block. @param {import("../../web_ui/blockly/state.js").BlockState} block @param {string} shape */
+function programWith(block, shape) {
+  const plugged = { inputs: { [shape === "Number" ? "VALUE" : "WHEN"]: { block } } };
+  const top = {
+    Number: { type: "thymio_set_array", fields: { VAR: { id: "l" } }, ...plugged },
+    Boolean: { type: "thymio_when", ...plugged },
+  }[shape];
+  return { blocks: { languageVersion: 0, blocks: [top ?? block] }, variables: [{ id: "l", name: "l" }] };
+}
+
+const CANNOT_STAND_ALONE = ["procedures_callnoreturn"];
+const THYMIO_BLOCKS = THYMIO.filter(({ type }) => !CANNOT_STAND_ALONE.includes(type));
+for (const { type, shape, args } of THYMIO_BLOCKS) {
+  test(`the text of ${type} becomes blocks with that text, whatever is chosen in it`, () => {
+    const choices = args.filter(({ kind }) => kind === "choice");
+    const all = choices.reduce(
+      (some, { name, options = [] }) => some.flatMap((one) => options.map(([, value]) => ({ ...one, [name]: value }))),
+      [{}],
+    );
+    for (const chosen of all) {
+      const block = newBlock(type);
+      const { code } = generate(programWith({ ...block, fields: { ...block.fields, ...chosen } }, shape));
+      assert.equal(again(code), code.replace("= -0", "= 0"), JSON.stringify(chosen));
+    }
   });
 }
 
@@ -66,6 +96,10 @@ for (const [code, line] of /** @type {[string, number][]} */ ([
   ["var a\nemit other", 2],
   ["var a\n\n# comment\nsd.present = 1", 4],
   ["call math.rand(a)", 1],
+  ["call prox.comm.enable(2)", 1],
+  ["onevent button.left\ncall leds.rc(1)", 2],
+  ["onevent button.left\nwhen button.right == 1 do\nend", 2],
+  ["var a\nfor a in 0:9 step -1 do\nend", 2],
   ["onevent other\nmotor.left.target = 1", 1],
   ["var a[3]\na = [1, 2, 3]", 2],
   ["var a[4]\ncall math.copy(a[1:3], a[0:2])", 2],

@@ -228,6 +228,17 @@ test("messages start other scripts, also of other sprites", () => {
   assert.match(generate(state).code, /^script = 1$/m);
 });
 
+test("a message that a block computes is listed, and the name under the block is used", () => {
+  const { state, leftOut } = importProject(
+    project({
+      hat: { ...FLAG },
+      a: { opcode: "event_broadcast", next: null, inputs: { BROADCAST_INPUT: [3, [12, "n", "v"], [11, "go", "id"]] } },
+    }),
+  );
+  assert.deepEqual(leftOut, [{ key: "leftOutMenu", values: { opcode: "event_broadcast", used: "go", count: 1 } }]);
+  assert.equal(state.blocks?.blocks[0].next?.block?.fields?.MESSAGE, "go");
+});
+
 test("variables of two sprites with one name stay two", () => {
   /** @param {string} id @param {string} value */
   const sets = (id, value) => ({

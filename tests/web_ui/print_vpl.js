@@ -3,7 +3,7 @@
 
 import { readFile } from "../../web_ui/blockly/file.js";
 import { generate as generateOfBlocks } from "../../web_ui/blockly/generator.js";
-import { asBlocks } from "../../web_ui/vpl/as_blocks.js";
+import { asBlocks } from "../../web_ui/blockly/as_blocks.js";
 import { check } from "../../web_ui/vpl/check.js";
 import { generate, generateSource } from "../../web_ui/vpl/generator.js";
 import { MODES } from "../../web_ui/vpl/kinds.js";

@@ -1,6 +1,6 @@
 // Aseba text as blocks: the same statements, a block for each. Pure.
 //
-// It is for programs that the page generates itself, such as those of VPL. A text may have what no block stands for; the
+// It is for programs that are generated, such as those of VPL and of blocks. A text may have what no block stands for; the
 // first such place is reported, and there are no blocks then.
 
 import { parser } from "../editor/parser.js";
@@ -74,6 +74,9 @@ const READINGS = new Map(
 const COMPARISONS = { "==": "EQ", "!=": "NEQ", "<": "LT", "<=": "LTE", ">": "GT", ">=": "GTE" };
 const BITS = ["<<", ">>", "&", "|", "^"];
 const PRESSED = /^(button\.\w+) == 1$/;
+/** The event of a button, which has blocks only if its statements wait for a change of the button. */
+const BUTTON_EVENT = /^button\.(?:center|forward|backward|left|right)$/;
+const CHANGES = { 0: "RELEASE", 1: "PRESS" };
 /** Places of blocks in the workspace, and the greatest height of a statement, in pixels at scale 1. */
 const [LEFT, TOP, GAP, HEIGHT] = [20, 20, 60, 45];
 
@@ -117,7 +120,7 @@ class Reader {
     const parts = children(parser.parse(this.code).topNode);
     const isPart = (/** @type {Node} */ { name }) => name === "Handler" || name === "Subroutine";
     const start = this.#statements(parts.filter((node) => !isPart(node)));
-    const hats = parts.filter(isPart).map((part) => this.#hat(part));
+    const hats = parts.filter(isPart).flatMap((part) => this.#hats(part));
     let y = TOP;
     // one below the other, what runs at the start at the end: the events are what a program is about
     const blocks = [...hats, ...(start === undefined ? [] : [start])].map((block) => {
@@ -129,17 +132,30 @@ class Reader {
     return { blocks: { languageVersion: 0, blocks }, variables };
   }
 
-  /** @param {Node} node @returns {BlockState} */
-  #hat(node) {
+  /** @param {Node} node @returns {BlockState[]} */
+  #hats(node) {
     const [, name, ...inside] = children(node);
     if (node.name === "Subroutine") {
       const type = "procedures_defnoreturn";
-      return { type, fields: { NAME: this.#text(name) }, inputs: this.#bodies({ STACK: inside }) };
+      return [{ type, fields: { NAME: this.#text(name) }, inputs: this.#bodies({ STACK: inside }) }];
     }
-    const found = HATS[this.#text(name)];
+    const event = this.#text(name);
+    if (BUTTON_EVENT.test(event)) return inside.map((statement) => this.#buttonHat(event, statement));
+    const found = HATS[event];
     if (found === undefined) throw new NoBlock(node);
     const [type, fields] = found;
-    return { type, ...(fields && { fields }), inputs: this.#bodies({ HANDLER: inside }) };
+    return [{ type, ...(fields && { fields }), inputs: this.#bodies({ HANDLER: inside }) }];
+  }
+
+  /** @param {string} button @param {Node} statement  of the handler of its event @returns {BlockState} */
+  #buttonHat(button, statement) {
+    const [, condition, , ...rest] = statement.name === "WhenStatement" ? children(statement) : [];
+    for (const [value, MODE] of Object.entries(CHANGES)) {
+      if (condition === undefined || this.#text(condition) !== `${button} == ${value}`) continue;
+      const inputs = this.#bodies({ HANDLER: rest.slice(0, -1) });
+      return { type: "thymio_event_button", fields: { BUTTON: button, MODE }, inputs };
+    }
+    throw new NoBlock(statement);
   }
 
   /** Statements, each below the one before. @param {readonly Node[]} nodes @returns {BlockState | undefined} */
@@ -207,9 +223,9 @@ class Reader {
   /** @param {Node} node @param {readonly Node[]} parts @returns {BlockState} */
   #for(node, [, variable, , ...rest]) {
     const at = rest.findIndex(({ name }) => name === "do");
-    const bounds = rest.slice(0, at).filter(({ name }) => name !== ":");
-    if (bounds.length !== 2) throw new NoBlock(node);
-    const [FROM, TO] = bounds.map((bound) => this.#constant(bound));
+    const bounds = rest.slice(0, at).filter(({ name }) => name !== ":" && name !== "step");
+    const [FROM, TO, step = 1] = bounds.map((bound) => this.#constant(bound));
+    if (step !== (FROM > TO ? -1 : 1)) throw new NoBlock(node);
     const fields = { ITER: this.#field(this.#single(variable)), FROM, TO };
     return { type: "thymio_for", fields, inputs: this.#bodies({ DO: rest.slice(at + 1, -1) }) };
   }
@@ -263,6 +279,11 @@ class Reader {
       const sound = this.#constant(values[0]);
       if (sound === -1) return [{ type: "thymio_sound_stop" }];
       return [{ type: "thymio_sound_system", fields: { SOUND: String(sound) } }];
+    }
+    if (called === "prox.comm.enable") {
+      const MODE = { 0: "DISABLE", 1: "ENABLE" }[this.#constant(values[0])];
+      if (MODE === undefined) throw new NoBlock(node);
+      return [{ type: "thymio_communication", fields: { MODE } }];
     }
     if (called in WITH_VARIABLE) {
       const [variable, ...others] = values;

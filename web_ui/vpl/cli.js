@@ -32,9 +32,9 @@ exit codes: 0 printed, 1 the program has an error, 2 wrong usage, or a file that
  * @returns {Answer}
  */
 export function run(command, read = readText) {
-  const options = parseArguments(command);
+  const options = parseArguments(command, ["--compare"]);
   if (options === null) return { output: "", errors: USAGE, exit: 2 };
-  const { path, compare, language } = options;
+  const { path, flags, language } = options;
   if (path === null) return { output: USAGE, errors: "", exit: 0 };
   const t = translator(language, texts);
   /** @param {Finding} finding */
@@ -43,7 +43,7 @@ export function run(command, read = readText) {
     const file = readVpl(read(path));
     const warnings = file.warnings.map(line).join("");
     const { source, refusal } = generate(file.program);
-    if (compare) {
+    if (flags.has("--compare")) {
       const { message, changes } = compareText(file);
       const about = [message, ...(refusal === null ? [] : [refusal]), ...changes];
       return { output: about.map(line).join(""), errors: warnings, exit: 0 };

@@ -1,11 +1,11 @@
 // VPL programs in .aesl files: open one, and write changes into it; everything else in the file stays byte for byte.
 
+import { REPORTS } from "../blockly/as_blocks.js";
 import { AeslError, newAesl, readAesl, withCode, withEntry } from "../editor/aesl.js";
 import { encoded } from "../editor/xml.js";
 import { lastOf, placeOf, readElements } from "./elements.js";
 import { VplError } from "./errors.js";
 import { holdsVpl } from "./holds.js";
-import { REPORTS } from "./generator.js";
 import { makeProgram, sameProgram } from "./program.js";
 import { readPairs } from "./read_pairs.js";
 import { readSets } from "./read_sets.js";

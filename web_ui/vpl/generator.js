@@ -1,5 +1,6 @@
 // Generates the Aseba text of a VPL program, with the lines of each row.
 
+import { REPORTS } from "../blockly/as_blocks.js";
 import { hasCondition } from "./blocks.js";
 import { check } from "./check.js";
 import { all, eventTest, START, stateCondition } from "./conditions.js";
@@ -15,8 +16,6 @@ import { CURRENT } from "./versions.js";
 /** @typedef {{ text: string, rows: readonly (Lines | null)[] }} Source  text, and the lines of each row; null: none */
 /** @typedef {{ row: Readonly<Row>, index: number, lines: string[] }} Part  a row and its text */
 
-/** Names of the event that a generated program emits with the index of a row, each time the row has run. */
-export const REPORTS = ["pair_run", "PairExecuted"];
 const COPY_STATE = "call math.copy(state, new_state)";
 const HANDLERS = ["acc", "buttons", "mic", "prox", "rc5", "tap", "timer0"];
 

@@ -154,7 +154,7 @@ export class Converter {
         (block.fields ??= {})[name] = this.#choice(opcode, arg, take(menus, name), { inputs, fields });
       else if (kind === "variable")
         (block.fields ??= {})[name] = this.variable(fields[name] ?? Object.values(fields)[0]);
-      else if (kind === "text") (block.fields ??= {})[name] = this.#message({ inputs, fields });
+      else if (kind === "text") (block.fields ??= {})[name] = this.#message(opcode, { inputs, fields });
       else if (kind === "body") this.#plug(block, name, { block: this.chain(inputs[name]?.[1])[0] });
       else this.#plug(block, name, this.socket(inputs[take(values, name) ?? ""], arg));
     }
@@ -229,14 +229,18 @@ export class Converter {
   }
 
   /**
-   * The name of a message: of a field, or of a primitive.
+   * The name of a message: of a field, or of a primitive; for a block that computes it, the one under the block.
    *
+   * @param {string} opcode
    * @param {{ inputs: Record<string, any[]>, fields: Record<string, any[]> }} scratch
    */
-  #message({ inputs, fields }) {
+  #message(opcode, { inputs, fields }) {
     const field = Object.values(fields)[0]?.[0];
-    const primitive = Object.values(inputs)[0]?.[1];
-    return String(field ?? (Array.isArray(primitive) ? primitive[1] : "") ?? "");
+    const [, first, under] = Object.values(inputs)[0] ?? [];
+    const isName = Array.isArray(first) && first[0] !== VARIABLE;
+    const name = String(field ?? (isName ? first : Array.isArray(under) ? under : [])[1] ?? "");
+    if (field === undefined && !isName && first !== undefined) this.leaveOut("leftOutMenu", { opcode, used: name });
+    return name;
   }
 
   /** A field that names a variable. @param {any[] | undefined} field  its name and id */

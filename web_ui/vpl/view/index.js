@@ -7,13 +7,13 @@
 //   textPane          the text that is made from the blocks
 //   noticeList        what the user must know or decide
 
+import { asBlocks } from "../../blockly/as_blocks.js";
 import { trySetItem } from "../../browser/local_storage.js";
 import { translator } from "../../i18n/index.js";
 import TEXTS from "../../i18n/vpl.texts.js";
 import { textPane } from "../../program_tab/text_pane.js";
 import { h, setText } from "../../ui/dom.js";
 import { icon } from "../../ui/icons.js";
-import { asBlocks } from "../as_blocks.js";
 import { blockAt, changeBlock } from "../edits.js";
 import { withoutVpl } from "../file.js";
 import { reportedRow } from "../generator.js";
