@@ -127,7 +127,7 @@ class Page {
     this.frame = new Frame({ element, workspace: this.workspace });
     this.opened = new OpenedFile();
     this.messageAt = new MessageAt(document.body);
-    this.graphics = new GraphicsNotice(element("#trouble"), (key) => this.#pageText(key));
+    this.graphics = new GraphicsNotice(element("#trouble"), (key) => this.#pageText(key), this.redraw);
 
     this.program = new ProgramHost({ slot: element("#panel-program"), client: () => this.client });
     this.creator = new CreatorHost({ element, scene: () => this.scene });

@@ -1,4 +1,4 @@
-"""Notices: above an open dialog, removed with their cause; success notices disappear."""
+"""Notices: above an open dialog, removed with their cause; success notices disappear. The teacher's message."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, choose_playground, drop_file, open_page
+from tests.bridge.studio import set_and_answer
+from tests.web_ui.page_support import MARKS, build_playground, choose_playground, drop_file, open_page, open_tab
 from tests.web_ui.test_gallery import open_gallery
+from tests.web_ui.test_welcome import visit
+from thymio_sim_ros.bridge.protocol import messages as ms
 
 pytestmark = MARKS
 
@@ -23,6 +26,61 @@ DIALOG = """() => {
     document.body.append(dialog);
     dialog.showModal();
 }"""
+
+
+NOTE_IS_SEEN_AND_COVERS_NOTHING = """() => {
+    const note = document.querySelector(".teacher-note");
+    if (!note?.checkVisibility()) return false;
+    const {left, right, top, bottom} = note.getBoundingClientRect();
+    const words = note.querySelector(".teacher-words").getBoundingClientRect();
+    const isSeen = note.contains(document.elementFromPoint(words.left + 5, words.top + 5))
+        && note.contains(document.elementFromPoint(words.left + 5, words.bottom - 5));
+    const needed = [...document.querySelectorAll(
+        ".welcome-start, .welcome-watch, .welcome-tour, .views .btn, .placing-hints > *, #trouble, #tray .btn,"
+        + " #tray .hand, #time .btn, #work .btn, .build-tool")].filter((one) =>
+        !note.contains(one) && one.checkVisibility({visibilityProperty: true}));
+    return isSeen && !needed.some((one) => {
+        const other = one.getBoundingClientRect();
+        return other.left < right && other.right > left && other.top < bottom && other.bottom > top;
+    });
+}"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(683, 384), (390, 844), (360, 640), (1366, 768)])
+def test_a_teachers_message_is_seen_in_every_tab_and_covers_nothing(world, page, size):
+    """The first size is that of a laptop's window at 200 % zoom."""
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    address = world("line", "welcome")
+    with world.client() as client:
+        set_and_answer(client, ms.Parameter("/web_ui.notice", "Look at the board now: we compare the first results."))
+    visit(page, address, "welcome=on")
+    page.locator(".welcome-starts").wait_for()
+    page.wait_for_function(NOTE_IS_SEEN_AND_COVERS_NOTHING)
+    page.locator("[data-start=drive]").click()
+    page.locator(".welcome-starts").wait_for(state="detached")
+    page.wait_for_function(NOTE_IS_SEEN_AND_COVERS_NOTHING)
+    for name in ("robot", "program", "playground"):
+        open_tab(page, name)
+        page.wait_for_function(NOTE_IS_SEEN_AND_COVERS_NOTHING)
+    build_playground(page)
+    page.locator(".build-tool").nth(1).click()
+    page.locator(".placing-hints").get_by_role("button").first.wait_for()
+    page.wait_for_function(NOTE_IS_SEEN_AND_COVERS_NOTHING)
+
+
+@pytest.mark.slow
+def test_the_name_of_a_pupil_and_the_stop_button_are_whole_on_a_phone(world, page):
+    page.set_viewport_size({"width": 360, "height": 640})
+    address = world("base")
+    with world.client() as client:
+        set_and_answer(client, ms.Parameter("/web_ui.pupil", "Jürgen"))
+    open_page(page, address)
+    playwright.expect(page.locator("#pupil > .name")).to_have_text("Jürgen")
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('#pupil > .name, #stop > span')]"
+        ".every((one) => one.scrollWidth <= one.clientWidth)"
+    )
 
 
 @pytest.mark.slow

@@ -8,7 +8,8 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, choose_robot, open_menu, open_page, wait_for_position
+from tests.web_ui.page_support import MARKS, choose_robot, open_menu, open_page, open_tab, wait_for_position
+from tests.web_ui.test_welcome import visit
 
 pytestmark = MARKS
 
@@ -25,6 +26,26 @@ FLAT_COLORS = """() => {
   const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   return new Set(new Uint32Array(data.buffer)).size;
 }"""
+FLAT_WORLD_IS_FREE = """() => {
+  const canvas = document.querySelector('#flat');
+  const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  const pixels = new Uint32Array(data.buffer);
+  const box = {left: Infinity, right: -1, top: Infinity, bottom: -1};
+  pixels.forEach((color, at) => {
+    if (color === pixels[0]) return;
+    const [x, y] = [at % canvas.width, Math.floor(at / canvas.width)];
+    Object.assign(box, {left: Math.min(box.left, x), right: Math.max(box.right, x)});
+    Object.assign(box, {top: Math.min(box.top, y), bottom: y});
+  });
+  const scene = canvas.getBoundingClientRect();
+  const isWhole = box.left > 0 && box.top > 0 && box.right < canvas.width - 1 && box.bottom < canvas.height - 1;
+  return isWhole && [...document.querySelectorAll('.views .float, #trouble, #tray, .welcome-start')].every((one) => {
+    const {left, right, top, bottom, height} = one.getBoundingClientRect();
+    return height === 0 || left > scene.left + box.right || right < scene.left + box.left
+        || top > scene.top + box.bottom || bottom < scene.top + box.top;
+  });
+}"""
+"""Whether the playground of the 2D view is whole and nothing is over it; the first pixel has the color of the desk."""
 CANVAS = "() => document.querySelector('#view').width"
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -47,6 +68,28 @@ def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(at_rest, ow
     content = Path(download.value.path()).read_bytes()
     assert content.startswith(PNG)
     assert int.from_bytes(content[16:20]) >= 1920
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(1366, 768), (390, 844)])
+def test_without_webgl_the_playground_is_whole_and_the_note_can_be_hidden(world, own_page, size):
+    page = own_page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.add_init_script(NO_WEBGL)
+    address = world("line", "welcome")
+    visit(page, address, "tour=off&welcome=on")
+    page.locator(".welcome-starts").wait_for()
+    page.wait_for_function(FLAT_WORLD_IS_FREE)
+    page.keyboard.press("Escape")
+    page.wait_for_function(FLAT_WORLD_IS_FREE)
+    open_tab(page, "robot")
+    page.wait_for_function(FLAT_WORLD_IS_FREE)
+    height = "() => window.thymio.partPosition('robot').y"
+    before = page.evaluate(height)
+    page.locator("#trouble").get_by_role("button", name="Hide").click()
+    playwright.expect(page.locator("#trouble")).to_be_hidden()
+    page.wait_for_function(FLAT_WORLD_IS_FREE)
+    page.wait_for_function(f"(before) => ({height})() > before", arg=before)  # it has the room now
 
 
 @pytest.mark.slow

@@ -1,13 +1,23 @@
 // What the teacher of a class says to the reader of this page, or shows, and that time is paused by the teacher
-// (docs/classroom.md): parameters of the page's node.
+// (docs/classroom.md): parameters of the page's node. It is over the view, or above the open tab where this tab has the
+// place of the view, and while a playground is built, because the view has the hints of the tools then.
 
 import { timeDisabledReason } from "../state/disabled_reason.js";
 import { PARAMETERS } from "../state/names.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 
+/** Put the note where it is seen. @param {HTMLElement} element @param {boolean} isBuilding */
+function place(element, isBuilding) {
+  const view = document.querySelector("#messages");
+  const isInView = view?.checkVisibility() !== false && !isBuilding;
+  if (isInView === (element.parentElement?.id === "messages")) return;
+  if (isInView) view?.querySelector(":scope > .banner")?.after(element);
+  else document.querySelector("#tabs")?.after(element);
+}
+
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
-export function teacherNotePanel({ text, announce, scene }) {
+export function teacherNotePanel({ text, announce, scene, creator }) {
   const pageText = text("page");
   let hiddenNote = "";
   let announced = "";
@@ -35,6 +45,7 @@ export function teacherNotePanel({ text, announce, scene }) {
       key = `${said}\n${address}`;
       if (said === "") hiddenNote = "";
       element.hidden = said === "" || key === hiddenNote;
+      place(element, creator.isOpen);
       setText(words, said);
       link.hidden = !/^https?:\/\//.test(address);
       if (!link.hidden) setAttribute(link, "href", address);
