@@ -374,7 +374,7 @@ test("two tabs of a browser lose nothing: what the other one wrote is among the 
   assert.deepEqual(codesIn(other), ["a = 5", "a = 3"]); // of each tab the last text
 });
 
-test("two tabs in which somebody writes by turns do not push older programs out of the last ones", () => {
+test("two tabs that are edited by turns do not push older programs out of the last ones", () => {
   const { session: one, storage } = workspace();
   const { session: other } = workspace(storage);
   one.fileStore.addRecent({ name: "older.aesl", text: "older", time: 1, unsaved: true });
