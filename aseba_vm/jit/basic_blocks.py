@@ -86,6 +86,7 @@ def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
     size = len(words)
     if not size:
         return None
+    # The event table: its size in word 0, then pairs of number and address. Code starts behind it.
     first = min(words[0], size - 1)
     events = [words[index + 1] for index in range(1, first, 2) if index + 1 < size]
     leaders = {address for address in events if address < size}
@@ -94,6 +95,8 @@ def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
     operands = {
         place: words[place] for pc in instructions for place in range(pc + 1, min(pc + LENGTH[words[pc] >> 12], size))
     }
+    # A `when` stores its edge flag in the word of its BRANCH. If this word is an operand or a part of the table, too,
+    # its value changes as the program runs, and no translation stays valid.
     if any(pc in operands or pc <= first for pc in branches):
         return None
     builder = _Builder(words, memories, leaders)
@@ -110,12 +113,12 @@ def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
 def _reach(words: Sequence[int], leaders: set[int]) -> set[int]:
     """The addresses of all reachable instructions. The starts of blocks are added to `leaders`."""
     size = len(words)
-    found: set[int] = set()
+    reachable: set[int] = set()
     waiting = sorted(leaders)
     while waiting:
         pc = waiting.pop()
-        while pc < size and pc not in found:
-            found.add(pc)
+        while pc < size and pc not in reachable:
+            reachable.add(pc)
             word = words[pc]
             op = word >> 12
             targets: tuple[int, ...] = ()
@@ -132,7 +135,7 @@ def _reach(words: Sequence[int], leaders: set[int]) -> set[int]:
             if targets or op in (Op.STOP, Op.RET, Op.UNKNOWN):
                 break
             pc += LENGTH[op]
-    return found
+    return reachable
 
 
 class _Builder:
@@ -157,6 +160,8 @@ class _Builder:
             if pc >= self.size:
                 end = BailOut(self.place, 0)
             elif pc != start and pc in self.leaders:
+                # A block may run into the next one only between statements: a statement that is split by a branch
+                # target has no state that both blocks know.
                 end = BailOut(self.place, 0) if self.cost or self.stack else Jump(self.place, 0, -1, pc)
             else:
                 self.cost += 1
@@ -220,6 +225,7 @@ class _Builder:
         if any(address + size > self.memories.variables for address, size in known):
             return BailOut(place, 0)
         keep = self._spill()
+        # Started before it is appended: a call has two exits, one to repeat it and one behind it (`self.place`).
         self._start_statement(pc + 1)
         self.statements.append(Call(place, cost, keep, number, popped, pc, self.place))
         return None

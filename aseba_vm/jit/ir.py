@@ -188,11 +188,11 @@ def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
 
 def arguments(popped: Sequence[Expr], signature: Signature) -> list[tuple[int, int]] | None:
     """Address and size of each argument of a native, None if not all are constant."""
-    found: list[tuple[int, int]] = []
+    places: list[tuple[int, int]] = []
     for place, size in enumerate(signature.sizes):
         address = popped[place]
         length = Const(size) if size > 0 else popped[-size]
         if not isinstance(address, Const) or not isinstance(length, Const):
             return None
-        found.append((address.value & 0xFFFF, length.value & 0xFFFF))
-    return found
+        places.append((address.value & 0xFFFF, length.value & 0xFFFF))
+    return places

@@ -134,6 +134,8 @@ class StructuredProgram:
         self, routine: Routine, pc: int, end: int | None, jump: int | None, nesting: int
     ) -> tuple[list[Node], bool]:
         """The nodes from `pc` to `end` (or to the JUMP at `jump`), and whether control reaches it."""
+        # `end` is where an arm or a body joins the code behind it; `jump` the JUMP that a then-arm or a loop body ends
+        # with, which becomes structure and is only charged. All other jumps leave the structure by an exit.
         nodes: list[Node] = []
         while pc != end:
             block = self.blocks.by_address.get(pc)
@@ -180,6 +182,8 @@ class StructuredProgram:
         Returns:
             Whether it can be called; a recursive one cannot.
         """
+        # `_open` are the routines that are being built, from the entry to the present one: a target among them calls
+        # itself. The stack that recursion needs has no bound, so the interpreter executes it.
         if target in self._open or len(self._open) > _MAX_CALLS:
             return False
         if target not in self.subs:

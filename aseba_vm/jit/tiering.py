@@ -192,6 +192,7 @@ class Tiering:
         try:
             return interpret(machine, limit)
         finally:
+            # Also after an exception of a native: the program may have modified itself before.
             translation = self._translation if self.state is State.TRANSLATED else None
             if translation is not None and translation.is_modified(machine.code):
                 self.apply(Change.WRITTEN)
@@ -199,6 +200,8 @@ class Tiering:
     def _run_translated(self, run: Run, left: int) -> int:
         """Run translated code with a budget of `left`, apply its exit to the machine, and return the budget used."""
         machine = self._machine
+        # Translated code counts its own instructions. Costs that natives added are not in its budget, so a call that
+        # adds some exits at once (`_prepare_call`), and they are charged here.
         rest, machine.pc, kind, words = run(left)
         done = left - rest
         if machine.extra_cost:
@@ -243,6 +246,8 @@ class Tiering:
         """The function that executes a native call. An exception of the native is raised after the exit."""
         machine, number, pc = self._machine, site.number, site.pc
 
+        # No exception may cross translated code (`Caller`), so it is kept until the exit. Translated code also exits
+        # after a native that ended the event, wrote bytecode (`_runnable` is empty then) or added to its cost.
         def call(popped: Sequence[int]) -> int:
             try:
                 if not machine.natives.call(number, pc, popped[: site.words]):

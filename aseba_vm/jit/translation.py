@@ -83,10 +83,10 @@ _translations: OrderedDict[object, Translation] = OrderedDict()
 def find_translation(words: tuple[int, ...], memories: Memories, natives: tuple[KnownNative, ...]) -> Translation:
     """The translation of a program from the cache; least recently used ones are dropped."""
     key = (words, memories, natives)
-    found = _translations.pop(key, None)
-    if found is None:
-        found = Translation(words, memories, natives)
+    translation = _translations.pop(key, None)
+    if translation is None:
+        translation = Translation(words, memories, natives)
         while len(_translations) >= _CACHE_SIZE:
             _translations.popitem(last=False)
-    _translations[key] = found
-    return found
+    _translations[key] = translation
+    return translation

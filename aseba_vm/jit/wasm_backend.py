@@ -294,6 +294,8 @@ class _Writer:
             if call.result == OK:
                 emit_line(f"(drop {call.text})")
                 return
+            # The kernel runs inside the module. Python is called only for a fault or an additional cost, both rare, and
+            # the code then exits behind the call: the kernel has been executed and must not be repeated.
             condition = f"(local.tee $h {call.text})"
             if "cost" in parameters(native.kernel)[0]:
                 condition = f"(i32.or {condition} (i32.load (i32.const {COST})))"
@@ -305,6 +307,7 @@ class _Writer:
             for place, text in enumerate(words):
                 emit_line(f"(i32.store (i32.const {ARGUMENTS + 4 * place}) {text})")
             emit_line(f"(local.set $h {self._python(site)})")
+            # 2: nothing was done. Exit before the call; the interpreter repeats it and reports the invalid argument.
             before = self._exit(node.place, INTERPRET, uncharged)
             emit_line(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")
 

@@ -108,5 +108,6 @@ class WasmExpressions:
             divisor = self._temporary(divisor)
             self._emit_line(f"(if (i32.eqz {divisor}) (then {self.bail_out}))")
         if operator == 5:
+            # -32768 / -1 is 32768, which has no word, but is an i32: no trap, and the wrap makes it -32768.
             return Wat(f"(i32.div_s {dividend} {divisor})", is_word=False)
         return Wat(f"(i32.rem_s {dividend} {divisor})", is_word=True)

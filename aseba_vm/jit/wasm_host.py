@@ -125,6 +125,7 @@ class WasmHost:
         self._machine = machine
         self._caller = caller
         self._store = wasmtime.Store(runtime.engine)
+        # The memory has a fixed size, so that its address never changes, and Python's arrays can point into it.
         memory = wasmtime.Memory(self._store, wasmtime.MemoryType(wasmtime.Limits(PAGES, PAGES)))
         self._base = ctypes.addressof(memory.data_ptr(self._store).contents)
         self._request = self._array(ctypes.c_int32, REQUEST, 3)
@@ -163,8 +164,8 @@ class WasmHost:
         def run_module(left: int) -> tuple[int, int, int, Any]:
             budget[0] = left
             call()
-            found: tuple[int, int, int, int] = unpack(exit_area)
-            return self._with_stack(found) if found[3] else found
+            values: tuple[int, int, int, int] = unpack(exit_area)
+            return self._with_stack(values) if values[3] else values
 
         def run_with_calls(left: int) -> tuple[int, int, int, Any]:
             self._sites, self._calls = code.sites, calls
@@ -184,9 +185,9 @@ class WasmHost:
         else:
             request[2] = self._calls[number](self._arguments)
 
-    def _with_stack(self, found: tuple[int, int, int, int]) -> tuple[int, int, int, Any]:
+    def _with_stack(self, values: tuple[int, int, int, int]) -> tuple[int, int, int, Any]:
         """An exit with the words to push."""
-        left, pc, kind, count = found
+        left, pc, kind, count = values
         return left, pc, kind, tuple(self._stack[:count])
 
     def _array(self, kind: Any, place: int, size: int) -> Any:
