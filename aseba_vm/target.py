@@ -76,12 +76,12 @@ class TargetDescription:
     @property
     def addresses(self) -> dict[str, tuple[int, int]]:
         """Address and size of each variable by name; the last one wins where a name occurs twice."""
-        found: dict[str, tuple[int, int]] = {}
+        addresses: dict[str, tuple[int, int]] = {}
         address = 0
         for variable in self.variables:
-            found[variable.name] = (address, variable.size)
+            addresses[variable.name] = (address, variable.size)
             address += variable.size
-        return found
+        return addresses
 
     def local_event_number(self, name: str) -> int:
         """The number of a local event, from 0xFFFE downwards. Raises KeyError for an unknown name."""

@@ -16,7 +16,7 @@ _HEAD = 20_000
 """Characters or bytes at each end of a file that are searched."""
 
 _KINDS = json.loads(Path(__file__).with_name("foreign_kinds.json").read_text(encoding="utf-8"))
-"""What each kind begins with or contains, as regular expressions, which the page reads, too (browser/foreign_files.js).
+"""The beginning or content of each kind, as regular expressions; the page reads them, too (browser/foreign_files.js).
 
 `bytes` are matched with letters for bytes, `xml` from the root element on. Those of `code` are searched in each line.
 """
@@ -24,7 +24,7 @@ _BYTES = [(kind, re.compile(pattern.encode("latin-1"), re.DOTALL)) for kind, pat
 _PROLOGUE = re.compile(r"(?:\s++|<\?[^>]*>|<!--(?:(?!-->).)*-->)*+", re.DOTALL)
 _NETWORK = re.compile(_KINDS["network"])
 _XML = [(kind, re.compile(pattern, re.IGNORECASE)) for kind, pattern in _KINDS["xml"]]
-_JSON = [(kind, [re.compile(each) for each in patterns]) for kind, patterns in _KINDS["json"]]
+_JSON = [(kind, [re.compile(pattern) for pattern in patterns]) for kind, patterns in _KINDS["json"]]
 _CODE = {name: re.compile(pattern, re.MULTILINE) for name, pattern in _KINDS["code"].items()}
 _COMMENTS = re.compile(_KINDS["code"]["comments"], re.DOTALL)
 
@@ -55,7 +55,7 @@ def _kind_of(text: str) -> str:
         root = _without_prologue(text)
         return next((kind for kind, pattern in _XML if pattern.match(root)), "")
     if begin in ("{", "["):
-        return next((kind for kind, patterns in _JSON if all(each.search(text) for each in patterns)), "")
+        return next((kind for kind, patterns in _JSON if all(pattern.search(text) for pattern in patterns)), "")
     code = _COMMENTS.sub("", text)
     if _CODE["ros"].search(code) and (_CODE["imports"].search(code) or "#include" in code):
         return "ros"
@@ -66,5 +66,5 @@ def _kind_of(text: str) -> str:
 
 def _without_prologue(text: str) -> str:
     head = text[:_HEAD].removeprefix("\ufeff")
-    found = _PROLOGUE.match(head)
-    return head[found.end() :] if found else head
+    prologue = _PROLOGUE.match(head)
+    return head[prologue.end() :] if prologue else head

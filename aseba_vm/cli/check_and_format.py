@@ -65,7 +65,7 @@ class _Run:
         if not self.is_json:
             print(f"aseba: {error.filename}: {error.strerror}", file=sys.stderr)
 
-    def each(self, handle: Callable[[str, TextFile], None]) -> None:
+    def for_each_file(self, handle: Callable[[str, TextFile], None]) -> None:
         """Process every file of the command line; an error in one does not stop the others."""
         files: dict[str, None] = {}
         for name in self.options.files:
@@ -107,7 +107,7 @@ class _Run:
 def check(options: argparse.Namespace, target: TargetDescription) -> int:
     """Report the first error of each program, or its warnings, and return the exit code."""
     run = _Run(options, texts("compiler", options.language))
-    run.each(lambda name, file: _check_file(run, name, file.text, target))
+    run.for_each_file(lambda name, file: _check_file(run, name, file.text, target))
     if run.is_json:
         print(json.dumps([finding.data() for finding in run.findings], indent=1, ensure_ascii=False))
     run.summarize("check-summary", run.count(ERROR), run.count(WARNING))
@@ -119,7 +119,7 @@ def _check_file(run: _Run, name: str, text: str, target: TargetDescription) -> N
     network = network_of(text, target.name)
     sources = sources_of(network, name, target.name, options.node, options.events, options.constants)
     for source in sources:
-        _check_source(run, source, text, target, is_optional=any(not each.is_guessed for each in sources))
+        _check_source(run, source, text, target, is_optional=any(not candidate.is_guessed for candidate in sources))
 
 
 def _check_source(run: _Run, source: Source, text: str, target: TargetDescription, *, is_optional: bool) -> None:
@@ -153,7 +153,7 @@ def format_files(options: argparse.Namespace) -> int:
     """Format programs and return the exit code."""
     run = _Run(options, texts("compiler", options.language))
     changed: list[str] = []
-    run.each(lambda name, file: _format_file(run, name, file, changed))
+    run.for_each_file(lambda name, file: _format_file(run, name, file, changed))
     run.summarize("fmt-summary", len(changed), run.count(ERROR))
     return run.code
 

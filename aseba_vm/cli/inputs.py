@@ -81,10 +81,10 @@ def sources_of(
     definitions = (*network.events, *events), (*network.constants, *constants)
     selection = select(network, {kind}) if node is None else None
     if selection is not None:
-        return [Source(file, each, *definitions, each in selection.guessed) for each in selection.nodes]
-    found = [Source(file, each, *definitions) for each in network.nodes if each.name == node]
-    if not found:
+        return [Source(file, program, *definitions, program in selection.guessed) for program in selection.nodes]
+    named = [Source(file, program, *definitions) for program in network.nodes if program.name == node]
+    if not named:
         row, col = network.nodes[0].place(0)
         names = ", ".join(dict.fromkeys(f"'{program.name}'" for program in network.nodes))
         raise AeslError("aesl-other-robot", (str(node), names), row + 1, col + 1)
-    return found
+    return named

@@ -111,13 +111,13 @@ def files_in(name: str) -> Sequence[str]:
     """
     if name == "-" or not os.path.isdir(name):
         return [name]
-    found = []
+    programs = []
     for home, folders, names in os.walk(name):
-        folders[:] = [each for each in folders if not each.startswith(".")]
-        found += [str(Path(home) / each) for each in names if each.lower().endswith(PROGRAM_ENDINGS)]
-    if not found:
+        folders[:] = [entry for entry in folders if not entry.startswith(".")]
+        programs += [str(Path(home) / entry) for entry in names if entry.lower().endswith(PROGRAM_ENDINGS)]
+    if not programs:
         raise FileNotFoundError(0, f"no program ({', '.join(PROGRAM_ENDINGS)}) in this folder", name)
-    return sorted(found)
+    return sorted(programs)
 
 
 def user_language(environment: Mapping[str, str]) -> str:

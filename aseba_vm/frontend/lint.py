@@ -43,18 +43,18 @@ class CompileWarning:
 
 def find_warnings(tree: Tree, segments: Sequence[Segment]) -> tuple[CompileWarning, ...]:
     """The warnings about a program in order of position, from its parsed tree and its code."""
-    found = [*_subroutines(tree, segments), *_far_blocks(segments)]
+    warnings = [*_subroutines(tree, segments), *_far_blocks(segments)]
     for node in walk(tree.body):
         match node:
             case Block():
-                found += _unreachable(node)
+                warnings += _unreachable(node)
             case If(is_edge=True):
-                found += _constant_when(node)
+                warnings += _constant_when(node)
             case For():
-                found += _endless_for(node)
+                warnings += _endless_for(node)
             case Subscript():
-                found += _vector_index(node)
-    return tuple(sorted(found, key=lambda warning: (warning.pos.offset, warning.kind)))
+                warnings += _vector_index(node)
+    return tuple(sorted(warnings, key=lambda warning: (warning.pos.offset, warning.kind)))
 
 
 def _unreachable(block: Block) -> Iterator[CompileWarning]:

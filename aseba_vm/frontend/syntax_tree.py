@@ -275,14 +275,14 @@ class Tree:
 
 def children(node: Node) -> tuple[Node, ...]:
     """The nodes directly below a node, in order."""
-    found: list[Node] = []
+    nodes: list[Node] = []
     for name in _FIELDS[type(node)]:
         value = getattr(node, name)
         if isinstance(value, Node):
-            found.append(value)
+            nodes.append(value)
         elif isinstance(value, tuple):
-            found.extend(item for item in value if isinstance(item, Node))
-    return tuple(found)
+            nodes.extend(item for item in value if isinstance(item, Node))
+    return tuple(nodes)
 
 
 def walk(root: Node) -> Iterator[Node]:

@@ -30,17 +30,17 @@ class KernelError(AsebaError):
 @cache
 def parameters(kernel: Kernel) -> Signature:
     """The parameters of a kernel and its result. Raises KernelError for types that kernels do not have."""
-    found: dict[str, str | type[Record]] = {}
+    types: dict[str, str | type[Record]] = {}
     annotations = dict(kernel.__annotations__)
     result = str(annotations.pop("return", "missing"))
     for name, kind in annotations.items():
         known = getattr(kernel, "__globals__", {}).get(kind)
         if isinstance(known, type) and issubclass(known, Record):
-            found[name] = known
+            types[name] = known
         elif kind in ARRAYS or kind in ("int", "float"):
-            found[name] = str(kind)
+            types[name] = str(kind)
         else:
             raise KernelError(f"{kernel.__name__}: parameter {name} is {kind}, expected int, float, array or record")
     if result not in SCALARS:
         raise KernelError(f"{kernel.__name__}: result is {result}, expected int, float or None")
-    return found, result
+    return types, result

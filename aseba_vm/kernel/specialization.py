@@ -37,11 +37,11 @@ class _Specializer(ast.NodeTransformer):
 
     def block(self, body: list[ast.stmt]) -> list[ast.stmt]:
         """A new list of statements; the given ones stay as they are."""
-        found: list[ast.stmt] = []
+        statements: list[ast.stmt] = []
         for statement in body:
             made = self.visit(deepcopy(statement))
-            found += made if isinstance(made, list) else [made]
-        return found
+            statements += made if isinstance(made, list) else [made]
+        return statements
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         """A known name is a constant."""
@@ -82,9 +82,9 @@ class _Specializer(ast.NodeTransformer):
         if len(limits) < len(node.iter.args) or len(range(*limits)) > MAX_ITERATIONS:
             node.body = self.block(node.body)
             return node
-        found: list[ast.stmt] = []
+        statements: list[ast.stmt] = []
         for number in range(*limits):
             self._known[node.target.id] = number
-            found += self.block(node.body)
+            statements += self.block(node.body)
         self._known.pop(node.target.id, None)
-        return found
+        return statements

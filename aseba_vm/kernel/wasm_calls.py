@@ -39,7 +39,7 @@ def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
     kind = wasmtime.FuncType([], [])
     try:
         bindings = wasmtime._bindings
-        found = bindings.wasmtime_func_t()
+        host_function = bindings.wasmtime_func_t()
 
         def call(_environment: int, _caller: int, _values: int, _count: int) -> int:
             function()
@@ -50,9 +50,9 @@ def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
         function_type = ctypes.PYFUNCTYPE(ctypes.c_size_t, pointer, pointer, pointer, ctypes.c_size_t)
         callback = ctypes.cast(function_type(call), bindings.wasmtime_func_unchecked_callback_t)
         bindings.wasmtime_func_new_unchecked(
-            store._context(), kind.ptr(), callback, None, type(wasmtime._func.finalize)(), ctypes.byref(found)
+            store._context(), kind.ptr(), callback, None, type(wasmtime._func.finalize)(), ctypes.byref(host_function)
         )
-        imported = wasmtime.Func._from_raw(found)
+        imported = wasmtime.Func._from_raw(host_function)
     except (AttributeError, TypeError, ctypes.ArgumentError):
         return wasmtime.Func(store, kind, function)
     imported.kept = callback  # keeps it alive as long as the function

@@ -99,13 +99,13 @@ class NativeCall:
 
     def words(self) -> list[int]:
         """A copy of the words of all arguments, one after the other."""
-        memory, found = self.memory, []
+        memory, words = self.memory, []
         for address, size in zip(self.addresses, self.sizes, strict=True):
             if size == 1:
-                found.append(memory[address])
+                words.append(memory[address])
             else:
-                found += memory[address : address + size]
-        return found
+                words += memory[address : address + size]
+        return words
 
     def value(self, argument: int) -> int:
         """The first word of an argument."""

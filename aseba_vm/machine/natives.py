@@ -260,7 +260,9 @@ class StandardNative:
 
     def fits(self, native: NativeFunction) -> bool:
         """Whether a native has the parameters of this one, so that the kernel can take the words of a call."""
-        return [each.size for each in native.parameters] == [each.size for each in self._declared.parameters]
+        return [parameter.size for parameter in native.parameters] == [
+            parameter.size for parameter in self._declared.parameters
+        ]
 
 
 def _standard_natives() -> dict[str, StandardNative]:

@@ -158,8 +158,8 @@ class _Parameters:
     _text = _Text()
 
     def pack(self, value: Sequence[Parameter]) -> bytes:
-        each = (_I16.pack(parameter.size) + self._text.pack(parameter.name) for parameter in value)
-        return _U16.pack(len(value)) + b"".join(each)
+        items = (_I16.pack(parameter.size) + self._text.pack(parameter.name) for parameter in value)
+        return _U16.pack(len(value)) + b"".join(items)
 
     def unpack(self, payload: bytes, offset: int) -> tuple[tuple[Parameter, ...], int]:
         count, offset = _U16.unpack(payload, offset)

@@ -100,7 +100,7 @@ class NodeClient:
         self.source = source
         self._version = version
         self._nodes: dict[int, RemoteNode] = {}
-        self._heard: dict[int, _Presence] = {}
+        self._presences: dict[int, _Presence] = {}
         self._loads: dict[int, _Load] = {}
         self._outbox: list[Message] = []
         self._now_ns = 0
@@ -120,9 +120,9 @@ class NodeClient:
 
     def end(self, reason: str) -> list[Report]:
         """Forget all nodes, because the stream has ended."""
-        found = [report for number in list(self._heard) for report in self._forget(number, reason)]
+        changes = [report for number in list(self._presences) for report in self._forget(number, reason)]
         self._outbox.clear()
-        return found
+        return changes
 
     def pop_messages(self) -> list[Message]:
         """The messages to send, in order. They are removed from the queue."""
@@ -176,23 +176,25 @@ class NodeClient:
         if now_ns >= self._next_list_ns:
             self._next_list_ns = now_ns + LIST_PERIOD_NS
             self.send(ListNodes(self.source, self._version))
-        found: list[Report] = []
-        for number, presence in list(self._heard.items()):
+        changes: list[Report] = []
+        for number, presence in list(self._presences.items()):
             if now_ns - presence.heard_ns >= SILENCE_NS:
-                found += self._forget(number, f"no answer for {SILENCE_NS // SECOND_NS} s")
+                changes += self._forget(number, f"no answer for {SILENCE_NS // SECOND_NS} s")
             elif presence.asked_ns is not None and now_ns - presence.asked_ns >= DESCRIPTION_PAUSE_NS:
-                found += self._complain(number, presence, f"its description has stopped: {presence.missing}")
+                changes += self._complain(number, presence, f"its description has stopped: {presence.missing}")
                 self._ask(number, presence)
         for number, node in self._nodes.items():
             for start, count in node.overdue(now_ns - SILENCE_NS):
-                found.append(reports.RequestTimedOut(number, GetVariables(self.source, number, start, count)))
+                changes.append(reports.RequestTimedOut(number, GetVariables(self.source, number, start, count)))
         for number, load in list(self._loads.items()):
             if now_ns - load.sent_ns >= SILENCE_NS:
                 del self._loads[number]
                 # some nodes report their state once for all parts
                 is_loaded = load.confirmed > 0
-                found.append(reports.ProgramLoaded(number) if is_loaded else reports.RequestTimedOut(number, load.last))
-        return found
+                changes.append(
+                    reports.ProgramLoaded(number) if is_loaded else reports.RequestTimedOut(number, load.last)
+                )
+        return changes
 
     def receive(self, message: Message) -> list[Report]:
         """Process a message; the reports say what has changed by it."""
@@ -203,7 +205,7 @@ class NodeClient:
             return self._forget(number, "it has left the network")
         if isinstance(message, NodePresent | Description):
             return self._receive_presence(message)
-        presence = self._heard.get(number)
+        presence = self._presences.get(number)
         if presence is None or isinstance(message, Command | ListNodes | GetDescription):
             return []
         presence.heard_ns = self._now_ns
@@ -217,11 +219,11 @@ class NodeClient:
 
     def _receive_presence(self, message: NodePresent | Description) -> list[Report]:
         number = message.source
-        presence = self._heard.get(number)
+        presence = self._presences.get(number)
         if presence is None:
-            if len(self._heard) >= MAX_NODES:
+            if len(self._presences) >= MAX_NODES:
                 return []
-            presence = self._heard[number] = _Presence(message.version, self._now_ns)
+            presence = self._presences[number] = _Presence(message.version, self._now_ns)
         presence.heard_ns, presence.version = self._now_ns, message.version
         if isinstance(message, Description):
             presence.assembly, presence.asked_ns = DescriptionAssembly(message), self._now_ns
@@ -251,14 +253,14 @@ class NodeClient:
 
     def _receive_state(self, node: RemoteNode, state: ExecutionState) -> list[Report]:
         node.state = state
-        found: list[Report] = [reports.StateReported(node.number, state)]
+        changes: list[Report] = [reports.StateReported(node.number, state)]
         load = self._loads.get(node.number)
         if load is not None:
             load.confirmed += 1
             if load.confirmed >= load.missing:
                 del self._loads[node.number]
-                found.append(reports.ProgramLoaded(node.number))
-        return found
+                changes.append(reports.ProgramLoaded(node.number))
+        return changes
 
     def _ask(self, number: int, presence: _Presence) -> None:
         presence.assembly, presence.asked_ns = None, self._now_ns
@@ -292,7 +294,7 @@ class NodeClient:
         return [reports.NodeUnusable(number, reason)]
 
     def _forget(self, number: int, reason: str) -> list[Report]:
-        presence = self._heard.pop(number, None)
+        presence = self._presences.pop(number, None)
         self._loads.pop(number, None)
         if self._nodes.pop(number, None) is not None:
             return [reports.NodeDisconnected(number, reason)]

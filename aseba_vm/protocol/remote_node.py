@@ -57,8 +57,8 @@ class RemoteNode:
 
     def values(self) -> dict[str, tuple[int, ...]]:
         """Words of all variables that have been read, by name in order of address."""
-        found = {name: self.value(name) for name in self.addresses}
-        return {name: words for name, words in found.items() if words is not None}
+        values = {name: self.value(name) for name in self.addresses}
+        return {name: words for name, words in values.items() if words is not None}
 
     def places(self, names: Iterable[str] | None = None) -> list[tuple[int, int]]:
         """Address and size of these variables, or of all. Raises KeyError for an unknown name."""
@@ -82,9 +82,9 @@ class RemoteNode:
         Returns:
             Start address and number of words of each.
         """
-        found = [(read.start, read.count) for read in self._reads if read.sent_ns < sent_before_ns]
+        overdue = [(read.start, read.count) for read in self._reads if read.sent_ns < sent_before_ns]
         self._reads = [read for read in self._reads if read.sent_ns >= sent_before_ns]
-        return found
+        return overdue
 
     def write(self, start: int, values: Sequence[int]) -> None:
         """Store values that are written; answers to earlier requests do not replace them."""
