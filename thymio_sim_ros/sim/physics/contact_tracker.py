@@ -74,7 +74,7 @@ def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
 
 
 def _middle(points: pymunk.ContactPointSet) -> tuple[float, float]:
-    """Return the middle of a contact in the world's frame.
+    """The middle of a contact in the world's frame.
 
     `fsum` is exact, so the result does not depend on the order of points and shapes, which mirrored worlds change.
     """
@@ -83,6 +83,6 @@ def _middle(points: pymunk.ContactPointSet) -> tuple[float, float]:
 
 
 def _velocity(shape: pymunk.Shape, point: tuple[float, float]) -> pymunk.Vec2d:
-    """Return the velocity of a shape's body at a point in the world's frame."""
+    """The velocity of a shape's body at a point in the world's frame."""
     assert shape.body is not None
     return shape.body.velocity_at_world_point(point)

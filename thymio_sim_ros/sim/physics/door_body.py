@@ -21,11 +21,11 @@ from thymio_sim_ros.sim.raycast.scalar import Obstacle, obstacle_of
 __all__ = ["DoorBody"]
 
 _TOUCHED_M = 0.0005
-"""Overlap from which on it pushes: more than the engine leaves between what touches."""
+"""Overlap from which on it pushes: more than the engine leaves between touching bodies."""
 _AHEAD = 0.1
-"""What lies in its way takes at least this part of its speed; the rest slides along it."""
+"""Fraction of its speed that an object in its way gets at least; the rest slides along the object."""
 _GIVES_WAY = 0.9
-"""Who has this part of the speed that it is pushed with gives way."""
+"""Fraction of the pushing speed; an object that has reached it gives way."""
 _REST_TICKS = 100
 """After it was stopped; in the first of them it goes back."""
 
@@ -124,13 +124,13 @@ class DoorBody:
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 
     def _after(self, change_s: float) -> float:
-        """Return the opening time after a change, within 0 and the duration of the slide."""
+        """The opening time after a change, within 0 and the duration of the slide."""
         slide = self._solid.slide
         assert slide is not None
         return max(0.0, min(slide.duration_s, self._opening_s + change_s))
 
     def _is_stopped(self, space: pymunk.Space) -> bool:
-        """Return whether an object or robot in its way does not give way."""
+        """Whether an object or robot in its way does not give way."""
         for met in space.shape_query(self.shape):
             other = met.shape.body if met.shape is not None else None
             if other is None or other.body_type != pymunk.Body.DYNAMIC:

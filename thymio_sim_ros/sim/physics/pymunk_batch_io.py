@@ -77,6 +77,7 @@ class BodyReader:
 
     def read(self) -> None:
         """Update `state`, and `order` if bodies were added or removed or come in another order."""
+        # `clear` sets the lengths to 0 and keeps the arrays, so views of them stay valid until an array is reallocated.
         buffer = self._buffer
         buffer.clear()
         self._each()
@@ -92,7 +93,7 @@ class BodyReader:
             self.order += 1
 
     def rows(self, bodies: Sequence[pymunk.Body]) -> Indices:
-        """Return the rows of bodies in `state`, shape (bodies,). Raises KeyError for a body outside the space."""
+        """The rows of bodies in `state`, shape (bodies,). Raises KeyError for a body outside the space."""
         rows = {number: row for row, number in enumerate(np.frombuffer(self._ids, dtype=np.uintp).tolist())}
         known = self._id_of
         for body in bodies:
@@ -102,7 +103,7 @@ class BodyReader:
 
 
 def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], object]:
-    """Return a function that reads all bodies of a space into a buffer.
+    """A function that reads all bodies of a space into a buffer.
 
     `batch.get_space_bodies` makes the same call but builds its arguments anew each time; here they are built once. The
     pointers are valid as long as space and buffer live, which the returned function keeps alive.
@@ -115,7 +116,7 @@ def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], 
 
 
 def _data(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
-    """Return the C struct by which pymunk reads from a buffer or writes to it; it does not keep the buffer alive."""
+    """The C struct by which pymunk reads from a buffer or writes to it; it does not keep the buffer alive."""
     data = _chipmunk_cffi.ffi.new("pmBatchedData *")
     data.floatArray, data.intArray, data.fields = buffer._float_arr, buffer._int_arr, fields.value
     return data

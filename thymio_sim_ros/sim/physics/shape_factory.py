@@ -10,7 +10,7 @@ __all__ = ["shape_of"]
 
 
 def shape_of(outline: Outline, body: pymunk.Body) -> pymunk.Shape:
-    """Return a shape for a body whose origin is that of the outline."""
+    """A shape for a body whose origin is that of the outline."""
     if isinstance(outline, Disc):
         return pymunk.Circle(body, outline.radius_m)
     return pymunk.Poly(body, outline.vertices)

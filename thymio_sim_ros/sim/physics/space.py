@@ -74,7 +74,7 @@ class Physics:
         self._standing: list[MovableBody] = []
         """Objects that have not fallen."""
         self._motions = np.zeros((0, 6))
-        """What was read of each of them last, with the velocities that `end_tick` left."""
+        """The last values read of each of them, with the velocities that `end_tick` left."""
         self._rows: Any = ()
         """Their rows among the bodies that are read, in the order with the number `_order`."""
         self._order = -1
@@ -90,12 +90,12 @@ class Physics:
         return self._door_controller.doors
 
     def movable_obstacles(self) -> list[Obstacle | None]:
-        """Return the obstacles of `objects`, in that order; None for a fallen one."""
+        """The obstacles of `objects`, in that order; None for a fallen one."""
         self._moved.clear()
         return [_obstacle_or_none(body) for body in self.objects]
 
     def moved_obstacles(self) -> dict[int, Obstacle | None]:
-        """Return the obstacles of objects that have moved since the last call of this or of `movable_obstacles`.
+        """The obstacles of objects that have moved since the last call of this or of `movable_obstacles`.
 
         The keys are indices in `objects`; None stands for an object that has fallen.
         """
@@ -147,6 +147,7 @@ class Physics:
 
     def step(self) -> tuple[Contact, ...]:
         """Advance by one tick; returns the contacts at its end, by robot and in the order in which they began."""
+        # Still before two steps in a row: the last step changed nothing, and this one would not either.
         was_still, self._was_still = self._was_still, self._is_still
         if was_still and self._was_still:
             return ()
@@ -165,6 +166,7 @@ class Physics:
         """Update the objects whose motion differs from what was read last."""
         reader = self.robots.reader
         if reader.order != self._order:
+            # The rows of bodies have changed. NaN differs from every value, so all objects are updated once.
             self._order = reader.order
             self._standing = [movable for movable in self._movables.values() if not movable.is_fallen]
             self._motions = np.full((len(self._standing), 6), np.nan)
@@ -176,6 +178,7 @@ class Physics:
         for number in changed.nonzero()[0].tolist():
             movable, motion = self._standing[number], self._motions[number]
             movable.end_tick(*motion.tolist())
+            # An object that has come to rest has velocity 0 from now on in pymunk, too; the next comparison expects it.
             if not movable.is_moving:
                 motion[3:] = 0.0
 
@@ -189,7 +192,7 @@ class Physics:
         )
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
-        """Return the obstacles within `reach_m` of a robot's origin that are at least `height_m` high.
+        """The obstacles within `reach_m` of a robot's origin that are at least `height_m` high.
 
         A robot off the floor has none. The robot itself is not among them.
         """
@@ -225,5 +228,5 @@ class Physics:
 
 
 def _obstacle_or_none(body: MovableBody | DoorBody) -> Obstacle | None:
-    """Return the obstacle of an object or door; None if it has fallen."""
+    """The obstacle of an object or door; None if it has fallen."""
     return None if body.is_fallen else body.obstacle
