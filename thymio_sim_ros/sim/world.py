@@ -239,7 +239,7 @@ class World:
         return StepResult(now_ns, self._batch.measure(self._schedule.due(now_ns)), contacts)
 
     def read(self, robot: str, sensor: str) -> Reading | None:
-        """Return what a stateless sensor measures now. Raises KeyError for an unknown robot or sensor."""
+        """The present reading of a stateless sensor. Raises KeyError for an unknown robot or sensor."""
         return self._batch.read(self._robots[robot], sensor)
 
     def _select(self, wanted: Collection[str] | None) -> None:
@@ -255,7 +255,7 @@ class World:
         )
 
     def snapshot(self) -> Snapshot:
-        """Return the visible state of the world now."""
+        """The visible state of the world now."""
         return Snapshot(
             self._clock.now_ns,
             tuple(robot.snapshot() for robot in self._robots.values()),
@@ -272,7 +272,7 @@ class World:
             robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
 
     def _names(self) -> set[str]:
-        """Return all names in use."""
+        """All names in use."""
         return {*self._robots, *(shape.name for shape in self.playground.shapes)}
 
     def _check_place(self, wanted: Footprint) -> None:
@@ -294,7 +294,7 @@ class World:
             raise PlacementError(wanted.name, Pose(*wanted.middle, 0.0), f"occupied by '{blocker}'")
 
     def _moving_to(self) -> dict[str, Pose]:
-        """Return where pending commands place robots and objects, by name."""
+        """Poses at which pending commands place robots and objects, by name."""
         return {
             name: Pose(command.x_m, command.y_m, command.yaw_rad)
             for name, command in self._posted
@@ -302,7 +302,7 @@ class World:
         }
 
     def _will_be_lifted(self, robot: Robot) -> bool:
-        """Return whether a robot is lifted after the pending commands."""
+        """Whether a robot is lifted after the pending commands."""
         lifts = [command for name, command in self._posted if name == robot.name and isinstance(command, Lift)]
         return lifts[-1].is_lifted if lifts else robot.is_lifted
 
@@ -338,7 +338,7 @@ class World:
 
 
 def _finite(name: str, pose: Pose) -> Pose:
-    """Return the pose. Raises ValueError if it is not finite."""
+    """The same pose. Raises ValueError if it is not finite."""
     if not all(map(math.isfinite, (pose.x_m, pose.y_m, pose.yaw_rad))):
         at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
         raise ValueError(f"'{name}' cannot be placed at {at}: expected finite numbers")
@@ -346,7 +346,7 @@ def _finite(name: str, pose: Pose) -> Pose:
 
 
 def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
-    """Return the sensors that measure. Raises ValueError for an unknown name or a period that is not above 0."""
+    """The sensors that measure. Raises ValueError for an unknown name or a period that is not above 0."""
     if periods_ns is None:
         return sensors
     names = [sensor.name for sensor in sensors]

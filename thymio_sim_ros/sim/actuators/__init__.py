@@ -24,5 +24,5 @@ class Actuator(CommandPlugin):
 
 
 def all_actuators() -> tuple[Actuator, ...]:
-    """Return all actuators, of this package and of other packages, in name order."""
+    """All actuators, of this package and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "ACTUATOR", Actuator, guard=partial(isolated, "actuator"))

@@ -19,22 +19,22 @@ _FRONT = 6
 
 
 def _circle(phase: float) -> tuple[int, ...]:
-    """Return the levels of a light that runs clockwise and fades to both sides."""
+    """The levels of a light that runs clockwise and fades to both sides."""
     return tuple(_level(0.5 + 0.5 * math.cos(math.tau * (phase - index / _CIRCLE))) for index in range(_CIRCLE))
 
 
 def _blink(phase: float) -> tuple[int, ...]:
-    """Return the levels of lights that are on for half of the period."""
+    """The levels of lights that are on for half of the period."""
     return (LED_FULL if phase < 0.5 else 0,) * _CIRCLE
 
 
 def _alive(phase: float) -> tuple[int, ...]:
-    """Return the levels of lights that swell and fade together."""
+    """The levels of lights that swell and fade together."""
     return (_level(0.5 - 0.5 * math.cos(math.tau * phase)),) * _CIRCLE
 
 
 def _kit(phase: float) -> tuple[int, ...]:
-    """Return the levels of a light that moves back and forth at the front, from the left."""
+    """The levels of a light that moves back and forth at the front, from the left."""
     place = (_FRONT - 1) * (1 - abs(1 - 2 * phase))
     front = tuple(_level(1 - abs(place - index)) for index in range(_FRONT))
     return (*front, *[0] * (LED_GROUPS["proximity"] - _FRONT))
@@ -67,6 +67,6 @@ class Gesture:
         return GESTURES[self.name][0]
 
     def levels(self, now_ns: int) -> tuple[int, ...]:
-        """Return the levels of the lights at this time."""
+        """The levels of the lights at this time."""
         _, shape = GESTURES[self.name]
         return shape((now_ns - self.began_ns) * 1e-9 / self.period_s % 1.0)

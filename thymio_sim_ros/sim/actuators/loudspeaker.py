@@ -36,7 +36,7 @@ SHORTEST_TICKS = 4
 
 @dataclass(slots=True)
 class LoudspeakerState:
-    """What sounds: a note, samples, or nothing.
+    """The present sound: a note, samples, or nothing.
 
     `sounding_level` is the swing of the samples that sound now, 0…255, as a microphone counts. `began_ns` is when the
     note or the samples began, `changes` counts what began, ended or changed, `finished` the sounds that ended by
@@ -60,7 +60,7 @@ class LoudspeakerState:
         return self.note is None and not self.samples
 
     def sound_level(self, _now_ns: int) -> float:
-        """Return the level near the robot; 0 is silent.
+        """The level near the robot; 0 is silent.
 
         Assumption: a loudspeaker at full swing drives the microphone beside it to full swing, as in classrooms, where
         tones start the clap rows of VPL, which need more than 250.
@@ -102,8 +102,8 @@ class LoudspeakerState:
 
     def _measure(self, now_ns: int) -> None:
         first = (now_ns - self.began_ns) // SAMPLE_NS
-        heard: Sequence[int] = self.wave if self.note is not None else self.samples[first : first + BLOCK_SAMPLES]
-        self.sounding_level = (max(heard) - min(heard)) >> self.shift if heard else 0
+        block: Sequence[int] = self.wave if self.note is not None else self.samples[first : first + BLOCK_SAMPLES]
+        self.sounding_level = (max(block) - min(block)) >> self.shift if block else 0
 
 
 def _apply(

@@ -19,7 +19,7 @@ class MicrophoneState:
     threshold: int = 0
 
     def is_exceeded(self, intensity: int) -> bool:
-        """Return whether a sound of this intensity is reported."""
+        """Whether a sound of this intensity is reported."""
         return intensity > self.threshold != 0
 
 

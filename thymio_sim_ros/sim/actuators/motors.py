@@ -35,7 +35,7 @@ class MotorState:
 
 
 def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
-    """Return the speeds of the left and right wheel in m/s that a command asks for, not limited."""
+    """The speeds of the left and right wheel in m/s that a command asks for, not limited."""
     if isinstance(command, BodyTwist):
         turn = command.angular_rad_s * robot_constants.WHEEL_TRACK_M / 2
         return command.linear_m_s - turn, command.linear_m_s + turn
@@ -43,7 +43,7 @@ def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
 
 
 def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
-    """Return the speeds of the left and right wheel in m/s, both scaled down together to the limit."""
+    """The speeds of the left and right wheel in m/s, both scaled down together to the limit."""
     left, right = wanted_speeds(command)
     largest = max(abs(left), abs(right))
     scale = robot_constants.MAX_SPEED_M_S / largest if largest > robot_constants.MAX_SPEED_M_S else 1.0

@@ -63,7 +63,7 @@ class PenState:
 
     @property
     def strokes(self) -> tuple[Stroke, ...]:
-        """What was drawn, the oldest first."""
+        """All strokes so far, the oldest first."""
         return tuple(Stroke(line.color, line.width_m, tuple(line.points)) for line in self._lines)
 
     def lift(self) -> None:
@@ -95,7 +95,7 @@ class PenState:
 
 
 def _is_straight(start: Point, end: Point, passed: list[Point]) -> bool:
-    """Return whether the line from start to end is short and passes all these points closely."""
+    """Whether the line from start to end is short and passes all these points closely."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     length = math.hypot(dx, dy)
     if not 0.0 < length < _LONGEST_M:

@@ -43,7 +43,7 @@ class Sound:
 
 
 def level_at(sounds: Iterable[Sound], x_m: float, y_m: float) -> float:
-    """Return the level of all sounds together at a point in the world's frame; not clamped to FULL_LEVEL.
+    """The level of all sounds together at a point in the world's frame; not clamped to FULL_LEVEL.
 
     The amplitude of a source falls as 1/d (free field), but not within NEAR_M. Sources are not coherent, so their
     energies, the squares of the amplitudes, are added, not the amplitudes.

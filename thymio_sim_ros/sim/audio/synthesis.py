@@ -1,4 +1,4 @@
-"""What the robot's loudspeaker can say: one stream of samples, tones made of a wave, the robot's own sounds.
+"""Sounds of the robot's loudspeaker: one stream of samples, tones made of a wave, the robot's own sounds.
 
 Numbers: docs/spec/thymio-robot.md section 9.
 """
@@ -50,7 +50,7 @@ class Note:
 
 
 def tone(frequency_hz: float, duration_ns: int | None) -> Note:
-    """Return a note within the range of the robot; the sign of the frequency is ignored."""
+    """A note within the range of the robot; the sign of the frequency is ignored."""
     return Note(max(LOWEST_HZ, min(HIGHEST_HZ, abs(frequency_hz))), duration_ns)
 
 
@@ -91,10 +91,10 @@ SHUT_DOWN = 1
 """Number of the sound of a robot that is switched off."""
 
 UNKNOWN_SOUND = ((440, 10),)
-"""What another number sounds like: 10/60 s of 440 Hz (section 6.3)."""
+"""The sound of an unknown number: 10/60 s of 440 Hz (section 6.3)."""
 
 
 def system_sound(number: int) -> tuple[Note, ...]:
-    """Return the notes of a system sound; a short tone for an unknown number."""
+    """The notes of a system sound; a short tone for an unknown number."""
     known = 0 <= number < len(SYSTEM_SOUNDS)
     return tuple(tone(hz, ticks * BLOCK_NS) for hz, ticks in (SYSTEM_SOUNDS[number] if known else UNKNOWN_SOUND))

@@ -24,7 +24,7 @@ S = TypeVar("S")
 R = TypeVar("R", bound=Record)
 
 Rows = dict[str, dict[str, Any]]
-"""What a record has of each robot: values by field, by robot."""
+"""Elements of a record: values by field, by robot."""
 
 
 class RobotArrays(Protocol):
@@ -39,7 +39,7 @@ class RobotArrays(Protocol):
         ...
 
     def states(self, kind: type[S]) -> list[S]:
-        """Return the state of one actuator of every robot, in the order of the world."""
+        """The state of one actuator of every robot, in the order of the world."""
         ...
 
 
@@ -121,7 +121,7 @@ class BatchView:
 
 
 def keys_of(memory: KernelMemory, robots: Sequence[Robot], user: str, shared: SharedState, count: int) -> NoiseKeys:
-    """Return the keys of the random numbers of a sensor or actuator on each robot, a record of `count` elements."""
+    """The keys of the random numbers of a sensor or actuator on each robot, a record of `count` elements."""
     keys = NoiseKeys(memory, count)
     for index, robot in enumerate(robots):
         keys.key_1[index], keys.key_2[index] = noise_keys(shared.seed, robot.name, user)

@@ -63,7 +63,7 @@ class RobotBatch:
         self._sensor_names = [sensor.name for sensor in self._sensors]
         self._numbers = {sensor.name: number for number, sensor in enumerate(self._sensors)}
         self._read: dict[str, tuple[int, Sequence[Reading | None]]] = {}
-        """What was measured last because it was read, and when, by sensor."""
+        """The last readings that were measured on request, with their tick, by sensor."""
         self._measure: list[Measure] = []
         for number, sensor in enumerate(self._sensors):
             if sensor.prepare_all is not None:
@@ -75,11 +75,11 @@ class RobotBatch:
 
     @property
     def rows(self) -> dict[str, Rows]:
-        """What the records of sensors have of each robot, by sensor."""
+        """The elements that sensors have in their records, by sensor, then by robot."""
         return {name: view.rows for name, view in self._views.items()}
 
     def states(self, kind: type[S]) -> list[S]:
-        """Return the state of one actuator of every robot, in the order of the world."""
+        """The state of one actuator of every robot, in the order of the world."""
         found = self._states.get(kind)
         if found is None:
             found = self._states[kind] = [robot.state(kind) for robot in self._robots]
@@ -121,7 +121,7 @@ class RobotBatch:
         return contacts
 
     def measure(self, due: Sequence[int]) -> Sequence[Row]:
-        """Return the readings of the sensors with these numbers, and of those woken."""
+        """The readings of the sensors with these numbers, and of those woken."""
         self.tick[0] = tick_number(self.shared.clock.now_ns)
         if not self._robots:
             return ()
@@ -143,7 +143,7 @@ class RobotBatch:
         return ReadingTable(self._names, columns) if columns else ()
 
     def read(self, robot: Robot, sensor: str) -> Reading | None:
-        """Return what a stateless sensor of one robot measures now. Raises KeyError for an unknown sensor."""
+        """The present reading of a stateless sensor of one robot. Raises KeyError for an unknown sensor."""
         now_ns, (read_ns, column) = self.shared.clock.now_ns, self._read.get(sensor, _NEVER)
         if read_ns != now_ns:
             self.tick[0] = tick_number(now_ns)
@@ -152,14 +152,14 @@ class RobotBatch:
         return column[self._order[robot]]
 
     def _one_by_one(self, number: int) -> Measure:
-        """Return a function that measures a sensor of all robots, one after the other."""
+        """A function that measures a sensor of all robots, one after the other."""
         sensor, views = self._sensors[number], [robot.sensors[number][1] for robot in self._robots]
         measure = sensor.measure
         assert measure is not None
         return lambda: [measure(view) for view in views]
 
     def _in_order(self, some: Collection[Robot]) -> list[Robot]:
-        """Return some robots in the order of the world."""
+        """Some robots in the order of the world."""
         if len(some) < 2:
             return list(some)
         return sorted(some, key=self._order.__getitem__)

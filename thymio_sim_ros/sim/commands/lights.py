@@ -59,7 +59,7 @@ class SetLed:
 
 @dataclass(frozen=True, slots=True)
 class ShowOnLeds:
-    """What the firmware shows on one group (section 8.4); no effect while the group is taken over."""
+    """The colors that the firmware shows on one group (section 8.4); no effect while a program owns the group."""
 
     group: str
     levels: tuple[int, ...]

@@ -50,7 +50,7 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """What a style says: declarations, names of at-rules in lower case, targets of `url(…)`."""
+    """The content of a style: declarations, names of at-rules in lower case, targets of `url(…)`."""
 
     declarations: tuple[Declaration, ...]
     rules: tuple[str, ...]
@@ -63,7 +63,7 @@ Path = Sequence[tuple[str, Mapping[str, str]]]
 
 @dataclass(slots=True)
 class _Compound:
-    """What one element must be: its type, id, classes and attributes; None and nothing fit every element."""
+    """The conditions on one element: its type, id, classes and attributes; None and nothing fit every element."""
 
     tag: str | None = None
     id: str | None = None
@@ -88,7 +88,7 @@ class Selector:
     is_parent: tuple[bool, ...]
 
     def selects(self, path: Path) -> bool:
-        """Return whether an element may be selected. From the right, the places that each part can have are kept."""
+        """Whether an element may be selected. From the right, the places that each part can have are kept."""
         places = [len(path) - 1] if self.parts[-1].selects(*path[-1]) else []
         for part, is_parent in zip(self.parts[-2::-1], self.is_parent[::-1], strict=True):
             if not places:
@@ -128,7 +128,7 @@ class Sheet:
                 self._rules.setdefault(key, []).append((selector, rule.style))
 
     def styles(self, path: Path) -> list[Style]:
-        """Return the styles of the rules that may apply to an element."""
+        """The styles of the rules that may apply to an element."""
         tag, attributes = path[-1]
         classes = set(attributes.get("class", "").split())
         keys = [
@@ -137,13 +137,13 @@ class Sheet:
             ("id", attributes.get("id", "")),
             *(("class", name) for name in classes),
         ]
-        found = [each for key in keys for each in self._rules.get(key, ())]
-        self.checks += len(found)
-        return [style for selector, style in found if selector.selects(path)]
+        candidates = [rule for key in keys for rule in self._rules.get(key, ())]
+        self.checks += len(candidates)
+        return [style for selector, style in candidates if selector.selects(path)]
 
 
 def rules(text: str, properties: Container[str]) -> tuple[Rule, ...]:
-    """Return the rules of a style sheet that have one of the properties or a reference; see `parse`.
+    """The rules of a style sheet that have one of the properties or a reference; see `parse`.
 
     The references of at-rules such as @font-face are those of no element.
     """
@@ -165,7 +165,7 @@ def _read_rules(tokens: Sequence[tuple[str, str]], place: int, properties: Conta
             open_.append(open_[-1] if at and open_ else () if at else _selectors(prelude))
         elif token in (("other", ";"), ("other", "}")) or place == len(tokens) - 1:
             ends = token in (("other", ";"), ("other", "}"))
-            words = [each for each in tokens[begin : place if ends else place + 1] if each != _SPACE]
+            words = [word for word in tokens[begin : place if ends else place + 1] if word != _SPACE]
             style = _style(words, properties)
             if open_ and open_[-1] and (style.declarations or style.urls):
                 found.append(Rule(open_[-1], style))
@@ -179,7 +179,7 @@ def _read_rules(tokens: Sequence[tuple[str, str]], place: int, properties: Conta
 
 
 def _selectors(prelude: Sequence[tuple[str, str]]) -> tuple[Selector, ...]:
-    """Return the selectors of a rule; in parentheses, commas separate nothing."""
+    """The selectors of a rule; in parentheses, commas separate nothing."""
     lists: list[list[tuple[str, str]]] = [[]]
     depth = 0
     for token in prelude:
@@ -200,7 +200,7 @@ def _selector(tokens: Sequence[tuple[str, str]]) -> Selector:
     skips = False
     """Whether the next name belongs to a pseudo-class."""
     bracket: list[tuple[str, str]] | None = None
-    """What is in the open brackets of an attribute."""
+    """Tokens inside the open brackets of an attribute."""
     for kind, value in tokens:
         opens = kind == "function" or value in ("(", "[")
         if opens or depth > 0:
@@ -246,7 +246,7 @@ def _begin_part(parts: list[_Compound], is_parent: list[bool], pending: bool | N
 
 
 def _attribute(tokens: Sequence[tuple[str, str]]) -> list[tuple[str, str | None]]:
-    """Return what `[name]` and `[name=value]` ask for; other operators and namespaces ask for nothing here."""
+    """The condition of `[name]` or `[name=value]`; other operators and namespaces set none here."""
     words = [token for token in tokens if token != _SPACE]
     match words:
         case [("name", name)]:
@@ -257,7 +257,7 @@ def _attribute(tokens: Sequence[tuple[str, str]]) -> list[tuple[str, str | None]
 
 
 def parse(text: str, properties: Container[str]) -> Style:
-    """Return the declarations of some properties, the at-rules and the references of a style attribute or style sheet.
+    """The declarations of some properties, the at-rules and the references of a style attribute or style sheet.
 
     `properties` are in lower case and without a vendor's prefix; that of a declaration is left out.
     """
@@ -276,7 +276,7 @@ def _style(tokens: Sequence[tuple[str, str]], properties: Container[str]) -> Sty
 
 
 def _value(tokens: Sequence[tuple[str, str]], begin: int) -> tuple[str, ...]:
-    """Return the first words of the value of a declaration; a few are enough, as only short values are compared."""
+    """The first words of the value of a declaration; a few are enough, as only short values are compared."""
     words = []
     for kind, value in tokens[begin : begin + 6]:
         if kind == "other" and value in ";{}":
@@ -288,12 +288,12 @@ def _value(tokens: Sequence[tuple[str, str]], begin: int) -> tuple[str, ...]:
 
 
 def _tokens(text: str) -> Iterator[tuple[str, str]]:
-    """Iterate over kind and content of each token except space."""
+    """Kind and content of each token except space."""
     return (token for token in _all_tokens(text) if token != _SPACE)
 
 
 def _all_tokens(text: str) -> Iterator[tuple[str, str]]:
-    """Iterate over kind and content of each token; `url(…)`, quoted or not, is one token of kind url."""
+    """Kind and content of each token; `url(…)`, quoted or not, is one token of kind url."""
     place = 0
     while match := _TOKEN.match(text, place):
         place = match.end()

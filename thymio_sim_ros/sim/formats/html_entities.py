@@ -13,7 +13,7 @@ _REFERENCE = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|&([A-Za-z
 
 
 def without_html_entities(text: str) -> str:
-    """Return XML with each named character of HTML by its number; comments and CDATA stay as they are.
+    """XML with each named character of HTML by its number; comments and CDATA stay as they are.
 
     Nothing is declared and nothing expanded more than once, so the text grows by a small factor at most.
     """

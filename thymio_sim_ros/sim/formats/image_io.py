@@ -60,7 +60,7 @@ _PILLOW_ERRORS = (OSError, SyntaxError, ValueError, EOFError, OverflowError, str
 
 @dataclass(slots=True)
 class Budget:
-    """What the images of one playground may still cost together. Invariant: only `decode` reduces it.
+    """The remaining budget of all images of one playground together. Invariant: only `decode` reduces it.
 
     `notes` say what is missing in the images.
     """
@@ -95,12 +95,12 @@ class Pixels:
 
 
 def data_uri(data: bytes, media_type: str) -> str:
-    """Return the content of a file as a data URI."""
+    """The content of a file as a data URI."""
     return f"data:{media_type};base64,{base64.b64encode(data).decode('ascii')}"
 
 
 def decode(uri: str, *, key: str, width_m: float) -> Pixels:
-    """Return the pixels of a data URI; an SVG is drawn with the resolution of the ground for `width_m`.
+    """The pixels of a data URI; an SVG is drawn with the resolution of the ground for `width_m`.
 
     Raises FieldError, with this key, for anything but a PNG, JPEG or SVG image within the limits.
 
@@ -130,7 +130,7 @@ def decode(uri: str, *, key: str, width_m: float) -> Pixels:
 
 
 def css_color(value: object, *, key: str) -> str:
-    """Return '#rrggbb' for a CSS color or a number 0xrrggbb. Raises FieldError, with this key, for anything else."""
+    """'#rrggbb' for a CSS color or a number 0xrrggbb. Raises FieldError, with this key, for anything else."""
     if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 0xFFFFFF:
         return f"#{value:06x}"
     if isinstance(value, str) and re.fullmatch(r"#[0-9A-Fa-f]{6}", value):
@@ -145,7 +145,7 @@ def css_color(value: object, *, key: str) -> str:
 
 
 def _plain_css(text: str) -> str:
-    """Return a color as Pillow expects it, without opacity: `rgb(1, 2, 3)` for `rgb(1 2 3 / 50%)`."""
+    """A color as Pillow expects it, without opacity: `rgb(1, 2, 3)` for `rgb(1 2 3 / 50%)`."""
     match = re.fullmatch(r"(rgb|hsl)a?\((.*)\)", text.strip(), re.IGNORECASE)
     if match is None:
         return text.strip()
@@ -154,7 +154,7 @@ def _plain_css(text: str) -> str:
 
 
 def encode_png(pixels: Pixels, *, most: int = MAX_SIDE) -> bytes:
-    """Return the pixels as a PNG file, scaled down if a side has more than `most` pixels.
+    """The pixels as a PNG file, scaled down if a side has more than `most` pixels.
 
     Raises FieldError if Pillow is missing.
     """
@@ -204,7 +204,7 @@ def _check_scans(data: bytes, key: str) -> None:
 
 
 def _rgba(image: Any, image_module: ModuleType) -> Pixels:
-    """Return the pixels of a Pillow image, converted in bands of rows: Pillow itself needs three times the memory."""
+    """The pixels of a Pillow image, converted in bands of rows: Pillow itself needs three times the memory."""
     columns, rows = image.size
     rgba = io.BytesIO()
     height = max(1, _BAND_PIXELS // columns)

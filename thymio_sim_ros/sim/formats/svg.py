@@ -102,7 +102,7 @@ class Drawing:
 
 
 def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> Drawing:
-    """Return an SVG as resvg draws it, with the resolution of the ground for `width_m`.
+    """An SVG as resvg draws it, with the resolution of the ground for `width_m`.
 
     Raises FieldError, with this key, for an SVG that is rejected or cannot be drawn within `seconds`.
     """
@@ -126,10 +126,10 @@ def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> Drawing:
     except ValueError as error:
         raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a complete SVG") from error
     try:
-        png, taken = svg_process.draw(text, resvg, seconds=seconds)
+        png, seconds_used = svg_process.draw(text, resvg, seconds=seconds)
     except DrawError as error:
         raise FieldError(key, error.found, error.expected) from error
-    return Drawing(png, taken, pruned.notes())
+    return Drawing(png, seconds_used, pruned.notes())
 
 
 class _Pruned:
@@ -146,7 +146,7 @@ class _Pruned:
         self._sheet = Sheet()
         self._cut: list[Element] = []
         self._lines: dict[tuple[str, str], list[int]] = {}
-        """What was found and what was expected → the lines."""
+        """Lines of each remark; the key is the pair of found and expected text."""
         self.references: dict[int, list[str]] = {}
         for element in root.walk():
             if element.tag == "style":
@@ -154,14 +154,14 @@ class _Pruned:
         self._prune(root)
 
     def by_id(self) -> dict[str, list[Element]]:
-        """Return what is drawn by its id."""
+        """The drawn elements by id."""
         found: dict[str, list[Element]] = {}
         for element in self._root.walk():
             found.setdefault(element.attributes.get("id", ""), []).append(element)
         return found
 
     def cut(self, data: bytes) -> bytes:
-        """Return the text in UTF-8 without the skipped elements."""
+        """The text in UTF-8 without the skipped elements."""
         pieces, begin = [], 0
         for element in self._cut:
             pieces.append(data[begin : element.offset])
@@ -169,7 +169,7 @@ class _Pruned:
         return b"".join((*pieces, data[begin:]))
 
     def notes(self) -> tuple[str, ...]:
-        """Return what is missing in the drawing, one note for each kind."""
+        """Notes on the parts that the drawing lacks, one for each kind."""
         return tuple(self._note(*kind, lines) for kind, lines in self._lines.items())
 
     def _note(self, found: str, expected: str, lines: list[int]) -> str:
@@ -204,7 +204,7 @@ class _Pruned:
             element.children = [child for child in element.children if child.tag]
 
     def _is_skipped(self, element: Element, path: css.Path) -> bool:
-        """Return whether an element is not drawn; if something would be missing, there is a note."""
+        """Whether an element is not drawn; if something would be missing, there is a note."""
         if element.tag in _DEFINITIONS:
             return True
         if element.tag in _SKIPPED:
@@ -232,7 +232,7 @@ class _Pruned:
         return False
 
     def _effects(self, element: Element, styles: Sequence[Style]) -> Iterator[tuple[str, str]]:
-        """Iterate over name and text of each property of `_EFFECTS` that an element may have."""
+        """Name and text of each property of `_EFFECTS` that an element may have."""
         for name, value in element.attributes.items():
             if name in _EFFECTS and value.strip().lower() not in _WITHOUT_EFFECT:
                 yield name, f'{name}="{value[:40]}"'
@@ -269,7 +269,7 @@ class _Styles:
         return found
 
     def urls(self, element: Element) -> Iterator[str]:
-        """Iterate over the targets of every `url(…)` in the attributes of an element."""
+        """The targets of every `url(…)` in the attributes of an element."""
         for name, value in element.attributes.items():
             if name == "style" or "\\" in value or "url" in value.lower():
                 yield from self.parse(value).urls
@@ -283,7 +283,7 @@ def _weigh(
     key: str,
     above: int = 0,
 ) -> _Weight:
-    """Return the cost of drawing an element with everything that it references.
+    """The cost of drawing an element with everything that it references.
 
     An element is drawn anew for each reference to it, and nested elements are in memory at the same time, so both the
     number and the depth could grow exponentially. Weights are computed once per element (`known`); an element that is
@@ -297,7 +297,7 @@ def _weigh(
         named = [other for name in references[id(element)] if name for other in by_id.get(name, ())]
         inner = [_weigh(other, by_id, references, known, key, above + 1) for other in (*element.children, *named)]
         weight = known[id(element)] = _Weight(
-            1 + sum(one.parts for one in inner), 1 + max((one.depth for one in inner), default=0)
+            1 + sum(below.parts for below in inner), 1 + max((below.depth for below in inner), default=0)
         )
     if weight.parts > MAX_PARTS:
         raise FieldError(key, f"more than {MAX_PARTS} elements to draw", "a simpler image")
@@ -307,12 +307,12 @@ def _weigh(
 
 
 def _targets(element: Element) -> list[str]:
-    """Return the references of an element; if it has both attributes, renderers differ in which one they use."""
+    """The references of an element; if it has both attributes, renderers differ in which one they use."""
     return [element.attributes[key] for key in _HREFS if key in element.attributes]
 
 
 def _size(root: Element, key: str) -> tuple[float, float]:
-    """Return width and height in px; from the view box if they are not given in absolute units."""
+    """Width and height in px; from the view box if they are not given in absolute units."""
     width, height = (_pixels(root.attributes.get(side, "")) for side in ("width", "height"))
     box = re.split(r"[\s,]+", root.attributes.get("viewBox", "").strip())
     across, down = map(_pixels, box[2:]) if len(box) == 4 else (math.nan, math.nan)
@@ -330,7 +330,7 @@ def _size(root: Element, key: str) -> tuple[float, float]:
 
 
 def _pixels(length: str) -> float:
-    """Return an absolute length in px; NaN for anything else."""
+    """An absolute length in px; NaN for anything else."""
     match = _LENGTH.fullmatch(length)
     try:
         return math.nan if match is None else float(match[1]) * CSS_DPI * _INCHES[(match[2] or "px").lower()]
@@ -339,7 +339,7 @@ def _pixels(length: str) -> float:
 
 
 def _resized(data: bytes, root: Element, size: tuple[float, float], columns: int, rows: int) -> str:
-    """Return the SVG with its size set to this number of pixels: resvg rounds a size up before it scales."""
+    """The SVG with its size set to this number of pixels: resvg rounds a size up before it scales."""
     match = _ROOT.match(data, root.offset)
     if match is None:
         raise ValueError("its root element was not found")

@@ -44,7 +44,7 @@ class DrawError(ThymioSimError):
 
 
 def draw(text: str, resvg: ModuleType, *, seconds: float) -> tuple[bytes, float]:
-    """Return the PNG of an SVG, and the processor time it took. Raises DrawError if that is more than `seconds`."""
+    """The PNG of an SVG, and the processor time it took. Raises DrawError if that is more than `seconds`."""
     too_long = DrawError(
         f"SVG images that take longer than {MAX_SECONDS:g} s to draw", "simpler SVG images, or PNG images"
     )
@@ -97,7 +97,7 @@ def _folder(resvg: ModuleType) -> str:
 
 
 def _apart() -> dict[str, Any]:
-    """Return the options for a process that does not get Ctrl-C of the terminal and opens no window."""
+    """The options for a process that does not get Ctrl-C of the terminal and opens no window."""
     if sys.platform == "win32":
         return {"creationflags": subprocess.CREATE_NO_WINDOW | subprocess.CREATE_NEW_PROCESS_GROUP}
     return {"start_new_session": True}

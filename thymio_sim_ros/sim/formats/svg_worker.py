@@ -14,7 +14,7 @@ __all__ = ["CSS_DPI", "REFUSED"]
 
 REFUSED = 3
 CSS_DPI = 96.0
-"""What a millimeter in an SVG is in pixels; only proportions matter here."""
+"""Resolution that defines a millimeter in an SVG; only proportions matter here."""
 
 
 def _limit(memory: int, seconds: int) -> None:

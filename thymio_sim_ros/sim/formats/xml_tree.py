@@ -73,7 +73,7 @@ class Element:
     text: str = ""
 
     def walk(self) -> Iterator[Element]:
-        """Iterate over this element and everything below it, in the order of the text."""
+        """This element and everything below it, in the order of the text."""
         waiting = [self]
         while waiting:
             element = waiting.pop()
@@ -82,7 +82,7 @@ class Element:
 
 
 def text_of(data: bytes) -> tuple[str, str | None]:
-    """Return the text of an XML file without byte order mark, and the encoding that it should have and has not.
+    """The text of an XML file without byte order mark, and the encoding that it should have and has not.
 
     Entities that stand for plain text are replaced; lines stay where they are.
 
@@ -97,7 +97,7 @@ def text_of(data: bytes) -> tuple[str, str | None]:
 
 
 def _with_plain_entities(text: str) -> str:
-    """Return the text without such entities and their declarations; others stay, and are rejected by `parse`."""
+    """The text without such entities and their declarations; others stay, and are rejected by `parse`."""
     declared = _DECLARATIONS.search(text)
     if declared is None:
         return text
@@ -114,7 +114,7 @@ def _with_plain_entities(text: str) -> str:
 
 
 def parse(data: bytes | str) -> Element:
-    """Return the root of a document. Raises XmlError for text that is not XML, declares entities, or is too large."""
+    """The root of a document. Raises XmlError for text that is not XML, declares entities, or is too large."""
     return _Builder(_with_plain_entities(data) if isinstance(data, str) else text_of(data)[0]).build()
 
 
@@ -180,7 +180,7 @@ class _Builder:
 
 
 def _attribute(key: str) -> str | None:
-    """Return the name of an attribute in `Element.attributes`; None for one that is ignored."""
+    """The name of an attribute in `Element.attributes`; None for one that is ignored."""
     if _SPACE not in key:
         return key
     return f"svg:{key.removeprefix(_SVG)}" if key.startswith(_SVG) else _KNOWN.get(key)

@@ -28,7 +28,7 @@ Area = tuple[int, int, int, int]
 
 
 def area_of(mark: Floor | Mark, pixel_m: float, origin: tuple[int, int], shape: tuple[int, int]) -> Area:
-    """Return the pixels of the bounding box of a mark, clipped to a ground of `shape` rows and columns.
+    """The pixels of the bounding box of a mark, clipped to a ground of `shape` rows and columns.
 
     `origin` are column and row of its first pixel. The area is empty if they do not overlap.
     """
@@ -42,7 +42,7 @@ def area_of(mark: Floor | Mark, pixel_m: float, origin: tuple[int, int], shape: 
 def bands(
     printed: Print, pixel_m: float, origin: tuple[int, int], shape: tuple[int, int]
 ) -> Iterator[tuple[Area, _Words]]:
-    """Iterate over a print band by band from below: its area, and its colors there, shape (rows, columns).
+    """A print band by band from below: area of the band, and its colors, shape (rows, columns).
 
     A color is the number 0xaabbggrr: opacity, blue, green, red; it is 0 outside of the print. A print finer than the
     ground is averaged over whole blocks first.
@@ -79,7 +79,7 @@ def bands(
 
 
 def laid_on(words: _Words, under: npt.NDArray[np.uint16], palette: npt.NDArray[np.float64]) -> _Codes:
-    """Return the colors 0xrrggbb that pixels of a print have on the ground, shape (pixels,).
+    """The colors 0xrrggbb that pixels of a print have on the ground, shape (pixels,).
 
     Args:
         words: colors 0xaabbggrr of the print, none fully transparent, shape (pixels,).
@@ -143,7 +143,7 @@ def few_colors(codes: Sequence[_Codes], most: int) -> tuple[_Bytes, npt.NDArray[
 
 
 def _blocks(source: _Bytes, across: int, down: int) -> _Bytes:
-    """Return the means over blocks of pixels, weighted by opacity; the last blocks may be smaller."""
+    """The means over blocks of pixels, weighted by opacity; the last blocks may be smaller."""
     if across == down == 1:
         return source
     rows, columns = math.ceil(source.shape[0] / down), math.ceil(source.shape[1] / across)

@@ -1,4 +1,4 @@
-"""Where there is floor, and the distance to its edge.
+"""The area of the floors, and the distance to its edge.
 
 A playground without any floor has no edges: its ground is infinite, though the ground sensors do not see it.
 """

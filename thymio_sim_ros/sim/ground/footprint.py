@@ -46,7 +46,7 @@ _ALL = 1.0 - 1e-9
 
 
 class Spots(Record):
-    """Where footprints are, and what they see."""
+    """Positions and samples of footprints."""
 
     x: Floats
     """Position in the world's frame, m."""
@@ -86,14 +86,14 @@ class Grid(Record):
 
 @kernel
 def _pixel(cell: int, offset: float, pixel_m: float, origin: int, size: int) -> int:
-    """Return the pixel at an offset from the middle of a cell, clamped to one pixel around the raster."""
+    """The pixel at an offset from the middle of a cell, clamped to one pixel around the raster."""
     found = math.floor(((cell + 0.5) * (pixel_m / CELLS_PER_PIXEL) + offset) / pixel_m) - origin
     return -1 if found < -1 else size if found > size else found
 
 
 @kernel
 def _color(grid: Grid, pixels: Words, row: int, column: int) -> int:
-    """Return the color number of a pixel; 0, no floor, outside the raster."""
+    """The color number of a pixel; 0, no floor, outside the raster."""
     if 0 <= row < grid.rows[0] and 0 <= column < grid.columns[0]:
         color: int = pixels[row * grid.columns[0] + column]
         return color
@@ -102,7 +102,7 @@ def _color(grid: Grid, pixels: Words, row: int, column: int) -> int:
 
 @kernel
 def _examine(grid: Grid, taps: Taps, pixels: Words, tile_x: int, tile_y: int) -> int:
-    """Return the only color that a tile sees, or MIXED."""
+    """The only color that a tile sees, or MIXED."""
     first = taps.offset[0]
     last = taps.offset[_TAPS - 1]
     pixel_m = grid.pixel[0]

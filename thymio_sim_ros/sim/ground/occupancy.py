@@ -34,7 +34,7 @@ class Grid:
 
 
 def grid(floors: Sequence[Floor], solids: Sequence[Solid]) -> Grid:
-    """Return the grid of floors and solids; a cell is occupied if its center is. Empty if there are neither."""
+    """The grid of floors and solids; a cell is occupied if its center is. Empty if there are neither."""
     corners = list(_corners(floors, solids))
     if not corners:
         return Grid((0.0, 0.0), CELL_M, 0, 0, ())
@@ -67,7 +67,7 @@ def _corners(floors: Iterable[Floor], solids: Iterable[Solid]) -> Iterator[Point
 
 
 def _inside(x: Values, y: Values, vertices: Sequence[Point]) -> Cells:
-    """Return which points lie in a convex counter-clockwise polygon, shape (rows, columns): left of every side."""
+    """Mask of the points in a convex counter-clockwise polygon, left of every side, shape (rows, columns)."""
     inside: Cells = np.ones((len(y), len(x)), dtype=bool)
     for (ax, ay), (bx, by) in zip(vertices, (*vertices[1:], vertices[0]), strict=True):
         inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= -1e-9

@@ -32,7 +32,7 @@ _ROW_COST, _PRINT_COST = 2000, 20
 
 
 def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
-    """Return the cost of rasterizing a ground, in pixels of paint; each takes about a nanosecond."""
+    """The cost of rasterizing a ground, in pixels of paint; each takes about a nanosecond."""
     pixel_m, origin, shape = grid_of(floors)
     found = 0
     for mark in (*floors, *paints):
@@ -43,7 +43,7 @@ def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
 
 
 def grid_of(floors: Sequence[Floor]) -> tuple[float, tuple[int, int], tuple[int, int]]:
-    """Return the size of a pixel in m, column and row of the first pixel, and number of rows and columns."""
+    """The size of a pixel in m, column and row of the first pixel, and number of rows and columns."""
     corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
     low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
     high_x, high_y = (max(corner[axis] for corner in corners) for axis in (0, 1))
@@ -91,7 +91,7 @@ class Picture:
         """The pixels before anything was drawn; None while nothing is."""
 
     def color_at(self, x_m: float, y_m: float) -> Color | None:
-        """Return the color at a point, or None where there is no floor."""
+        """The color at a point, or None where there is no floor."""
         column = math.floor(x_m / self.pixel_m) - self.origin[0]
         row = math.floor(y_m / self.pixel_m) - self.origin[1]
         height, width = self.pixels.shape
@@ -195,7 +195,7 @@ class Picture:
             under[here] = numbers[table[code]]
 
     def _number(self, color: Color) -> int:
-        """Return the number of a color; if there are too many colors, that of the color with the nearest gray."""
+        """The number of a color; if there are too many colors, that of the color with the nearest gray."""
         known = self._numbers.get(color)
         if known is not None:
             return known

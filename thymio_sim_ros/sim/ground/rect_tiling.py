@@ -29,7 +29,7 @@ class Tile:
 
 
 def mosaic(pixels: Pixels, *, most: int = _MOST_TILES) -> list[Tile]:
-    """Return at most `most` tiles (clamped to 1…4000): runs of equal color in as many rows as that allows."""
+    """At most `most` tiles (clamped to 1…4000): runs of equal color in as many rows as that allows."""
     most = max(1, min(most, _MOST_TILES))
     image = np.frombuffer(pixels.rgba, dtype=np.uint8).reshape(pixels.rows, pixels.columns, 4)
     finest = _FINEST

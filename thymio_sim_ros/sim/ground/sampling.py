@@ -37,7 +37,7 @@ Values = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class GroundSample:
-    """What a footprint sees: mean reflectance 0…1 of the floor in it, and which part of it is floor, 0…1."""
+    """The ground in a footprint: mean reflectance 0…1 of its floor, and the fraction of it that is floor, 0…1."""
 
     reflectance: float
     floor: float
@@ -89,7 +89,7 @@ class Ground:
         return self._picture.pixel_m
 
     def sample(self, x_m: float, y_m: float) -> GroundSample:
-        """Return what the footprint of a sensor at this position in the world's frame sees."""
+        """The sample of the footprint of a sensor at this position in the world's frame."""
         spots = self._spots.view
         spots.x[0], spots.y[0], self._count[0] = x_m, y_m, 1
         self._sample()
@@ -109,7 +109,7 @@ class Ground:
             reflectances[part], floors[part] = spots.reflectance[:count], spots.floor[:count]
 
     def color_at(self, x_m: float, y_m: float) -> Color | None:
-        """Return the color at a point, or None where there is no floor."""
+        """The color at a point, or None where there is no floor."""
         return self._picture.color_at(x_m, y_m)
 
     def draw_segment(

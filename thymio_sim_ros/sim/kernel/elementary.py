@@ -67,7 +67,7 @@ def _cos_near_0(r: float) -> float:
 
 @kernel
 def _reduced(x: float, quarters: int) -> float:
-    """What is left of x without so many quarters of a turn."""
+    """The remainder of x without this many quarters of a turn."""
     return ((x - quarters * _QUARTER_1) - quarters * _QUARTER_2) - quarters * _QUARTER_3
 
 

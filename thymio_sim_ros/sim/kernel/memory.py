@@ -79,7 +79,7 @@ class KernelMemory:
         return self._bytes[start:end].view(kind).reshape(shape)
 
     def bind(self, kernel: Kernel, *arguments: Argument) -> Callable[[], Any]:
-        """Return a function that calls a kernel with these numbers, arrays and records, always the same.
+        """A function that calls a kernel with these numbers, arrays and records, always the same.
 
         The arrays must be of this memory. Raises KernelError for arguments that do not fit the parameters.
         """

@@ -17,7 +17,7 @@ __all__ = ["FALL_NS", "Fall"]
 FALL_NS = 200_000_000
 """sqrt(2 h / g) of a height of 0.2 m."""
 _SLANT_RAD = math.radians(50)
-"""How a fallen robot lies."""
+"""Tilt of a fallen robot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,11 @@ class Fall:
     course_rad: float
 
     def is_free(self, now_ns: int) -> bool:
-        """Return whether it is still in the air."""
+        """Whether it is still in the air."""
         return now_ns - self.began_ns < FALL_NS
 
     def tilt(self, now_ns: int) -> Tilt:
-        """Return the tilt: it grows linearly in the air, then stays."""
+        """The tilt: it grows linearly in the air, then stays."""
         slant = _SLANT_RAD * min(1.0, (now_ns - self.began_ns) / FALL_NS)
         if slant == 0.0:
             return LEVEL

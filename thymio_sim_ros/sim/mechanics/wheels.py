@@ -95,5 +95,5 @@ class Wheels:
 
 
 def twist_of(left_m_s: float, right_m_s: float) -> Twist:
-    """Return the velocity of a body whose wheels roll at these speeds (m/s)."""
+    """The velocity of a body whose wheels roll at these speeds (m/s)."""
     return Twist((left_m_s + right_m_s) / 2, (right_m_s - left_m_s) / WHEEL_TRACK_M)

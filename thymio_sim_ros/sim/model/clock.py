@@ -48,7 +48,7 @@ class Schedule:
     def __init__(self, periods_and_phases_ns: Iterable[tuple[int, int]]) -> None:
         cycle: list[set[int]] = [set() for _ in range(_CYCLE_TICKS)]
         self._periods_ns: dict[int, int] = {}
-        """What does not fit into the cycle, by number."""
+        """Periods that do not fit into the cycle, by number."""
         self._next_ns: dict[int, int] = {}
         for number, (period_ns, phase_ns) in enumerate(periods_and_phases_ns):
             first_ns = phase_ns or period_ns
@@ -70,7 +70,7 @@ class Schedule:
             self._selected_cycle = [[number for number in due if number in numbers] for due in self._cycle]
 
     def due(self, now_ns: int) -> Sequence[int]:
-        """Return the numbers of what is due in the tick that ends now, in order."""
+        """The numbers of the items that are due in the tick that ends now, in order."""
         due = self._selected_cycle[now_ns // TICK_NS % _CYCLE_TICKS]
         if now_ns < self._odd_ns:
             return due
@@ -84,7 +84,7 @@ class Schedule:
 
 
 def next_due_ns(period_ns: int, phase_ns: int, now_ns: int) -> int:
-    """Return the time of the first tick after this one in which a `Schedule` has something due."""
+    """The time of the first tick after this one in which a `Schedule` has something due."""
     first_ns = phase_ns or period_ns
     periods = max(0, (now_ns - first_ns) // period_ns + 1)
     return -(-(first_ns + periods * period_ns) // TICK_NS) * TICK_NS
@@ -111,7 +111,7 @@ class Pacer:
         self._window_ticks = 0
 
     def owed(self, monotonic_ns: int) -> int:
-        """Return the number of ticks to do now, given a monotonic wall time in ns."""
+        """The number of ticks to do now, given a monotonic wall time in ns."""
         if self._next_due_ns is None:
             self._next_due_ns = monotonic_ns + self._tick_wall_ns
             self._window_start_ns = monotonic_ns
@@ -129,13 +129,13 @@ class Pacer:
         return self._grant(ticks)
 
     def wait_ns(self, monotonic_ns: int, ticks: int = 1) -> int:
-        """Return the wall time in ns until this number of ticks is due; 0 if they are owed already."""
+        """The wall time in ns until this number of ticks is due; 0 if they are owed already."""
         if self._next_due_ns is None or not self._factor:
             return 0
         return max(0, int(self._next_due_ns + (ticks - 1) * self._tick_wall_ns - monotonic_ns) + 1)
 
     def ticks_until(self, monotonic_ns: int) -> int:
-        """Return the number of ticks, at least one, to the first one that is not due before this wall time."""
+        """The number of ticks, at least one, to the first one that is not due before this wall time."""
         if self._next_due_ns is None or not self._factor:
             return 1
         return max(1, math.ceil((monotonic_ns - self._next_due_ns) / self._tick_wall_ns) + 1)

@@ -1,4 +1,4 @@
-"""What a field of a playground file may hold, and the reading of frozen dataclasses from such data.
+"""Types and limits of fields in playground files, and the reading of frozen dataclasses from such data.
 
 A field is a dataclass field whose type is annotated with a rule (`Annotated[float, Number("m", …)]`).
 Loader, published JSON schema and the forms of the page's creator (`field_declarations.py`) are derived from these
@@ -118,7 +118,7 @@ Coordinate = Annotated[float, Number("m", -FAR_M, FAR_M)]
 Extent = Annotated[float, Number("m", 0.001, FAR_M)]
 PenWidth = Annotated[float, Number("m", 0.001, 0.1)]
 LANGUAGE = "[a-z]{2,3}(-[A-Za-z0-9]{2,8})*"
-"""What a language code looks like: `de`, `pt-BR`."""
+"""The form of a language code: `de`, `pt-BR`."""
 
 Angle = Annotated[float, Number("rad", -2 * math.pi, 2 * math.pi)]
 Radius = Annotated[float, Number("m", 0.0, FAR_M)]
@@ -185,7 +185,7 @@ def image_keys(kind: type[Any]) -> tuple[str, ...]:
 
 
 def nearest(word: str, words: Sequence[str]) -> str:
-    """What is expected in place of a word that is none of some: the nearest first, then all of them."""
+    """The expected words in place of an unknown one: the nearest first, then all of them."""
     near = difflib.get_close_matches(word[:_DESCRIBED], words, 1)
     listed = "one of " + ", ".join(words)
     return f"'{near[0]}' ({listed})" if near else listed

@@ -53,7 +53,7 @@ class Twist:
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """How a body leans: roll is positive with its left side up, pitch with its nose down (REP 103)."""
+    """The tilt of a body: roll is positive with its left side up, pitch with its nose down (REP 103)."""
 
     roll_rad: float
     pitch_rad: float
@@ -63,12 +63,12 @@ LEVEL = Tilt(0.0, 0.0)
 
 
 def wrap_angle(angle_rad: float) -> float:
-    """Return the same direction in [-π, π]."""
+    """The same direction in [-π, π]."""
     return math.remainder(angle_rad, math.tau)
 
 
 def is_convex(vertices: Sequence[Point]) -> bool:
-    """Return whether the vertices go counter-clockwise around a convex area (straight corners are allowed)."""
+    """Whether the vertices go counter-clockwise around a convex area (straight corners are allowed)."""
     area = 0.0
     for index, (x, y) in enumerate(vertices):
         previous_x, previous_y = vertices[index - 1]
@@ -80,12 +80,12 @@ def is_convex(vertices: Sequence[Point]) -> bool:
 
 
 def convex_hulls_overlap(one: Sequence[Point], other: Sequence[Point]) -> bool:
-    """Return whether two convex polygons overlap by more than an edge (separating axis theorem)."""
+    """Whether two convex polygons overlap by more than an edge (separating axis theorem)."""
     return not (_has_separating_edge(one, other) or _has_separating_edge(other, one))
 
 
 def disc_overlaps_hull(center: Point, radius_m: float, hull: Sequence[Point]) -> bool:
-    """Return whether a disc and a convex polygon overlap by more than an edge."""
+    """Whether a disc and a convex polygon overlap by more than an edge."""
     outside = False
     for (ax, ay), (bx, by) in _edges(hull):
         dx, dy = bx - ax, by - ay

@@ -28,7 +28,7 @@ _TURN = math.tau
 
 @kernel
 def _mix(x: int) -> int:
-    """Return a number that looks random for each number of 32 bits; no two give the same."""
+    """A number that looks random for each number of 32 bits; no two give the same."""
     x = x ^ ((x >> 16) & 0xFFFF)
     x = wrap32(x * _FACTOR_1)
     x = x ^ ((x >> 15) & 0x1FFFF)
@@ -38,25 +38,25 @@ def _mix(x: int) -> int:
 
 @kernel
 def uniform(key_1: int, key_2: int, tick: int, number: int) -> float:
-    """Return the uniform random number in (0, 1) with this number in a tick; the keys are those of `noise_keys`."""
+    """The uniform random number in (0, 1) with this number in a tick; the keys are those of `noise_keys`."""
     return (_mix(key_1 ^ _mix(tick ^ _mix(key_2 ^ number))) + _HALF) / _WHOLE
 
 
 @kernel
 def normal(key_1: int, key_2: int, tick: int, number: int) -> float:
-    """Return the normal random number of mean 0 and deviation 1 made of the uniform ones `2 number`, `2 number + 1`."""
+    """The normal random number of mean 0 and deviation 1 made of the uniform ones `2 number`, `2 number + 1`."""
     angle = uniform(key_1, key_2, tick, 2 * number) * _TURN
     return cos(angle) * math.sqrt(-2.0 * log(uniform(key_1, key_2, tick, 2 * number + 1)))
 
 
 def noise_keys(seed: int, robot: str, user: str) -> tuple[int, int]:
-    """Return the two keys of the random numbers of a sensor or actuator on a robot, 32 bits each."""
+    """The two keys of the random numbers of a sensor or actuator on a robot, 32 bits each."""
     digest = hashlib.blake2b(f"{seed}/{robot}/{user}".encode(), digest_size=8).digest()
     return int.from_bytes(digest[:4], "big", signed=True), int.from_bytes(digest[4:], "big", signed=True)
 
 
 def tick_number(now_ns: int) -> int:
-    """Return the number of the tick that ends at a time, with 31 bits."""
+    """The number of the tick that ends at a time, with 31 bits."""
     return now_ns // TICK_NS & 0x7FFFFFFF
 
 
@@ -84,7 +84,7 @@ class Noise:
         """Whether noise is on."""
 
     def gauss(self, sigma: float) -> float:
-        """Return a normal random number with mean 0 and standard deviation `sigma`; exactly 0 if noise is off."""
+        """A normal random number with mean 0 and standard deviation `sigma`; exactly 0 if noise is off."""
         if not self.enabled:
             return 0.0
         number = (self._next_number() + 1) // 2
@@ -92,7 +92,7 @@ class Noise:
         return normal(*self._keys, self._tick, number) * sigma
 
     def uniform(self, low: float, high: float) -> float:
-        """Return a uniform random number in (low, high); the mean of both if noise is off."""
+        """A uniform random number in (low, high); the mean of both if noise is off."""
         if not self.enabled:
             return (low + high) / 2
         number = self._next_number()

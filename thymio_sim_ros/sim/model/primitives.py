@@ -1,4 +1,4 @@
-"""What every shape is made of: solids that stop robots and reflect light, floors, paint and pictures on floors.
+"""The parts of every shape: solids that stop robots and reflect light, floors, paint and pictures on floors.
 
 Shapes give primitives; physics, sensors, scene and editor know nothing else (docs/architecture.md, "Decisions").
 Colors are red, green, blue from 0 to 1.
@@ -94,7 +94,7 @@ Outline = Box | Disc | Polygon
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """What makes a solid movable: its mass, its coefficient of friction on the floor, and how a robot bounces off it.
+    """Properties of a movable solid: mass, coefficient of friction on the floor, restitution when a robot hits it.
 
     `lever_m` is the mean distance from its middle at which the floor holds it when it turns. `restitution` is the part
     of the speed that is left after robot and thing have met, 0…1.
@@ -108,7 +108,7 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Slide:
-    """What makes a solid a door: where it is when open, and how long it takes to get there."""
+    """Properties of a door: its position when open, and the time that opening takes."""
 
     opened: Pose
     duration_s: float
@@ -140,7 +140,7 @@ class Solid:
         return () if isinstance(self.outline, Disc) else self.pose.place_all(self.outline.vertices)
 
     def at(self, pose: Pose) -> Solid:
-        """Return the same solid at another pose."""
+        """The same solid at another pose."""
         return replace(self, pose=pose)
 
 
@@ -153,7 +153,7 @@ class Floor:
     color: Color
 
     def holds(self, point: Point) -> bool:
-        """Return whether a point lies on it, edges included."""
+        """Whether a point lies on it, edges included."""
         x, y = point
         return all(
             (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= -1e-9
@@ -193,7 +193,7 @@ class Print:
 
 
 Mark = Paint | Print
-"""What lies on floors and makes them dark or bright."""
+"""A primitive that lies on floors and makes them dark or bright."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +225,7 @@ class Trigger:
         return max(math.dist(self.middle, vertex) for vertex in self.vertices)
 
     def holds(self, x_m: float, y_m: float) -> bool:
-        """Return whether a point lies inside, by the even-odd rule."""
+        """Whether a point lies inside, by the even-odd rule."""
         inside = False
         for index, (bx, by) in enumerate(self.vertices):
             ax, ay = self.vertices[index - 1]
@@ -235,6 +235,6 @@ class Trigger:
 
 
 Drawable = Solid | Floor | Paint | Print
-"""What one can see."""
+"""A visible primitive."""
 
 Primitive = Drawable | Trigger

@@ -61,7 +61,7 @@ class MotorReading:
 
 @dataclass(frozen=True, slots=True)
 class PoseReading:
-    """Where the robot is: wheel odometry since the start, and the truth; twists in the body's frame.
+    """The pose of the robot: wheel odometry since the start, and the truth; twists in the body's frame.
 
     `tilt` is how it leans, `height_m` how high an operator holds it.
     """
@@ -87,7 +87,7 @@ class LedReading:
 
 @dataclass(frozen=True, slots=True)
 class LoudspeakerReading:
-    """What the loudspeaker says from `began_ns` on; sent on change.
+    """The sound of the loudspeaker from `began_ns` on; sent on change.
 
     A tone of `frequency_hz` made of `wave`, for `duration_ns` (None: until stopped); or `samples`, unsigned 8 bit at
     7812.5 Hz, with frequency 0; or silence, with neither. Samples lose `shift` bits: 0 is loudest, 8 is off.

@@ -10,7 +10,7 @@ HULL_RADIUS_M = 0.080
 HULL_WIDTH_M = 0.110
 """Width of the collision outline (section 1.1)."""
 HULL_REAR_X_M = -0.030
-"""Where the straight rear is (section 1.1)."""
+"""Position of the straight rear (section 1.1)."""
 HULL_HEIGHT_M = 0.051
 """Height of the collision outline, which other robots see (sections 1 and 1.1)."""
 BODY_HEIGHT_M = 0.053
@@ -87,7 +87,7 @@ Own choice."""
 
 
 def hull() -> tuple[tuple[float, float], ...]:
-    """Return the collision outline in m, counter-clockwise from the front right (section 1.1)."""
+    """The collision outline in m, counter-clockwise from the front right (section 1.1)."""
     corner = math.asin(HULL_WIDTH_M / 2 / HULL_RADIUS_M)
     front = tuple(
         (HULL_RADIUS_M * math.cos(angle), HULL_RADIUS_M * math.sin(angle))

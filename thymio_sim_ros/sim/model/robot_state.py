@@ -35,7 +35,7 @@ class RobotState(Record):
     odometry_y: Floats
     odometry_yaw: Floats
     safe_x: Floats
-    """Where the distance to the edge of the floor was computed last, m."""
+    """Position at which the distance to the edge of the floor was computed last, m."""
     safe_y: Floats
     safe_m: Floats
     """A lower bound of that distance; 0: it has to be computed."""

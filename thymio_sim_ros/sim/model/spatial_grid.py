@@ -21,7 +21,7 @@ Cell = tuple[int, int]
 
 
 def cell_of(x_m: float, y_m: float) -> Cell:
-    """Return the cell that contains a point."""
+    """The cell that contains a point."""
     return math.floor(x_m / CELL_SIDE_M), math.floor(y_m / CELL_SIDE_M)
 
 
@@ -42,7 +42,7 @@ class SpatialGrid(Generic[T]):
             self._cells.setdefault(cell, []).append(thing)
 
     def near(self, bounds: Bounds) -> Iterator[T]:
-        """Return the items that may overlap these bounds, each once; their order depends only on the order of calls."""
+        """The items that may overlap these bounds, each once; their order depends only on the order of calls."""
         columns, rows = _touched(bounds)
         found = dict.fromkeys(self._everywhere)
         wanted = self._cells if len(columns) * len(rows) > len(self._cells) else product(columns, rows)
@@ -52,7 +52,7 @@ class SpatialGrid(Generic[T]):
 
 
 def _touched(bounds: Bounds) -> tuple[range, range]:
-    """Return the columns and rows of the cells that bounds touch."""
+    """The columns and rows of the cells that bounds touch."""
     left, bottom = cell_of(bounds[0], bounds[1])
     right, top = cell_of(bounds[2], bounds[3])
     return range(left, right + 1), range(bottom, top + 1)

@@ -41,12 +41,12 @@ _GROUND_MIDDLE = 0.44
 
 @kernel
 def speed_to_units(speed_m_s: float) -> int:
-    """Return the ground speed of a wheel in m/s as motor.*.speed, truncated as in the reference."""
+    """The ground speed of a wheel in m/s as motor.*.speed, truncated as in the reference."""
     return int(speed_m_s * _UNITS_PER_M_S)
 
 
 def units_to_speed(target: int) -> float:
-    """Return motor.*.target as ground speed in m/s; the wheels are limited, not the target.
+    """motor.*.target as ground speed in m/s; the wheels are limited, not the target.
 
     Source: docs/spec/thymio-robot.md section 2.
     """
@@ -55,14 +55,14 @@ def units_to_speed(target: int) -> float:
 
 @kernel
 def units_to_pwm(speed: int) -> int:
-    """Return motor.*.pwm for a speed in Thymio units."""
+    """motor.*.pwm for a speed in Thymio units."""
     pwm = int(PWM_PER_SPEED_UNIT * speed)
     return pwm if -PWM_LIMIT <= pwm <= PWM_LIMIT else PWM_LIMIT if pwm > 0 else -PWM_LIMIT
 
 
 @kernel
 def proximity_response(distance_m: float) -> float:
-    """Return the response F of one ray to an obstacle at a distance in m; 0 beyond the range.
+    """The response F of one ray to an obstacle at a distance in m; 0 beyond the range.
 
     F(x) = m (c - x0²) / (x² - 2 x0 x + c) with m = 4505, x0 = 0.3 mm, c = 73 cm²; F = m below x0.
     """
@@ -74,7 +74,7 @@ def proximity_response(distance_m: float) -> float:
 
 
 def proximity_distance(count: float) -> float:
-    """Return the distance in m of a wall across the axis that gives this count above 0; at most the range."""
+    """The distance in m of a wall across the axis that gives this count above 0; at most the range."""
     if count >= PROXIMITY_FULL:
         return 0.0
     square = _PROXIMITY_X0_M**2 - _PROXIMITY_C_M2 + _PROXIMITY_SCALE / count
@@ -83,12 +83,12 @@ def proximity_distance(count: float) -> float:
 
 @kernel
 def ground_response(reflectance: float) -> float:
-    """Return the count of a ground sensor over a gray 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
+    """The count of a ground sensor over a gray 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
     return _GROUND_BLACK + _GROUND_SPAN / (1.0 + exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
 
 
 def ground_reflectance(count: float) -> float:
-    """Return the gray 0…1 over which a ground sensor gives a count."""
+    """The gray 0…1 over which a ground sensor gives a count."""
     above = count - _GROUND_BLACK
     if not 0.0 < above < _GROUND_SPAN:
         return 0.0 if above <= 0.0 else 1.0
@@ -97,31 +97,31 @@ def ground_reflectance(count: float) -> float:
 
 @kernel
 def acceleration_to_units(acceleration_m_s2: float) -> int:
-    """Return one axis of acc for m/s²: 23 for each g, within ±32 (section 7.3)."""
+    """One axis of acc for m/s²: 23 for each g, within ±32 (section 7.3)."""
     return round(min(max(acceleration_m_s2 * (ACC_PER_G / GRAVITY_M_S2), -ACC_LIMIT), ACC_LIMIT))
 
 
 def units_to_acceleration(count: int) -> float:
-    """Return one axis of acc in m/s²."""
+    """One axis of acc in m/s²."""
     return count * (GRAVITY_M_S2 / ACC_PER_G)
 
 
 def celsius_to_units(celsius: float) -> int:
-    """Return temperature for °C: tenths of a degree (section 7.4)."""
+    """Temperature for °C: tenths of a degree (section 7.4)."""
     return round(10.0 * celsius)
 
 
 def volts_to_units(volts: float) -> int:
-    """Return each word of _vbat for V: their sum times 1000/3978 is hundredths of a volt (section 7.4)."""
+    """Each word of _vbat for V: their sum times 1000/3978 is hundredths of a volt (section 7.4)."""
     return round(volts * 100.0 * 3978.0 / 1000.0 / 2.0)
 
 
 def units_to_volts(total: int) -> float:
-    """Return the voltage in V for the sum of both words of _vbat."""
+    """The voltage in V for the sum of both words of _vbat."""
     return total * 1000.0 / 3978.0 / 100.0
 
 
 def saturate_led(word: int) -> int:
-    """Return the brightness 0…32 of an Aseba word: its low byte, of which 32 or more is full (section 8.1)."""
+    """The brightness 0…32 of an Aseba word: its low byte, of which 32 or more is full (section 8.1)."""
     level = word & 0xFF
     return level if level < LED_FULL else LED_FULL

@@ -47,7 +47,7 @@ def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:
 
 
 def off_floor(robots: tuple[RobotStart, ...], solids: Iterable[Solid], floors: tuple[Floor, ...]) -> list[str]:
-    """Return notes on robots and objects that start beside the floor: allowed, as they can be moved, but hardly meant.
+    """Notes on robots and objects that start beside the floor: allowed, as they can be moved, but hardly meant.
 
     Without any ground there is no edge either, and nothing falls (sim/ground/floor_support.py).
     """

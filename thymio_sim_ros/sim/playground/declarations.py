@@ -1,4 +1,4 @@
-"""What the page has to know of playground files: the fields of shapes and robots with their limits, as JSON.
+"""Declarations of playground files for the page: the fields of shapes and robots with their limits, as JSON.
 
 `python -m thymio_sim_ros.sim.playground.declarations` prints the declarations of this package's shapes: the content of
 `web_ui/playground/declarations.json`, which the page uses without a server. The page's server hands out those of all

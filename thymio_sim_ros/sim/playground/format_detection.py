@@ -91,7 +91,7 @@ class Source:
 
 
 def read_source(data: bytes, name: str, beside: Beside, part: str = "") -> Source:
-    """Return the playground in the bytes of a file; `name` is its title if it has none.
+    """The playground in the bytes of a file; `name` is its title if it has none.
 
     `part` names a playground of an archive with several, whose name is the title then.
 
@@ -121,7 +121,7 @@ def read_source(data: bytes, name: str, beside: Beside, part: str = "") -> Sourc
 
 
 def is_recognized(data: bytes) -> bool:
-    """Return whether a rejected file looks like a playground, so that an error may quote from it. Never raises."""
+    """Whether a rejected file looks like a playground, so that an error may quote from it. Never raises."""
     if data.startswith(_ZIP):
         try:
             archive, names = _opened(data)
@@ -137,7 +137,7 @@ def nothing_beside(name: str) -> bytes:
 
 
 def folder(path: Path) -> Beside:
-    """Return a function that reads files of a folder and its subfolders, and raises FieldError for any other."""
+    """A function that reads files of a folder and its subfolders, and raises FieldError for any other."""
 
     def read_file(name: str) -> bytes:
         try:
@@ -166,7 +166,7 @@ def unpacked_svg(data: bytes) -> bytes:
 
 
 def _without_mark(data: bytes) -> bytes:
-    """Return a text without byte order mark; one in UTF-16, as some editors save it, in UTF-8."""
+    """A text without byte order mark; one in UTF-16, as some editors save it, in UTF-8."""
     if data.startswith(_UTF_16):
         big = data.startswith((codecs.BOM_UTF16_BE, b"\0<"))
         data = data.decode("utf-16-be" if big else "utf-16-le", "replace").encode("utf-8", "replace")
@@ -185,7 +185,7 @@ def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
 
 
 def _opened(data: bytes) -> tuple[zipfile.ZipFile, list[str]]:
-    """Return an archive and the names of its files that may be playgrounds."""
+    """An archive and the names of its files that may be playgrounds."""
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
     except _CANNOT_UNPACK as error:
@@ -202,7 +202,7 @@ def _has_marks(archive: zipfile.ZipFile, name: str) -> bool:
 
 
 def _chosen(archive: zipfile.ZipFile, names: list[str], part: str) -> str:
-    """Return the playground of an archive that `part` names, by its path, its name, or its name without ending."""
+    """The playground of an archive that `part` names, by its path, its name, or its name without ending."""
     playgrounds = [name for name in names if PurePosixPath(name).name == "world.xml"] or names
     if part or len(playgrounds) > 1:
         playgrounds = [name for name in names if _has_marks(archive, name)] or names
@@ -222,7 +222,7 @@ def _chosen(archive: zipfile.ZipFile, names: list[str], part: str) -> str:
 
 
 def _unzip(data: bytes, part: str) -> tuple[bytes, Beside]:
-    """Return the file of a playground in an archive, and a function that reads the files beside it."""
+    """The file of a playground in an archive, and a function that reads the files beside it."""
     archive, playgrounds = _opened(data)
     names = {entry.filename for entry in archive.infolist()}
     inner = _chosen(archive, playgrounds, part)
@@ -242,7 +242,7 @@ def _unzip(data: bytes, part: str) -> tuple[bytes, Beside]:
 
 
 def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
-    """Return the first bytes of an entry; no more are decompressed, whatever size the archive declares."""
+    """The first bytes of an entry; no more are decompressed, whatever size the archive declares."""
     try:
         with archive.open(name) as file:
             return file.read(most)
@@ -298,7 +298,7 @@ class _TwiceError(ThymioSimError):
 
 
 def _second(text: str) -> tuple[int, str]:
-    """Return offset and name of the first duplicate key; there is one."""
+    """Offset and name of the first duplicate key; there is one."""
     keys: list[set[str]] = []
     for token in _PARTS.finditer(text):
         match token.group():

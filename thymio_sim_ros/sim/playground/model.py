@@ -1,4 +1,4 @@
-"""What a playground is once it has been read: frozen values, and the error of one that is refused."""
+"""A playground that has been read, as frozen values, and the error of one that is rejected."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Translation:
 
 @dataclass(frozen=True, slots=True)
 class Headline:
-    """What a list of playgrounds shows; translations by language code."""
+    """The entry of a playground in a list; translations by language code."""
 
     title: str
     description: str
@@ -95,4 +95,4 @@ class Playground:
     """By language code, in the order of the file; `title` and `description` are English."""
     triggers: tuple[Trigger, ...] = ()
     notes: tuple[str, ...] = ()
-    """What a person should know: what a converted file cannot express, what looks like a mistake."""
+    """Remarks for the user: parts that a converted file cannot express, probable mistakes."""

@@ -41,7 +41,7 @@ class Footprint:
         return x - radius, y - radius, x + radius, y + radius
 
     def overlaps(self, other: Footprint) -> bool:
-        """Return whether both overlap by more than an edge."""
+        """Whether both overlap by more than an edge."""
         if math.dist(self.middle, other.middle) >= self.radius_m + other.radius_m:
             return False
         if not self.vertices:
@@ -52,13 +52,13 @@ class Footprint:
 
 
 def footprint_of(solid: Solid) -> Footprint:
-    """Return the footprint of a solid at its pose."""
+    """The footprint of a solid at its pose."""
     vertices = () if isinstance(solid.outline, Disc) else solid.vertices
     return Footprint(solid.name, (solid.pose.x_m, solid.pose.y_m), solid.outline.reach_m, vertices)
 
 
 def footprint_of_robot(name: str, pose: Pose) -> Footprint:
-    """Return the footprint of a robot at a pose."""
+    """The footprint of a robot at a pose."""
     return Footprint(name, (pose.x_m, pose.y_m), robot_constants.HULL_RADIUS_M, pose.place_all(_HULL))
 
 
@@ -75,5 +75,5 @@ class Occupied:
         self._squares.add(footprint, footprint.bounds)
 
     def blocker(self, footprint: Footprint) -> str | None:
-        """Return the name of a footprint that overlaps this one; None if there is none."""
+        """The name of a footprint that overlaps this one; None if there is none."""
         return next((there.name for there in self._squares.near(footprint.bounds) if there.overlaps(footprint)), None)

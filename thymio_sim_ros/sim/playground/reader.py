@@ -82,7 +82,7 @@ def load(path: str | Path, part: str = "") -> Playground:
 
 
 def headline(path: Path) -> Headline:
-    """Return title and description of a file without building the playground. Raises PlaygroundError."""
+    """Title and description of a file without building the playground. Raises PlaygroundError."""
     try:
         found = format_detection.read_source(_content(path), path.stem, format_detection.folder(path.parent))
         members = _members(found.data)
@@ -106,7 +106,7 @@ def loads(text: str | bytes, name: str, part: str = "") -> Playground:
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON schema of playground files, derived from the shapes; `description` states units."""
+    """The JSON schema of playground files, derived from the shapes; `description` states units."""
     kinds = all_shapes()
     name = json_schema(RobotStart)["properties"]["name"]
     shapes = []
@@ -138,7 +138,7 @@ def _content(path: Path) -> bytes:
 
 
 def _members(data: object) -> dict[str, object]:
-    """Return the members of a playground without the version, which must be FORMAT."""
+    """The members of a playground without the version, which must be FORMAT."""
     if not isinstance(data, Mapping):
         raise FieldError("", describe(data), "an object")
     members = dict(data)
@@ -162,7 +162,7 @@ def _read(data: bytes, name: str, path: str, beside: Beside, part: str) -> Playg
 
 
 def _original(key: str, places: Mapping[str, str]) -> str:
-    """Return a key of a converted file with its place in the original."""
+    """A key of a converted file with its place in the original."""
     item = key.partition(".")[0]
     return f"{places[item]} ({key})" if item in places else key
 
@@ -250,7 +250,7 @@ def _check_pictures(shapes: tuple[NamedShape, ...]) -> None:
 
 
 def _embedded(value: object, key: str, beside: Beside) -> object:
-    """Return the name of an image file as a data URI of its content; anything else unchanged."""
+    """The name of an image file as a data URI of its content; anything else unchanged."""
     if not isinstance(value, str) or value.startswith("data:"):
         return value
     suffix = Path(value).suffix.lower()
@@ -271,13 +271,13 @@ class _Label:
 
 
 def _picture_note(note: str, places: Mapping[str, str]) -> str:
-    """Return a note about an image of a shape with the place of the shape in the original."""
+    """A note about an image of a shape with the place of the shape in the original."""
     item, _, rest = note.partition(".")
     return f"{places[item]}: {rest}" if item in places else note
 
 
 def _primitives(shapes: tuple[NamedShape, ...], notes: list[str]) -> list[Primitive]:
-    """Return the parts of the shapes; notes that are added to `notes` get the shape in front."""
+    """The parts of the shapes; notes that are added to `notes` get the shape in front."""
     found: list[Primitive] = []
     for index, named in enumerate(shapes):
         known = len(notes)

@@ -1,4 +1,4 @@
-"""What viewers draw: the primitives of the playground, and snapshots of robots and objects."""
+"""The data that viewers draw: the primitives of the playground, and snapshots of robots and objects."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["ObjectSnapshot", "RobotSnapshot", "Scene", "Snapshot"]
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What there is at the start: solids stand on floors, paint and prints lie on them, later ones on earlier ones."""
+    """The scene at the start: solids stand on floors, paint and prints lie on them, later ones on earlier ones."""
 
     solids: tuple[Solid, ...]
     floors: tuple[Floor, ...]
@@ -23,7 +23,7 @@ class Scene:
 
     @classmethod
     def of(cls, playground: Playground) -> Scene:
-        """Return the scene of a playground."""
+        """The scene of a playground."""
         return cls(playground.solids, playground.floors, playground.paints)
 
 
@@ -55,7 +55,7 @@ class RobotSnapshot:
 
     @property
     def strokes(self) -> tuple[Stroke, ...]:
-        """What the pen has drawn, oldest stroke first."""
+        """The strokes of the pen, the oldest first."""
         strokes: tuple[Stroke, ...] = self.shown.get("strokes", ())
         return strokes
 

@@ -29,7 +29,7 @@ MOST_ROBOTS = 20
 def set_free(
     robots: Sequence[RobotStart], solids: Iterable[Solid], floors: Sequence[Floor]
 ) -> tuple[tuple[RobotStart, ...], tuple[str, ...]]:
-    """Return the robots where they can start, and a note about each that was moved.
+    """The robots at free positions, and a note about each that was moved.
 
     A robot keeps its heading, and its place if no free one is found; robots that stand free are never moved.
     """
@@ -56,7 +56,7 @@ def set_free(
 
 
 def _nearest(robot: RobotStart, occupied: Occupied, floors: Sequence[Floor]) -> RobotStart | None:
-    """Return the robot at the nearest free position on a floor; None if there is none near."""
+    """The robot at the nearest free position on a floor; None if there is none near."""
     for x_m, y_m in islice(_places((robot.x_m, robot.y_m)), MOST_PLACES):
         if floors and not any(floor.holds((x_m, y_m)) for floor in floors):
             continue
@@ -67,7 +67,7 @@ def _nearest(robot: RobotStart, occupied: Occupied, floors: Sequence[Floor]) -> 
 
 
 def _places(middle: Point) -> Iterator[Point]:
-    """Iterate over positions around a point, the nearest first, rounded to tenths of a millimeter."""
+    """Positions around a point, the nearest first, rounded to tenths of a millimeter."""
     ring = 0
     while True:
         ring += 1

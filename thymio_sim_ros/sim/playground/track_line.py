@@ -41,7 +41,7 @@ class TrackLine:
 
     @classmethod
     def of(cls, playground: Playground, name: str = "") -> tuple[TrackLine, Track]:
-        """Return the only track of a playground, or the one of a name. Raises ValueError with the known names."""
+        """The only track of a playground, or the one of a name. Raises ValueError with the known names."""
         tracks = {shape.name: shape.shape for shape in playground.shapes if isinstance(shape.shape, Track)}
         if name not in tracks and (name or len(tracks) != 1):
             wanted = f"no track '{name}'" if name else f"{len(tracks)} tracks, name one of them"
@@ -79,7 +79,7 @@ class TrackLine:
 
 
 class TrackProgress:
-    """How far a robot drove along a line, and how far it was from it at most."""
+    """The distance of a robot along a line, and its maximum distance from the line."""
 
     def __init__(self, line: TrackLine) -> None:
         self._line = line

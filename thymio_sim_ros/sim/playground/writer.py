@@ -12,7 +12,7 @@ __all__ = ["dumps"]
 
 
 def dumps(playground: Playground) -> str:
-    """Return JSON that loads as the same playground: it contains the images, and omits defaults."""
+    """JSON that loads as the same playground: it contains the images, and omits defaults."""
     head: dict[str, object] = {"format": FORMAT, "title": playground.title, "description": playground.description}
     translations = {language: fields.write(text) for language, text in playground.translations}
     if translations:
@@ -25,7 +25,7 @@ def dumps(playground: Playground) -> str:
 
 
 def _list(items: list[dict[str, Any]]) -> str:
-    """Return a list with one item per line."""
+    """A list with one item per line."""
     return "[\n    " + ",\n    ".join(map(_line, items)) + "\n  ]" if items else "[]"
 
 

@@ -1,4 +1,4 @@
-"""How Aseba programs see a sensor or an actuator; `device/` derives variables, events and native functions from it."""
+"""The Aseba side of a sensor or an actuator; `device/` derives variables, events and native functions from it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class AsebaFace:
 
     @property
     def size(self) -> int:
-        """How many words a reading has."""
+        """Number of words in a reading."""
         return sum(size for _, size in self.variables) + len(self.unseen)
 
 

@@ -1,4 +1,4 @@
-"""What actuators and stimuli share: a state on each robot that commands change and that may act in every tick."""
+"""The base of actuators and stimuli: a state on each robot that commands change and that may act in every tick."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ P = TypeVar("P", bound=CommandPlugin)
 
 
 def isolated(kind: str, plugin: P) -> P:
-    """Return a plug-in of another package with guarded functions, so that its errors do not stop the world.
+    """A plug-in of another package with guarded functions, so that its errors do not stop the world.
 
     `kind` is the word for it in log messages.
     """

@@ -1,4 +1,4 @@
-"""How viewers show the words of a sensor: labels, units, scales. The page derives rows of its sensor panel from it."""
+"""The display of the words of a sensor: labels, units, scales. The page derives rows of its sensor panel from it."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class PluginGuard:
         """States by identity; the references keep an id from being used again."""
 
     def begin(self, make: Callable[[], Any]) -> Any:
-        """Return a new state for one robot."""
+        """A new state for one robot."""
         try:
             return make()
         except Exception:
@@ -47,14 +47,14 @@ class PluginGuard:
             _log(self._kind, self._name)
 
     def show(self, shows: Callable[[Any], Mapping[str, Any]], state: Any) -> Mapping[str, Any]:
-        """Return what `shows` returns for a state; nothing once the plug-in is switched off."""
+        """The result of `shows` for a state; empty once the plug-in is switched off."""
         shown: dict[str, Any] = {}
         self.run(lambda state: shown.update(shows(state)), state)
         return shown
 
 
 def guarded_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | None]:
-    """Return `measure` of a sensor, guarded: it returns None once it has raised on that robot."""
+    """`measure` of a sensor, guarded: it returns None once it has raised on that robot."""
 
     def guarded(view: Any) -> R | None:
         if _BROKEN in view.memory:

@@ -67,7 +67,7 @@ class ReadingTable(Sequence[Row]):
         return repr(self._all())
 
     def of(self, sensors: Collection[str]) -> Iterable[Row]:
-        """Return the rows of some sensors, in the same order, without making the readings of the others."""
+        """The rows of some sensors, in the same order, without making the readings of the others."""
         if self._rows is not None:
             return (row for row in self._rows if row[1] in sensors)
         wanted = [column for column in self.columns if column[0] in sensors]
@@ -89,7 +89,7 @@ class ReadingTable(Sequence[Row]):
 
 
 def select_rows(readings: Sequence[Row], sensors: Collection[str]) -> Iterable[Row]:
-    """Return the rows of some sensors among the readings of one tick."""
+    """The rows of some sensors among the readings of one tick."""
     if isinstance(readings, ReadingTable):
         return readings.of(sensors)
     return (row for row in readings if row[1] in sensors)

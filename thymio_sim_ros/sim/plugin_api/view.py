@@ -1,4 +1,4 @@
-"""What a plug-in sees of its robot and of the world. The views of sensors are read-only; those of actuators also act.
+"""Views of plug-ins on their robot and on the world: read-only for sensors, with actions for actuators.
 
 Views of a batch give arrays with one entry per robot, in the order of the world.
 """
@@ -105,7 +105,7 @@ class SensorView(Protocol):
 
     @property
     def memory(self) -> dict[str, Any]:
-        """What the sensor stores for this robot; empty after a reset."""
+        """Data that the sensor stores for this robot; empty after a reset."""
         ...
 
     @property

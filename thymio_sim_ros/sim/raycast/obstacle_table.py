@@ -63,7 +63,7 @@ class Obstacles(Record):
     """Distance along the world's axes within which a robot may detect it, with a margin, m."""
     reach_y: Floats
     known_x: Floats
-    """Where it was when the candidates were found; FAR_M if they are out of date."""
+    """Position at which the candidates were determined; FAR_M if they are out of date."""
     known_y: Floats
 
 
@@ -135,7 +135,7 @@ class ObstacleTable:
 def polygon_in_frame(
     vertices: Sequence[tuple[float, float]],
 ) -> tuple[Frame, npt.NDArray[np.float64] | None]:
-    """Return the frame of a convex polygon, and its half planes in this frame; None for them if it is a rectangle.
+    """The frame of a convex polygon, and its half planes in this frame; None for them if it is a rectangle.
 
     The frame lies along the first side: x and y of the middle of the bounding box, cosine and sine of the heading, half
     size along and across. A polygon that moves keeps its half planes, rows nx, ny, c; a rectangle is its own bounding

@@ -69,23 +69,23 @@ class Raycaster:
             self._table.put(self._table.first_loose + number, obstacle)
 
     def bind(self, fan: Fan) -> tuple[Callable[[], None], Values]:
-        """Return a function that casts the rays of a fan, and the array to which it writes their lengths.
+        """A function that casts the rays of a fan, and the array to which it writes their lengths.
 
         The array has the shape (robots, sensors, rays); its values are in m, inf for a ray that meets nothing. Fallen
         robots neither detect anything nor are detected. At most one fan may be in use at a time.
         """
         memory, table = self._memory, self._table
-        _, sensors, each = fan.directions.shape
-        mounts, directions = Mounts(memory, sensors), Rays(memory, sensors * each)
-        axes = fan.directions[:, :, each // 2]
+        _, sensors, rays_per_sensor = fan.directions.shape
+        mounts, directions = Mounts(memory, sensors), Rays(memory, sensors * rays_per_sensor)
+        axes = fan.directions[:, :, rays_per_sensor // 2]
         mounts.x[:], mounts.y[:] = fan.places
         mounts.axis_x[:], mounts.axis_y[:] = axes
         mounts.cosine[:] = (axes[:, :, None] * fan.directions).sum(axis=0).min(axis=1)
         mounts.sine[:] = np.sqrt(np.maximum(0.0, 1.0 - mounts.cosine**2))
-        mounts.first_ray[:] = np.arange(sensors) * each
-        mounts.last_ray[:] = mounts.first_ray + each
+        mounts.first_ray[:] = np.arange(sensors) * rays_per_sensor
+        mounts.last_ray[:] = mounts.first_ray + rays_per_sensor
         directions.x[:], directions.y[:] = fan.directions.reshape(2, -1)
-        distances = memory.array((self._count, sensors, each), "float64")
+        distances = memory.array((self._count, sensors, rays_per_sensor), "float64")
         first = memory.array(self._count + 1, "int32")
         near = memory.array(self._count * len(table.obstacles.x), "int32")
         call = memory.bind(

@@ -62,7 +62,7 @@ class Rays(Record):
 
 @kernel
 def _meet_disc(x: float, y: float, dx: float, dy: float, radius: float) -> float:
-    """Return the distance at which a ray enters a disc around the origin, inf if it does not."""
+    """The distance at which a ray enters a disc around the origin, inf if it does not."""
     middle = -(x * dx + y * dy)
     square = radius * radius - (x * x + y * y - middle * middle)
     enter = middle - math.sqrt(max(square, 0.0))
@@ -71,7 +71,7 @@ def _meet_disc(x: float, y: float, dx: float, dy: float, radius: float) -> float
 
 @kernel
 def _meet_box(x: float, y: float, dx: float, dy: float, half_x: float, half_y: float) -> float:
-    """Return the distance at which a ray enters a box around the origin, inf if it does not.
+    """The distance at which a ray enters a box around the origin, inf if it does not.
 
     It enters the strip |x| <= half_x at the smaller of the two distances (-x ± half_x) / dx, and the box where it is in
     both strips.
@@ -89,7 +89,7 @@ def _meet_box(x: float, y: float, dx: float, dy: float, half_x: float, half_y: f
 
 @kernel
 def _meet_polygon(x: float, y: float, dx: float, dy: float, planes: Planes, first: int, last: int) -> float:
-    """Return the distance at which a ray enters the half planes `first` to `last` (exclusive), inf if it does not."""
+    """The distance at which a ray enters the half planes `first` to `last` (exclusive), inf if it does not."""
     enter = -_FAR
     leave = _FAR
     for plane in range(first, last):
@@ -108,7 +108,7 @@ def _meet_polygon(x: float, y: float, dx: float, dy: float, planes: Planes, firs
 
 @kernel
 def _is_facing(x: float, y: float, ax: float, ay: float, cosine: float, sine: float, radius: float) -> int:
-    """Return whether a ray of a sensor at x, y may meet a circle around the origin.
+    """Whether a ray of a sensor at x, y may meet a circle around the origin.
 
     The sensor's axis is ax, ay; `cosine` and `sine` are of the angle between the axis and its outermost ray, which is
     below 90 degrees. Seen from the sensor, the center of the circle is `ahead` along the axis and `aside` of it. The
@@ -140,7 +140,7 @@ def _place_hulls(robots: RobotState, obstacles: Obstacles, first_robot: int, cou
 
 @kernel
 def _is_stale(obstacles: Obstacles) -> int:
-    """Return whether something has moved too far for the list of candidates."""
+    """Whether something has moved too far for the list of candidates."""
     for row in range(obstacles.count):
         if (
             abs(obstacles.x[row] - obstacles.known_x[row]) > _MOVE_M

@@ -39,14 +39,14 @@ class ConvexObstacle:
         self.planes = tuple(planes)
 
     def is_within(self, x_m: float, y_m: float, reach_m: float) -> bool:
-        """Return whether it may be nearer than `reach_m` to a point; true for some points that are not (at corners)."""
+        """Whether it may be nearer than `reach_m` to a point; true for some points that are not (at corners)."""
         for nx, ny, c in self.planes:  # noqa: SIM110  # the loop is twice as fast as all(...)
             if nx * x_m + ny * y_m - c > reach_m:
                 return False
         return True
 
     def distance(self, x_m: float, y_m: float, dx: float, dy: float, limit_m: float) -> float:
-        """Return the distance in m at which a ray enters the obstacle; `limit_m` if it does not before.
+        """The distance in m at which a ray enters the obstacle; `limit_m` if it does not before.
 
         The direction (dx, dy) has unit length. A ray that starts inside the obstacle does not enter it.
         """
@@ -77,11 +77,11 @@ class DiscObstacle:
         self.bounds = (x_m - radius_m, y_m - radius_m, x_m + radius_m, y_m + radius_m)
 
     def is_within(self, x_m: float, y_m: float, reach_m: float) -> bool:
-        """Return whether it is at most `reach_m` away from a point."""
+        """Whether it is at most `reach_m` away from a point."""
         return math.hypot(self.x_m - x_m, self.y_m - y_m) <= reach_m + self.radius_m
 
     def distance(self, x_m: float, y_m: float, dx: float, dy: float, limit_m: float) -> float:
-        """Return the distance in m at which a ray enters the obstacle; `limit_m` if it does not before.
+        """The distance in m at which a ray enters the obstacle; `limit_m` if it does not before.
 
         The direction (dx, dy) has unit length. A ray that starts inside the obstacle does not enter it.
         """
@@ -100,7 +100,7 @@ Obstacle = ConvexObstacle | DiscObstacle
 
 
 def obstacle_of(solid: Solid) -> Obstacle:
-    """Return the obstacle that rays see of a solid."""
+    """The obstacle that a solid is for rays."""
     if isinstance(solid.outline, Disc):
         return DiscObstacle(solid.pose.x_m, solid.pose.y_m, solid.outline.radius_m, solid.height_m)
     return ConvexObstacle(solid.vertices, solid.height_m)
@@ -120,13 +120,13 @@ class Surroundings:
         return not self._obstacles
 
     def near(self, x_m: float, y_m: float, reach_m: float) -> Surroundings:
-        """Return the obstacles that may be within `reach_m` of a point in the world's frame; a superset."""
+        """The obstacles that may be within `reach_m` of a point in the world's frame; a superset."""
         return Surroundings([obstacle for obstacle in self._obstacles if obstacle.is_within(x_m, y_m, reach_m)])
 
     def fan(
         self, x_m: float, y_m: float, directions: Sequence[tuple[float, float]], range_m: float
     ) -> tuple[float, ...]:
-        """Return the distances in m from a point to the nearest obstacle along each unit direction.
+        """The distances in m from a point to the nearest obstacle along each unit direction.
 
         Point and directions are in the world's frame. The distance is `inf` where no obstacle is within `range_m`.
         """

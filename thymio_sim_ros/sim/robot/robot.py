@@ -71,7 +71,7 @@ class SharedState:
         self._audible[robot] = None
 
     def sounds(self) -> list[Sound]:
-        """Return all sounds now; they are computed once per tick."""
+        """All sounds now; they are computed once per tick."""
         now_ns = self.clock.now_ns
         if self._sounds_ns != now_ns:
             self._sounds_ns, self._sounds = now_ns, []
@@ -202,7 +202,7 @@ class Robot:
             for kind, (_, state) in self._accepting.items()
             if instance.state is state
         }
-        """What acts on a command of each type."""
+        """The plug-in that acts on a command, by type of the command."""
         self._list_busy()
         self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
         self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
@@ -223,7 +223,7 @@ class Robot:
 
     @property
     def twist(self) -> Twist:
-        """How its body really moves, in its own frame."""
+        """The true motion of its body, in its own frame."""
         return Twist(self.body.speed_m_s, self.body.turn_rate_rad_s)
 
     @property
@@ -260,7 +260,7 @@ class Robot:
         return _LIFT_M if self.is_lifted else 0.0
 
     def sound_levels(self, now_ns: int) -> list[float]:
-        """Return the levels of the sounds that it makes now."""
+        """The levels of the sounds that it makes now."""
         levels = (source.sound_level(now_ns) for source in self._sound_sources)
         return [level for level in levels if level]
 
@@ -270,7 +270,7 @@ class Robot:
         return any(instance.is_busy for instance in self._sounding)
 
     def accepts(self, command: object) -> bool:
-        """Return whether an actuator or stimulus accepts this type of command."""
+        """Whether an actuator or stimulus accepts this type of command."""
         return type(command) in self._accepting
 
     def apply(self, command: object) -> None:
@@ -324,7 +324,7 @@ class Robot:
         return [number for number in woken if self.sensors[number][0].on_wake is None]
 
     def measure_one(self, number: int) -> Reading | None:
-        """Return the reading of the sensor with this number, which measures each robot by itself, now."""
+        """The reading of the sensor with this number, which measures each robot by itself, now."""
         sensor, view = self.sensors[number]
         assert sensor.measure is not None
         return sensor.measure(view)
@@ -343,12 +343,12 @@ class Robot:
             self.place(self.pose)
 
     def state(self, kind: type[S]) -> S:
-        """Return the state of type `kind` of an actuator or stimulus. Raises KeyError if there is none."""
+        """The state of type `kind` of an actuator or stimulus. Raises KeyError if there is none."""
         state: S = self.states[kind]
         return state
 
     def snapshot(self) -> RobotSnapshot:
-        """Return the visible state now."""
+        """The visible state now."""
         return RobotSnapshot(
             name=self.name,
             pose=self.body.pose,

@@ -77,12 +77,12 @@ class Sensor:
         return tuple(DisplayedValue(name, words=size) for name, size in self.aseba.variables)
 
     def with_period(self, period_ns: int) -> Sensor:
-        """Return this sensor with another period in ns; its phase is 0 unless the period is its own."""
+        """This sensor with another period in ns; its phase is 0 unless the period is its own."""
         return self if period_ns == self.period_ns else replace(self, period_ns=period_ns, phase_ns=0)
 
 
 def all_sensors() -> tuple[Sensor, ...]:
-    """Return all sensors, of this package and of other packages, in name order."""
+    """All sensors, of this package and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "SENSOR", Sensor, check=_check, guard=_guarded)
 
 
@@ -93,7 +93,7 @@ def _check(sensor: Sensor) -> None:
 
 
 def _guarded(sensor: Sensor) -> Sensor:
-    """Return a sensor of another package, guarded so that its errors do not stop the world."""
+    """A sensor of another package, guarded so that its errors do not stop the world."""
     assert sensor.measure is not None  # see `_check`
     on_wake = None if sensor.on_wake is None else guarded_sensor(sensor.name, sensor.on_wake)
     return replace(sensor, measure=guarded_sensor(sensor.name, sensor.measure), on_wake=on_wake)

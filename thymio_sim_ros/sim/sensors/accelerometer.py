@@ -42,7 +42,7 @@ _NOISE_M_S2 = ACC_NOISE * GRAVITY_M_S2 / ACC_PER_G
 
 
 def gravity(tilt: Tilt) -> tuple[float, float, float]:
-    """Return what a robot at rest at an angle measures in m/s²: forward, left, up."""
+    """The reading of a tilted robot at rest in m/s²: forward, left, up."""
     if tilt == LEVEL:
         return (0.0, 0.0, GRAVITY_M_S2)
     level = GRAVITY_M_S2 * math.cos(tilt.pitch_rad)
@@ -50,7 +50,7 @@ def gravity(tilt: Tilt) -> tuple[float, float, float]:
 
 
 def sideways(pose: Pose, contact: Contact) -> float:
-    """Return the speed in m/s to the left that a robot gains when a contact begins, away from the point of contact."""
+    """The speed in m/s to the left that a robot gains when a contact begins, away from the point of contact."""
     dx, dy = pose.x_m - contact.x_m, pose.y_m - contact.y_m
     distance = math.hypot(dx, dy)
     if distance == 0.0:
@@ -64,7 +64,7 @@ def _feel(view: SensorView) -> None:
 
 
 class Felt(Record):
-    """What robots feel, and what they felt in the last measurement."""
+    """Motion of the robots as the accelerometer measures it, now and in the last measurement."""
 
     hit: Floats
     """Speed in m/s to the left that contacts gave it since."""

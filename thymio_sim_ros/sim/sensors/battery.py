@@ -23,7 +23,7 @@ _FULL_SCALE_V = 4.2
 
 
 def charge(volts: float) -> float:
-    """Return the charge 0…1 at a voltage in V."""
+    """The charge 0…1 at a voltage in V."""
     return max(0.0, min(1.0, (volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
 
 

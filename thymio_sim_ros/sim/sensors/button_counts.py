@@ -26,7 +26,7 @@ _LEAST_NOISE, _MARGIN = 130, 20
 
 
 def is_touched(count: int, mean: int, noise: int) -> bool:
-    """Return whether a button counts as touched, by the rule of the firmware."""
+    """Whether a button counts as touched, by the rule of the firmware."""
     return count < mean - max(noise, _LEAST_NOISE) - _MARGIN
 
 

@@ -46,7 +46,7 @@ _Mount = tuple[float, float, float, float]
 
 
 def strength(distance_m: float, cos_emitter: float, cos_receiver: float) -> float:
-    """Return what one emitter adds to S, given the cosines of the angles off both axes; 0 if it is not seen."""
+    """The part of S from one emitter, given the cosines of the angles off both axes; 0 if it is not visible."""
     if distance_m > RANGE_M or cos_emitter <= 0.0 or cos_receiver < _COS_VIEW:
         return 0.0
     weight = cos_emitter**_EMITTER_POWER * cos_receiver**_RECEIVER_POWER
@@ -56,12 +56,12 @@ def strength(distance_m: float, cos_emitter: float, cos_receiver: float) -> floa
 
 
 def intensity(total: float) -> float:
-    """Return the intensity of a robot for the sum S of its emitters."""
+    """The intensity of a robot for the sum S of its emitters."""
     return _FULL / (1.0 + 1.0 / total) if total > 0.0 else 0.0
 
 
 def _mounts(pose: Pose) -> list[_Mount]:
-    """Return the proximity sensors of a robot at a pose."""
+    """The proximity sensors of a robot at a pose."""
     return [
         (*pose.place((x, y)), math.cos(pose.yaw_rad + yaw), math.sin(pose.yaw_rad + yaw))
         for x, y, yaw in PROXIMITY_POSES
@@ -69,9 +69,9 @@ def _mounts(pose: Pose) -> list[_Mount]:
 
 
 def _ahead(receiver: _Mount, emitters: list[_Mount]) -> list[tuple[float, float, float, float]]:
-    """Return the emitters that a receiver sees if nothing is in between: what each adds to S, direction, distance."""
+    """The emitters that a receiver detects if nothing is in between: part of S, direction, distance."""
     x, y, axis_x, axis_y = receiver
-    found = []
+    visible = []
     for emitter_x, emitter_y, emitter_axis_x, emitter_axis_y in emitters:
         dx, dy = emitter_x - x, emitter_y - y
         distance = math.hypot(dx, dy)
@@ -80,12 +80,12 @@ def _ahead(receiver: _Mount, emitters: list[_Mount]) -> list[tuple[float, float,
         dx, dy = dx / distance, dy / distance
         part = strength(distance, -dx * emitter_axis_x - dy * emitter_axis_y, dx * axis_x + dy * axis_y)
         if part > 0.0:
-            found.append((part, dx, dy, distance))
-    return found
+            visible.append((part, dx, dy, distance))
+    return visible
 
 
 def _received(receiver: _Mount, emitters: list[_Mount], around: Surroundings) -> float:
-    """Return the intensity of the robot with these emitters at a receiver; 0 if it is too low to be understood."""
+    """The intensity of the robot with these emitters at a receiver; 0 if it is too low to be understood."""
     ahead = _ahead(receiver, emitters)
     if intensity(sum(part for part, *_ in ahead)) < _LEAST:
         return 0.0
@@ -94,8 +94,8 @@ def _received(receiver: _Mount, emitters: list[_Mount], around: Surroundings) ->
     for part, dx, dy, distance in ahead:
         if around.fan(x, y, ((dx, dy),), max(0.0, distance - _HULL_M)) == (math.inf,):
             total += part
-    found = intensity(total)
-    return found if found >= _LEAST else 0.0
+    total_intensity = intensity(total)
+    return total_intensity if total_intensity >= _LEAST else 0.0
 
 
 def _measure(view: SensorView) -> CommReading | None:
@@ -114,8 +114,8 @@ def _measure(view: SensorView) -> CommReading | None:
     around = view.surroundings(RANGE_M + _MOUNT_M, PROXIMITY_HEIGHT_M)
     payloads, intensities = [], []
     for receiver in _mounts(view.pose):
-        heard = [(_received(receiver, mounts, around), payload) for mounts, payload in senders]
-        best, payload = max(heard, key=lambda pair: pair[0])
+        received = [(_received(receiver, mounts, around), payload) for mounts, payload in senders]
+        best, payload = max(received, key=lambda pair: pair[0])
         payloads.append(payload if best else 0)
         intensities.append(round(best))
     strongest = max(intensities)

@@ -20,7 +20,7 @@ _REFRESH_TICKS = REFRESH_NS // TICK_NS
 
 
 class Reported(Record):
-    """What was reported last of each robot."""
+    """The last reading of each robot."""
 
     current_left: Ints
     current_right: Ints

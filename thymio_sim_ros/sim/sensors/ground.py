@@ -57,7 +57,7 @@ def place_all(robots: RobotState, offset_x: Floats, offset_y: Floats, spots: Spo
 
 @kernel
 def response(reflectance: float, floor: float) -> float:
-    """Return the count without noise for what a footprint sees, see `GroundSample`."""
+    """The count without noise for a `GroundSample`."""
     return floor * ground_response(reflectance)
 
 
@@ -88,12 +88,12 @@ def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
         place()
         ground.sample_all(spots.x, spots.y, spots.reflectance, spots.floor)
         count()
-        now_ns, found, grays = batch.now_ns, counts.tolist(), reflectances.tolist()
+        now_ns, count_lists, grays = batch.now_ns, counts.tolist(), reflectances.tolist()
         lights = [environment.ambient_light for environment in environments]
         chosen = [override.ground for override in overrides]
 
         def make(robot: int) -> GroundReading:
-            return _reading(now_ns, lights[robot], found[robot], grays[robot], chosen[robot])
+            return _reading(now_ns, lights[robot], count_lists[robot], grays[robot], chosen[robot])
 
         return LazyReadings(len(batch), make)
 

@@ -18,7 +18,7 @@ def _measure(view: SensorView) -> LedReading | None:
 
 
 def _changed(state: LedState, memory: dict[str, Any], now_ns: int) -> LedReading | None:
-    """Return a reading; None if the levels are those published last."""
+    """A reading; None if the levels are those published last."""
     memory["changes"], groups = state.changes, tuple(state.levels.items())
     if groups == memory.get("groups"):
         return None

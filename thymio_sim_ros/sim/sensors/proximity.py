@@ -65,7 +65,7 @@ _FANS = {
 
 @kernel
 def response(distances: Floats, first: int, last: int, cosines: Floats, model: int) -> float:
-    """Return the count without noise of one sensor, of whose rays `first` to `last - 1` at least one meets something.
+    """The count without noise of one sensor, of whose rays `first` to `last - 1` at least one meets something.
 
     Args:
         distances: lengths of rays in m, those of a sensor from right to left, inf for a ray that meets nothing.
@@ -133,10 +133,10 @@ def _prepare(batch: BatchSensorView) -> Callable[[], LazyReadings]:
     def measure() -> LazyReadings:
         cast()
         count()
-        now_ns, found, chosen = batch.now_ns, counts.tolist(), [override.proximity for override in overrides]
+        now_ns, count_lists, chosen = batch.now_ns, counts.tolist(), [override.proximity for override in overrides]
 
         def make(robot: int) -> ProximityReading:
-            words = tuple(overridden(found[robot], chosen[robot]))
+            words = tuple(overridden(count_lists[robot], chosen[robot]))
             return ProximityReading(now_ns, words, tuple([_DISTANCES_M[word] for word in words]))
 
         return LazyReadings(len(batch), make)

@@ -48,12 +48,12 @@ def _prepare(batch: BatchSensorView) -> Callable[[], Sequence[SoundReading | Non
 
 
 def intensity_at(noise_level: int, sounds: Sequence[Sound], x_m: float, y_m: float) -> int:
-    """Return mic.intensity at a point for a background noise and all sounds of the world."""
+    """mic.intensity at a point for a background noise and all sounds of the world."""
     return min(FULL_LEVEL, round(math.hypot(noise_level, level_at(sounds, x_m, y_m))))
 
 
 def report(now_ns: int, intensity: int, microphone: MicrophoneState, memory: dict[str, int]) -> SoundReading | None:
-    """Return the reading of a block; None if it need not be reported. `memory` has the last report of the robot."""
+    """The reading of a block; None if it need not be reported. `memory` has the last report of the robot."""
     is_loud = microphone.is_exceeded(intensity)
     if intensity != memory.get("intensity") or now_ns >= memory["refresh_ns"]:
         memory["intensity"], memory["refresh_ns"] = intensity, now_ns + REFRESH_NS

@@ -22,7 +22,7 @@ _USUAL_GROUND = "ground"
 
 
 def wall_name(ground: str, yaw_rad: float, eighths: int) -> str:
-    """What a wall is called that stands so many eighths of a turn from the x axis of a ground: "north wall".
+    """The name of a wall by its direction, in eighths of a turn from the x axis of a ground: "north wall".
 
     In the world x is east; the name of a ground that is not simply called so comes first.
     """

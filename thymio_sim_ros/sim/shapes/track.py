@@ -75,7 +75,7 @@ class Track:
         return tuple(stations)
 
     def _cut(self, direction: float, after: float) -> float:
-        """How much of a straight piece its corner's arc replaces."""
+        """The length at the end of a straight piece that the arc of the corner replaces."""
         turn = abs(math.remainder(after - direction, math.tau))
         return self.corner_radius_m * math.tan(turn / 2) if turn < math.pi - 1e-6 else 0.0
 

@@ -22,5 +22,5 @@ class Stimulus(CommandPlugin):
 
 
 def all_stimuli() -> tuple[Stimulus, ...]:
-    """Return all stimuli, of this package and of other packages, in name order."""
+    """All stimuli, of this package and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "STIMULUS", Stimulus, guard=partial(isolated, "stimulus"))

@@ -30,7 +30,7 @@ class EnvironmentState:
     clap_ends_ns: int = -1
 
     def sound_level(self, now_ns: int) -> float:
-        """Return the level of a clap that sounds now; 0 is silent."""
+        """The level of a clap that sounds now; 0 is silent."""
         return self.clap_level if now_ns <= self.clap_ends_ns else 0.0
 
 

@@ -20,7 +20,7 @@ class SensorOverrideState:
 
 
 def overridden(measured: Sequence[int], override: Sequence[int]) -> Sequence[int]:
-    """Return the counts of sensors: the override where there is one, otherwise the measured value.
+    """The counts of sensors: the override where there is one, otherwise the measured value.
 
     `override` is empty or has one count per sensor.
     """

@@ -37,7 +37,7 @@ class Conversion:
         self.robots.append(members)
 
     def data(self) -> dict[str, Any]:
-        """Return the playground as data of a JSON file."""
+        """The playground as data of a JSON file."""
         return {
             "format": 1,
             "title": self.title,

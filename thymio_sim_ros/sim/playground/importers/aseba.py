@@ -96,7 +96,7 @@ class _Reader:
         return self._out
 
     def _descriptions(self) -> dict[str, str]:
-        """Return descriptions by language code, each in one line; the default is English, `de_CH` becomes `de-ch`."""
+        """Descriptions by language code, each in one line; the default is English, `de_CH` becomes `de-ch`."""
         found: dict[str, str] = {}
         for element in self._elements("description"):
             language = (element.attributes.get("lang", "").strip() or "en").lower().replace("_", "-")
@@ -267,7 +267,7 @@ def _color(element: Element) -> str:
 
 
 def _mass_kg(element: Element) -> float | None:
-    """Return the mass of a movable object; None for a fixed one."""
+    """The mass of a movable object; None for a fixed one."""
     mass = _number(element, "mass", default=-1.0)
     return None if mass < 0 else max(LEAST_MASS_KG, min(MOST_MASS_KG, rounded(mass * KG_PER_MASS)))
 
@@ -278,7 +278,7 @@ def _height(element: Element) -> float:
 
 
 def _length(element: Element, attribute: str) -> float:
-    """Return an attribute in centimeters as meters."""
+    """An attribute in centimeters as meters."""
     return rounded(_number(element, attribute) / 100)
 
 

@@ -18,7 +18,7 @@ class Names:
         self._taken: set[str] = set()
 
     def take(self, wanted: str, otherwise: str) -> str:
-        """Return an unused name like `wanted`, or like `otherwise` if nothing of it can be kept."""
+        """An unused name like `wanted`, or like `otherwise` if nothing of it can be kept."""
         plain = unicodedata.normalize("NFKD", wanted).encode("ascii", "ignore").decode()
         words = re.findall(r"[A-Za-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", plain))
         name = "_".join(words).lower()[:_LONGEST].strip("_")
@@ -32,10 +32,10 @@ class Names:
 
 
 def rounded(value: float) -> float:
-    """Return meters or radians rounded to 1e-9: 5 cm become 0.05, not 0.05000000000000001."""
+    """Meters or radians rounded to 1e-9: 5 cm become 0.05, not 0.05000000000000001."""
     return round(value, 9) + 0.0
 
 
 def turned(angle_rad: float) -> float:
-    """Return the same direction in [-π, π]."""
+    """The same direction in [-π, π]."""
     return rounded(math.remainder(angle_rad, math.tau))

@@ -49,7 +49,7 @@ class _Item:
         self._known = {"props", "name"}
 
     def number(self, name: str, default: float | None = None) -> float:
-        """Return a member that is a finite number; it may be missing if there is a default. Raises FieldError."""
+        """A member that is a finite number; it may be missing if there is a default. Raises FieldError."""
         self._known.add(name)
         value = self._members.get(name, default)
         if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e9:
@@ -57,21 +57,21 @@ class _Item:
         return float(value)
 
     def length(self, name: str, default: float | None = None) -> float:
-        """Return a member in units as meters. Raises FieldError."""
+        """A member in units as meters. Raises FieldError."""
         return rounded(self.number(name, default) * UNIT_M)
 
     def place(self, *, otherwise: float | None = None) -> dict[str, float]:
-        """Return its position in the world's frame in m. Raises FieldError."""
+        """Its position in the world's frame in m. Raises FieldError."""
         x, z = self.number("positionX", otherwise), self.number("positionZ", otherwise)
         return {"x_m": rounded(x * UNIT_M), "y_m": rounded(-z * UNIT_M)}
 
     def get(self, name: str) -> object:
-        """Return any member, or None."""
+        """Any member, or None."""
         self._known.add(name)
         return self._members.get(name)
 
     def unknown(self) -> list[str]:
-        """Return the keys that were not read."""
+        """The keys that were not read."""
         return [str(name) for name in self._members if name not in self._known]
 
 
