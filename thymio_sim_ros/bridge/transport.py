@@ -70,14 +70,18 @@ class SharedTransport(asyncio.Transport):
         with self._lock:
             if self._is_ended:
                 return True
+            # Only with an empty buffer may these bytes go to the kernel directly: they would overtake buffered ones.
             if self._is_plain and (not self._waiting or self._flush_waiting()):
                 sent = self._send(data)
                 if sent == len(data):
                     return True
+                # From here on `limit` no longer applies: without the rest, the stream would contain a part of a frame.
                 data = data[sent:]
             elif self.get_write_buffer_size() > limit:
                 return False
             self._waiting += data
+            # The loop is woken once when bytes wait, not for each write. It registers the socket itself, because
+            # `add_writer` may be called in its thread only.
             if not self._is_flush_scheduled:
                 self._is_flush_scheduled = True
                 self._loop.call_soon_threadsafe(self._schedule_flush)
@@ -127,6 +131,7 @@ class SharedTransport(asyncio.Transport):
     def _schedule_flush(self) -> None:
         """Make the loop send the buffered bytes as soon as the socket is writable."""
         with self._lock:
+            # `release` may have run since another thread scheduled this call; `_waiting` is empty then.
             if self._socket is not None:
                 self._loop.add_writer(self._socket, self._flush_when_writable)
             else:
@@ -135,6 +140,9 @@ class SharedTransport(asyncio.Transport):
 
     def _flush_when_writable(self) -> None:
         """Send buffered bytes; called by the loop when the socket is writable."""
+        # The loop calls this in every iteration while the socket is writable, so the writer is removed with the last
+        # byte. Both happen under the lock: a write of another thread either comes before and is sent here, or comes
+        # after and schedules the next flush.
         with self._lock:
             if self._socket is not None and self._flush_waiting():
                 self._is_flush_scheduled = False
@@ -176,7 +184,7 @@ class SharedTransport(asyncio.Transport):
         return self._inner.is_closing()
 
     def get_extra_info(self, name: str, default: Any = None) -> Any:
-        """Return information on the connection, such as `peername`."""
+        """Information on the connection, such as `peername`."""
         return self._inner.get_extra_info(name, default)
 
     def pause_reading(self) -> None:
@@ -281,6 +289,7 @@ class SharedConnection(ServerConnection):
         connection uses at most half of the loop's time, and the kernel's buffer slows it down.
         """
         self._cancel_feeding()
+        # Time of this thread, not of the wall: other threads that hold the interpreter lock do not shorten the slice.
         began_s, spent_s = time.thread_time(), 0.0
         while self._unread and not self.transport.is_paused and spent_s < SLICE_S:
             piece = bytes(self._unread[:_PIECE])
@@ -311,7 +320,7 @@ class ConnectionMaker:
     def __init__(self, limit: int, on_refused: Callable[[], None]) -> None:
         """`limit`: connections, including those in their handshake; `on_refused` is called for each further one."""
         self.connections = Connections(limit, time.monotonic)
-        """Those that are open."""
+        """The open connections."""
         self._on_refused = on_refused
 
     def __call__(self, *arguments: Any, **options: Any) -> SharedConnection:
