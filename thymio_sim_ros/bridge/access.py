@@ -70,9 +70,9 @@ class Tokens:
     def role(self, given: str | None) -> Role | None:
         """The role of a client that gives this token; None if it may not connect."""
         # Both comparisons are always made, in constant time: the response time reveals nothing about the tokens.
-        found = (given or "").encode("utf-8", "surrogatepass")
-        is_full = bool(self.full) and hmac.compare_digest(found, self.full.encode())
-        is_read_only = bool(self.read_only) and hmac.compare_digest(found, self.read_only.encode())
+        token = (given or "").encode("utf-8", "surrogatepass")
+        is_full = bool(self.full) and hmac.compare_digest(token, self.full.encode())
+        is_read_only = bool(self.read_only) and hmac.compare_digest(token, self.read_only.encode())
         if is_full:
             return Role.FULL
         if is_read_only:

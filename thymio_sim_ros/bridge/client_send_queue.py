@@ -56,7 +56,7 @@ class ClientSendQueue:
             self._transport.write(frame)
 
     def sender(self, subscription_id: int) -> SendFunction:
-        """Return a function that sends messages of one subscription.
+        """A function that sends messages of one subscription.
 
         This is the hot path: the function binds everything it needs once, because attribute look-ups and calls cost
         more than the rest.

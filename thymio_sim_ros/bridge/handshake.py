@@ -42,7 +42,7 @@ class HandshakeCheck:
         self._warn = ReportLimiter(lambda text: log.warning("%s", text))
 
     async def check(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Return the response that rejects a handshake without a valid token or from a foreign page, otherwise None.
+        """The response that rejects a handshake without a valid token or from a foreign page, otherwise None.
 
         With a valid token any page is accepted. Without one, a page is accepted for now, because browsers show it only
         the close code of an open connection.

@@ -1,4 +1,4 @@
-"""Which web pages may connect: any page in a browser can open a WebSocket to this machine.
+"""The web pages that may connect: any page in a browser can open a WebSocket to this machine.
 
 Native clients send no Origin and may connect. A page may connect if it comes from this machine, from the Foxglove app,
 or from an origin that the user has allowed (`*` allows all). A page may also connect to the numeric address that it was

@@ -94,7 +94,7 @@ class ServerSettings:
     tls: ssl.SSLContext | None = None
     tokens: Tokens = field(default_factory=Tokens)
     is_read_only_service: Callable[[str], bool] = lambda service: False
-    """Which services a read-only client may call, by name."""
+    """Whether a read-only client may call a service, by name."""
 
 
 class BridgeServer:

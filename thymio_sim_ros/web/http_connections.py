@@ -68,7 +68,7 @@ class _Connection(web.RequestHandler):
         self._busy = Phase.ANSWERING
         self._stream: asyncio.Task[Any] | None = None
         self._body: StreamReader | None = None
-        """That of the request that is answered; what has not been read of it is dropped after the answer."""
+        """The body of the request that is answered; its unread part is dropped after the answer."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Connect the slot with the transport."""
@@ -241,8 +241,8 @@ async def serve_connections(
                 await asyncio.wait_for(stop.wait(), _SWEEP_S)
             connections.close_overdue()
     finally:
-        for one in tasks:
-            one.cancel()
+        for task in tasks:
+            task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
         await server.shutdown(_CLOSE_S)
 

@@ -56,15 +56,15 @@ class Page:
             return response
         path = request.raw_path.partition("?")[0]
         try:
-            found = await asyncio.get_running_loop().run_in_executor(self._pool, self._content.find, path)
+            document = await asyncio.get_running_loop().run_in_executor(self._pool, self._content.find, path)
         except PlaygroundError as error:
             return text_response(422, str(error))
-        if found is None and not self._content.is_built:
+        if document is None and not self._content.is_built:
             page = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{PAGE_BUILD_HINT}</p>"
             return _response(503, page.encode(), TYPES[".html"], {"Cache-Control": "no-store"})
-        if found is None:
+        if document is None:
             return text_response(404, "There is no such file.")
-        return await self._document(request, found)
+        return await self._document(request, document)
 
     async def _document(self, request: web.BaseRequest, document: Document) -> web.StreamResponse:
         headers = {

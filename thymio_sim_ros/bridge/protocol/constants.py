@@ -43,7 +43,7 @@ JSON = "json"
 
 
 class Capability(StrEnum):
-    """What a server may announce in serverInfo; `time` if and only if it uses simulated time."""
+    """A capability that a server announces in serverInfo; `time` if and only if it uses simulated time."""
 
     CLIENT_PUBLISH = "clientPublish"
     PARAMETERS = "parameters"
@@ -55,7 +55,7 @@ class Capability(StrEnum):
 
 
 class Role(StrEnum):
-    """What a client may do; sent to read-only clients in the metadata of serverInfo (key `access`)."""
+    """The permissions of a client; read-only clients get theirs in the metadata of serverInfo (key `access`)."""
 
     FULL = "full"
     READ_ONLY = "read_only"

@@ -42,7 +42,7 @@ def camel_case(name: str) -> str:
 
 
 def reader(shape: Any) -> Reader:
-    """Return a function that converts a JSON value to the annotation `shape`.
+    """A function that converts a JSON value to the annotation `shape`.
 
     Its arguments are the value and its place for error messages. It raises FrameError for a value that does not fit.
     """
@@ -50,7 +50,7 @@ def reader(shape: Any) -> Reader:
 
 
 def writer(shape: Any) -> Writer:
-    """Return a function that converts a value of the annotation `shape` to a JSON value."""
+    """A function that converts a value of the annotation `shape` to a JSON value."""
     return _writer(shape)
 
 
@@ -103,14 +103,14 @@ def _record_reader(shape: Any) -> Reader:
     def read(value: Any, where: str) -> Any:
         if not isinstance(value, dict):
             raise FrameError(where, "an object", describe(value))
-        found = {}
+        values = {}
         for name, key, read_field, required in fields:
             item = value.get(key)
             if item is not None:
-                found[name] = read_field(item, f"{where}.{key}")
+                values[name] = read_field(item, f"{where}.{key}")
             elif required:
                 raise FrameError(where, f"a key {key}", "none" if key not in value else "null")
-        return shape(**found)
+        return shape(**values)
 
     return read
 

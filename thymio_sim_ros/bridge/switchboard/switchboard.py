@@ -39,7 +39,7 @@ _NEEDED_CAPABILITIES: dict[type, Capability] = {
     ms.UnsubscribeConnectionGraph: Capability.CONNECTION_GRAPH,
     ms.FetchAsset: Capability.ASSETS,
 }
-"""What a server must offer to accept a message, by the class of the message; others are always accepted."""
+"""The capability that a message requires, by the class of the message; other messages are always accepted."""
 
 
 class Switchboard:
