@@ -93,7 +93,7 @@ class Announcer:
     async def _update(self) -> None:
         while self._is_outdated and not self._is_broken:
             self._is_outdated = False
-            wanted = {one for group in self._wanted.values() for one in group}
+            wanted = {announcement for group in self._wanted.values() for announcement in group}
             if not wanted and not self._known:
                 return
             try:
@@ -108,7 +108,7 @@ class Announcer:
             return
         for announcement in [known for known in self._known if known not in wanted]:
             await (await zeroconf.async_unregister_service(self._known.pop(announcement)))
-        for announcement in sorted(wanted - self._known.keys(), key=lambda one: (one.type, one.port, one.name)):
+        for announcement in sorted(wanted - self._known.keys(), key=lambda entry: (entry.type, entry.port, entry.name)):
             info = self._info(announcement)
             await (await zeroconf.async_register_service(info, allow_name_change=True))
             self._known[announcement] = info

@@ -173,7 +173,7 @@ class RobotLink:
 
 
 def _decoded(frames: list[bytes]) -> list[Message]:
-    """Return the messages of frames; frames that are no messages are skipped."""
+    """The messages of frames; frames that are no messages are skipped."""
     messages = []
     for frame in frames:
         with contextlib.suppress(ProtocolError):

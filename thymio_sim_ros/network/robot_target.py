@@ -45,7 +45,7 @@ Target = TcpTarget | SerialTarget
 
 
 def parse_target(text: str) -> Target:
-    """Return the address of a robot. Raises TargetError."""
+    """The address of a robot. Raises TargetError."""
     kind, colon, rest = text.strip().partition(":")
     if kind == "tcp" and colon:
         return _tcp(text, rest)

@@ -1,4 +1,4 @@
-"""What the network servers serve, and where."""
+"""Settings of the network servers: protocols, addresses and ports."""
 
 from __future__ import annotations
 

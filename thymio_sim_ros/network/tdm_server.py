@@ -98,7 +98,7 @@ class TdmServer:
         self._client_numbers = itertools.count(1)
         self._acceptor: Acceptor
         self._servers: list[Server] = []
-        """Those of WebSocket, one for each address."""
+        """The WebSocket servers, one for each address."""
         self._tasks: set[asyncio.Task[None]] = set()
         self._compiler = ThreadPoolExecutor(1, "tdm-compiler")
         self._throttle = Throttle(_SLICE_S)

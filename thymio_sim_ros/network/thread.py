@@ -167,7 +167,7 @@ def _aseba(port: int, networks: Sequence[Network]) -> Announcement:
 
 
 def _described(context: dict[str, Any]) -> tuple[str, str]:
-    """Return subject and text of a warning about an exception in a callback of the loop."""
+    """Subject and text of a warning about an exception in a callback of the loop."""
     error = context.get("exception")
     text = "".join(traceback.format_exception(error)) if error is not None else ""
     message = context.get("message", "a connection failed")

@@ -1,4 +1,4 @@
-"""Which requests the HTTP interface answers: a web page from elsewhere must not drive a robot. Without I/O.
+"""The requests that the HTTP interface answers: a web page from elsewhere must not drive a robot. Without I/O.
 
 Any page in a browser can make requests to this computer, also by images and links, for which browsers send no Origin.
 Therefore a request is rejected
@@ -27,7 +27,7 @@ _ALLOWED_METHODS = "GET, POST, PUT, OPTIONS"
 
 @dataclass(frozen=True, slots=True)
 class AccessPolicy:
-    """Who may make requests to a server that listens on `address`.
+    """The clients that may make requests to a server that listens on `address`.
 
     Without `tokens`: programs, local pages, and pages of `allowed_origins`. With them: all that give one.
     """

@@ -140,7 +140,7 @@ class Gateway:
                     case NodeDisconnected(node=node):
                         self._fail((network, node), "the node does not answer any more")
         waiting: list[_Read | _Load] = [*self._reads, *self._loads]
-        overdue = [one for one in waiting if one.deadline_ns <= now_ns]
+        overdue = [request for request in waiting if request.deadline_ns <= now_ns]
         self._end(overdue, f"no answer of the node within {TIMEOUT_NS // 10**9} s")
 
     def start(self, action: Action, reply: ReplyTo) -> None:
@@ -282,9 +282,9 @@ class Gateway:
         self._end([*reads, *(load for load in self._loads if key in load.missing)], reason)
 
     def _end(self, waiting: Sequence[_Read | _Load], reason: str) -> None:
-        for one in waiting:
-            if isinstance(one, _Read):
-                self._reads.remove(one)
+        for request in waiting:
+            if isinstance(request, _Read):
+                self._reads.remove(request)
             else:
-                self._loads.remove(one)
-            one.reply(refusal(RequestError(504, reason)))
+                self._loads.remove(request)
+            request.reply(refusal(RequestError(504, reason)))

@@ -16,7 +16,7 @@ from thymio_sim_ros.network.http.requests import RequestError
 __all__ = ["Directory", "Key"]
 
 NUMBER_STEP = 20
-"""What is added to the id of a node until no other node has this number, as in the reference."""
+"""The number added to the id of a node, repeatedly, until no other node has the sum, as in the reference."""
 
 Key = tuple[int, int]
 """A node: number of its network, and its id there."""

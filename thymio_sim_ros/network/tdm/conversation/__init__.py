@@ -1,1 +1,1 @@
-"""What a Thymio Device Manager says to its clients and to the nodes, without I/O."""
+"""The conversation of a Thymio Device Manager with its clients and with the nodes, without I/O."""

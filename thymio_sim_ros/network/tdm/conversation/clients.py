@@ -124,6 +124,6 @@ class Clients:
         self._outbox.append(Closing(client, reason))
 
     def pop(self) -> list[Delivery | Closing]:
-        """Return and clear what is to be done, in order."""
+        """The pending deliveries, in order. They are removed from the queue."""
         outbox, self._outbox = self._outbox, []
         return outbox

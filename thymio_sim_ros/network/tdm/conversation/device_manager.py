@@ -156,16 +156,16 @@ class DeviceManager:
             directory.clients.broadcast(lambda client: Ping())
 
     def pop_deliveries(self) -> list[Delivery | Closing]:
-        """Return and clear what is to be done for clients, in order."""
+        """The pending deliveries to clients, in order. They are removed from the queue."""
         return self._directory.clients.pop()
 
     def pop_programs(self) -> list[tuple[int, ThymioProgram]]:
-        """Return and clear the programs that `pop_messages` loads, each with the network's number."""
+        """The programs that `pop_messages` loads, each with its network number. They are removed from the queue."""
         programs, self._directory.programs = self._directory.programs, []
         return programs
 
     def pop_messages(self) -> list[tuple[int, AsebaMessage]]:
-        """Return and clear the messages for networks, each with the network's number, in order."""
+        """The messages for networks in order, each with the number of its network. They are removed from the queue."""
         return [
             (number, message) for number, network in self._networks.items() for message in network.link.pop_messages()
         ]

@@ -1,4 +1,4 @@
-"""What the device manager knows: its clients, nodes and groups, and the time."""
+"""The state of the device manager: its clients, nodes and groups, and the time."""
 
 from __future__ import annotations
 

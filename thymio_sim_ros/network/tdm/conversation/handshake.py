@@ -24,7 +24,7 @@ class ManagerSettings:
     ws_port: int = 0
     """Port of its WebSocket server; 0: none."""
     password: str = field(default="", repr=False)
-    """What clients on other computers must give; empty: nothing."""
+    """The password that clients on other computers must send; empty: none."""
 
 
 def greet(directory: Directory, client: Client, message: Message, settings: ManagerSettings) -> None:

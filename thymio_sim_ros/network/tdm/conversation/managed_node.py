@@ -83,7 +83,7 @@ class ManagedNode:
         self.vm = VMExecutionStateChanged(key, VMState.STOPPED)
         """State of its machine as last sent to clients."""
         self.idle_state = VMState.STOPPED
-        """What a machine is that waits without an event: paused after a pause or step."""
+        """The state that is reported for a machine without an active event: paused after a pause or step."""
         self.loads: list[PendingLoad] = []
         """Requests that are answered when the node has confirmed its program."""
         self.breakpoints: PendingBreakpoints | None = None

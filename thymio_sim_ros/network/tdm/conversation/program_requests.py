@@ -146,4 +146,4 @@ HANDLERS: Mapping[type[m.Message], Callable[[Directory, Client, Any], Compilatio
         m.SetBreakpoints: set_breakpoints,
     }
 )
-"""What is done with each request."""
+"""The handler of each request."""

@@ -1,4 +1,4 @@
-"""What happens on the networks, for clients: one function for each report; `handle` calls it.
+"""Messages to clients about events on the networks: one function for each report; `handle` calls it.
 
 Source: docs/spec/aseba-protocol.md section 2.3.
 """

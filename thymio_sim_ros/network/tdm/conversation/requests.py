@@ -248,4 +248,4 @@ HANDLERS: Mapping[type[m.Message], Handler] = MappingProxyType(
         **program_requests.HANDLERS,
     }
 )
-"""What is done with each request. Other messages of a client need no answer and are ignored."""
+"""The handler of each request. Other messages of a client need no answer and are ignored."""

@@ -59,7 +59,7 @@ class StreamReader:
         self._pending = bytearray()
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Return the buffers that `data` completes. Raises TdmFrameError for a length above the limit."""
+        """The buffers that `data` completes. Raises TdmFrameError for a length above the limit."""
         self._pending += data
         buffers = []
         while len(self._pending) >= _LENGTH.size:

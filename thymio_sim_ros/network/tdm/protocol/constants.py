@@ -40,7 +40,7 @@ class Status(IntEnum):
 
 
 class Capability(IntFlag):
-    """What a client may do to a node."""
+    """Actions that a client may perform on a node."""
 
     RENAME = 1
     FORCE_RESET_AND_STOP = 2
@@ -58,7 +58,7 @@ class ErrorCode(IntEnum):
 
 
 class Watch(IntFlag):
-    """What a client is sent about a node, and about its group."""
+    """Kinds of data about a node and its group that a client receives."""
 
     NONE = 0
     VARIABLES = 1
@@ -79,7 +79,7 @@ class Language(IntEnum):
 
 
 class CompileOption(IntFlag):
-    """What happens to a compiled program."""
+    """Uses of a compiled program."""
 
     NONE = 1
     LOAD_ON_TARGET = 2
