@@ -34,7 +34,7 @@ _PING_S, _PONG_S = 10.0, 30.0
 
 @dataclass(slots=True)
 class SuiteStatus:
-    """What is known about a running suite: contents of its topics, None or empty until they have arrived."""
+    """The state of a running suite: contents of its topics, None or empty until they have arrived."""
 
     state: SuiteState | None = None
     overview: Overview = field(default_factory=dict)
@@ -117,17 +117,17 @@ class BridgeClient:
             case ms.MessageData(subscription_id=number, payload=payload):
                 self._read(self._topics.get(number, ""), payload)
             case ms.Advertise(channels=channels):
-                self._channels |= {one.topic: one.id for one in channels if one.encoding == CDR}
-                for one in channels:
-                    if one.topic == _STATE or one.topic.endswith(_PROGRAM):
-                        await self._subscribe(one.topic)
+                self._channels |= {channel.topic: channel.id for channel in channels if channel.encoding == CDR}
+                for channel in channels:
+                    if channel.topic == _STATE or channel.topic.endswith(_PROGRAM):
+                        await self._subscribe(channel.topic)
                 await self._follow_overview()
             case ms.Unadvertise(channel_ids=numbers):
-                self._channels = {topic: one for topic, one in self._channels.items() if one not in numbers}
+                self._channels = {topic: number for topic, number in self._channels.items() if number not in numbers}
                 for number in numbers:
                     self.status.programs.pop(self._topics.pop(number, ""), None)
             case ms.AdvertiseServices(services=services):
-                self._services |= {one.name: one.id for one in services if one.name == _PAUSE}
+                self._services |= {service.name: service.id for service in services if service.name == _PAUSE}
                 self.has_changed.set()
             case ms.ParameterValues(parameters=parameters):
                 for parameter in parameters:

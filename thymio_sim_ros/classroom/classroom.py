@@ -54,13 +54,13 @@ class Classroom:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     def state(self) -> Mapping[str, Any]:
-        """Return what the teacher's page shows; poses are received from now on for a while."""
+        """The data that the teacher's page shows; poses are received from now on for a while."""
         self._asked_s = asyncio.get_running_loop().time()
-        pupils = [{**seat.summary(), "notice": self._messages.get(one, "")} for one, seat in self.seats.items()]
+        pupils = [{**seat.summary(), "notice": self._messages.get(pupil, "")} for pupil, seat in self.seats.items()]
         return {"pupils": pupils, "shown": self._shown}
 
     async def plan(self, number: str) -> Mapping[str, Any] | None:
-        """Return a playground seen from above by the `plan` of a pupil; None if there is none that can be read."""
+        """A playground seen from above by the `plan` of a pupil; None if there is none that can be read."""
         seat = next((seat for seat in self.seats.values() if seat.plan == number), None)
         if number not in self._plans and seat is not None:
             try:
@@ -74,11 +74,11 @@ class Classroom:
 
     async def pause(self, ids: Iterable[str], *, paused: bool) -> None:
         """Pause the worlds of these pupils, or let them run."""
-        await asyncio.gather(*(self.seats[one].pause(paused=paused) for one in ids))
+        await asyncio.gather(*(self.seats[pupil].pause(paused=paused) for pupil in ids))
 
     async def restart(self, ids: Iterable[str]) -> None:
         """Start the suites of these pupils anew, with their programs."""
-        await asyncio.gather(*(self.seats[one].restart() for one in ids))
+        await asyncio.gather(*(self.seats[pupil].restart() for pupil in ids))
 
     async def message(self, ids: Iterable[str], text: str) -> None:
         """Show a message on the pages of these pupils; an empty one removes it."""
@@ -92,7 +92,7 @@ class Classroom:
         await self._show_notices(self.seats)
 
     def programs(self) -> bytes:
-        """Return a zip with a folder for each pupil: the program that ran last, a different text of the editor.
+        """A zip with a folder for each pupil: the program that ran last, a different text of the editor.
 
         `missing.txt` has the names of those who have neither; without such pupils there is no such file.
         """
@@ -109,12 +109,12 @@ class Classroom:
         return packed.getvalue()
 
     def missing(self) -> list[str]:
-        """Return the names of the pupils who have neither run a program nor written one."""
+        """The names of the pupils who have neither run a program nor written one."""
         works = {seat.place.name: self._folder.work(seat.place) for seat in self.seats.values()}
         return [name for name, work in works.items() if work.program is None and work.draft is None]
 
     async def _show_notices(self, ids: Iterable[str]) -> None:
-        await asyncio.gather(*(self.seats[one].show(self._notice(one)) for one in ids))
+        await asyncio.gather(*(self.seats[pupil].show(self._notice(pupil)) for pupil in ids))
 
     def _notice(self, pupil: str) -> Notice:
         text = self._messages.get(pupil, "")

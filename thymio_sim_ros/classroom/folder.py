@@ -28,7 +28,7 @@ _REST = ("program_name", "playground", "class_playground")
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """What a pupil keeps while the folder is kept: `number` from 0 decides ports and domain, `id` names the files."""
+    """A place of a pupil, permanent with the folder: `number` from 0 decides ports and domain, `id` names the files."""
 
     id: str
     name: str
@@ -39,13 +39,13 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What a pupil has made: the suite starts with it."""
+    """The work of a pupil, with which the suite starts."""
 
     program: str | None = None
     """The last own program that was run."""
     program_name: str = ""
     draft: str | None = None
-    """What the editor of the page had last."""
+    """The last text in the editor of the page."""
     playground: str = ""
     """As `load_playground` takes it."""
     class_playground: str = ""
@@ -79,7 +79,7 @@ class ClassFolder:
         return self._path / _FILE
 
     def places(self, names: Sequence[str]) -> list[Place]:
-        """Return the places of these pupils in their order; new pupils get the lowest free numbers.
+        """The places of these pupils in their order; new pupils get the lowest free numbers.
 
         Raises OSError with the name of the file.
         """
@@ -93,13 +93,13 @@ class ClassFolder:
         return [self._places[name] for name in names]
 
     def pupil(self, place: Place) -> Path:
-        """Return the folder of a pupil, which exists."""
+        """The folder of a pupil, which exists."""
         folder = self._path / "pupils" / place.id
         folder.mkdir(parents=True, exist_ok=True)
         return folder
 
     def work(self, place: Place) -> Work:
-        """Return what a pupil has made. Raises OSError."""
+        """The work of a pupil. Raises OSError."""
         rest: Any = None
         with contextlib.suppress(ValueError, RecursionError):  # damaged: the programs are files of their own
             rest = json.loads(_read(self.pupil(place) / _WORK) or "{}")

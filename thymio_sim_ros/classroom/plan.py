@@ -17,7 +17,7 @@ _PICTURE: Color = (0.6, 0.58, 0.55)
 
 
 def plan_of(playground: Playground) -> dict[str, Any]:
-    """Return title, bounds [left, bottom, right, top] in m, patches and walls in the order in which they are drawn.
+    """Title, bounds [left, bottom, right, top] in m, patches and walls in the order in which they are drawn.
 
     A patch is `[color, [x, y, …]]`. A solid has `name`, `color` and either `points` in its own frame or `radius`, its
     `pose` [x, y, yaw], and `moves` if it is not always there.

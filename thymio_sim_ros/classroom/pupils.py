@@ -22,7 +22,7 @@ _LAST = frozenset({"last name", "lastname", "surname", "family name", "nachname"
 
 
 def read_pupils(data: bytes, where: str) -> list[str]:
-    """Return the names in the order of a file: UTF-8, or Windows-1252 as old spreadsheets write it.
+    """The names in the order of a file: UTF-8, or Windows-1252 as old spreadsheets write it.
 
     Columns are separated by comma, semicolon or tab. A header may name a column for the name, or two for first and last
     name; without a header the first column is the name. Empty lines are skipped. `where` begins the messages of errors.
@@ -60,14 +60,14 @@ def read_pupils(data: bytes, where: str) -> list[str]:
 
 
 def folder_name(name: str, taken: Sequence[str] = ()) -> str:
-    """Return a name for files and addresses: lower-case ASCII letters, digits and hyphens, different from `taken`."""
+    """A name for files and addresses: lower-case ASCII letters, digits and hyphens, different from `taken`."""
     plain = unicodedata.normalize("NFKD", name.casefold().replace("ß", "ss")).encode("ascii", "ignore").decode()
     base = re.sub(r"[^a-z0-9]+", "-", plain).strip("-") or "pupil"
-    found, number = base, 1
-    while found in taken:
+    unused, number = base, 1
+    while unused in taken:
         number += 1
-        found = f"{base}-{number}"
-    return found
+        unused = f"{base}-{number}"
+    return unused
 
 
 def _text(data: bytes) -> str:

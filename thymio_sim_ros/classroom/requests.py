@@ -111,12 +111,12 @@ _ACTIONS: Mapping[str, Callable[[Classroom, Mapping[str, Any]], Awaitable[None]]
 
 def _pupils(classroom: Classroom, fields: Mapping[str, Any]) -> list[str]:
     """The ids of the pupils that a request is for."""
-    found = fields.get("pupils")
-    if found is None:
+    ids = fields.get("pupils")
+    if ids is None:
         return list(classroom.seats)
-    if not isinstance(found, list) or not all(isinstance(one, str) and one in classroom.seats for one in found):
+    if not isinstance(ids, list) or not all(isinstance(pupil, str) and pupil in classroom.seats for pupil in ids):
         raise RefusalError(400, "pupils: expected ids of pupils, or null for all")
-    return found
+    return ids
 
 
 def _links(name: str, url: str) -> dict[str, str]:

@@ -51,14 +51,14 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """What a page shows: a text, and an address that it offers."""
+    """A message on a page: a text, and a link."""
 
     text: str = ""
     link: str = ""
 
 
 def next_wait_s(wait_s: float, ran_s: float) -> float:
-    """Return the time before the next restart of a suite that ran for `ran_s`, after one of `wait_s` (0: none yet)."""
+    """The time before the next restart of a suite that ran for `ran_s`, after one of `wait_s` (0: none yet)."""
     return FIRST_WAIT_S if ran_s >= STEADY_S or wait_s == 0.0 else min(MAX_WAIT_S, 2 * wait_s)
 
 
@@ -88,7 +88,7 @@ class Seat:
 
     @property
     def status(self) -> SuiteStatus:
-        """What the suite reports, empty while it does not run."""
+        """The last report of the suite, empty while it does not run."""
         return SuiteStatus() if self._client is None else self._client.status
 
     @property
@@ -162,7 +162,7 @@ class Seat:
 
     @property
     def _page(self) -> Mapping[str, str | bool]:
-        """What the page shows of the class, as parameters of its node."""
+        """The data about the class that the page shows, as parameters of its node."""
         return {
             "pupil": self.place.name,
             "paused_by_teacher": self._wants_pause,
@@ -278,7 +278,7 @@ class Seat:
             await request
 
     def summary(self) -> Mapping[str, Any]:
-        """What the teacher's page shows of this pupil, as JSON values."""
+        """The data about this pupil that the teacher's page shows, as JSON values."""
         state, client = self.status.state, self.status
         programs = [
             {key: values.get(key, "") for key in ("state", "program", "line", "fault")}

@@ -28,7 +28,7 @@ _LIBC = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
 
 @dataclass(frozen=True, slots=True)
 class SuiteOptions:
-    """What the suites of a class have in common; a pupil's ports and domain follow from `Place.number`."""
+    """Common options of the suites of a class; a pupil's ports and domain follow from `Place.number`."""
 
     address: str
     first_port: int

@@ -1,4 +1,4 @@
-"""What a suite publishes about its world as JSON, checked. Pure.
+"""The state of a world that a suite publishes as JSON, checked. Pure.
 
 Any node of a pupil can publish on these topics too, and what one pupil sends must not break the page of the teacher.
 """
@@ -35,19 +35,19 @@ class SuiteState:
 
 
 def read_state(text: str) -> SuiteState:
-    """Return the state in a message of `/simulator/_state`. Raises SuiteStateError."""
+    """The state in a message of `/simulator/_state`. Raises SuiteStateError."""
     match _object(text):
         case {"paused": bool(paused), "achieved": int() | float() as achieved, "robots": list(robots)}:
-            return SuiteState(paused, _finite(achieved), tuple(name for one in robots for name in _fallen(one)))
+            return SuiteState(paused, _finite(achieved), tuple(name for robot in robots for name in _fallen(robot)))
     raise SuiteStateError("expected the fields paused, achieved and robots")
 
 
 def read_overview(text: str) -> Overview:
-    """Return the poses in a message of `/simulator/_overview`. Raises SuiteStateError."""
-    found = _object(text)
+    """The poses in a message of `/simulator/_overview`. Raises SuiteStateError."""
+    data = _object(text)
     overview: dict[str, dict[str, list[float] | None]] = {}
     for kind, length in _LENGTHS.items():
-        items = found.get(kind)
+        items = data.get(kind)
         if not isinstance(items, dict):
             raise SuiteStateError(f"{kind}: expected an object")
         overview[kind] = {name: _pose(values, length) for name, values in items.items()}
@@ -56,12 +56,12 @@ def read_overview(text: str) -> Overview:
 
 def _object(text: str) -> dict[str, Any]:
     try:
-        found = json.loads(text, parse_constant=_refuse)
+        data = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
         raise SuiteStateError(f"not JSON: {error}") from error
-    if not isinstance(found, dict):
+    if not isinstance(data, dict):
         raise SuiteStateError("expected an object")
-    return found
+    return data
 
 
 def _refuse(word: str) -> NoReturn:
