@@ -45,7 +45,7 @@ class Barrier:
         self._subscription = self.node.create_subscription(String, TOPIC, self._ignore, _QOS)
 
     def mark(self) -> None:
-        """Publish a mark: what is published before it arrives before it."""
+        """Publish a mark: messages that are published before it arrive before it."""
         self.sent += 1
         self._publisher.publish(String(data=f"{self.source} {self.sent}"))
 
@@ -63,15 +63,15 @@ class Barrier:
         return f"{self.source} has received marks {marks}, and is matched with {matched} of {known} publishers"
 
     def _has(self, wanted: Mapping[str, int]) -> bool:
-        while taken := self._take():
-            source, _, mark = taken.rpartition(" ")
+        while mark_message := self._take():
+            source, _, mark = mark_message.rpartition(" ")
             self._received[source] = int(mark)
         return all(self._received.get(source, 0) >= mark for source, mark in wanted.items())
 
     def _take(self) -> str:
         with self._subscription.handle:
-            taken = self._subscription.handle.take_message(String, False)  # not raw
-        return "" if taken is None else str(taken[0].data)
+            mark_message = self._subscription.handle.take_message(String, False)  # not raw
+        return "" if mark_message is None else str(mark_message[0].data)
 
     def _ignore(self, _message: String) -> None:
         pass

@@ -97,12 +97,12 @@ def _install_selectors(turns: Turns) -> None:
     def select_in_turns(
         read: Sequence[Any], write: Sequence[Any], other: Sequence[Any], timeout: float | None = None
     ) -> tuple[list[Any], list[Any], list[Any]]:
-        typed = [one for one in read if hasattr(one, "has_line")]
-        files = [one for one in read if one not in typed]
+        typed = [file for file in read if hasattr(file, "has_line")]
+        files = [file for file in read if file not in typed]
 
         def ready() -> tuple[list[Any], list[Any], list[Any]]:
             now, *rest = look(files, write, other, 0)
-            return [*(one for one in typed if one.has_line()), *now], rest[0], rest[1]
+            return [*(file for file in typed if file.has_line()), *now], rest[0], rest[1]
 
         if timeout is not None and timeout <= 0:
             turns.poll()

@@ -13,7 +13,7 @@ __all__ = ["Keyboard", "install"]
 
 
 class Keyboard(io.TextIOBase):
-    """What the test types. A line is read when simulated time has reached its time."""
+    """Standard input from a test. A line can be read when simulated time has reached its time."""
 
     def __init__(self, turns: Turns) -> None:
         self._turns = turns
@@ -58,7 +58,7 @@ class Keyboard(io.TextIOBase):
         return True
 
     def fileno(self) -> int:
-        """That of the empty file behind it."""
+        """The descriptor of the empty file behind the keyboard."""
         return 0
 
     def _fill(self) -> None:

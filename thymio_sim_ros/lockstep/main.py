@@ -38,7 +38,7 @@ FORKED_TURN_S = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """How to run a program; one of `file`, `module` and `function` is set."""
+    """Options for a program; one of `file`, `module` and `function` is set."""
 
     read_fd: int
     write_fd: int

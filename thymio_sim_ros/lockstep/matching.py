@@ -31,14 +31,14 @@ def all_matched(nodes: Sequence[Node]) -> bool:
 def endpoints(nodes: Iterable[Node]) -> dict[str, dict[str, int]]:
     """Numbers of publishers, subscriptions, services and clients, for `is_complete` in another process.
 
-    Those of topics are by name, as the graph counts them; those of services by name and type.
+    Endpoints of topics are counted by name, as in the graph; endpoints of services by name and type.
     """
     numbers = {kind: Counter[str]() for kind in ("publishers", "subscriptions", "services", "clients")}
     for node in nodes:
         for kind in ("publishers", "subscriptions"):
-            numbers[kind].update(one.topic_name for one in getattr(node, kind))
+            numbers[kind].update(end.topic_name for end in getattr(node, kind))
         for kind in ("services", "clients"):
-            numbers[kind].update(_service(one) for one in getattr(node, kind))
+            numbers[kind].update(_service(end) for end in getattr(node, kind))
     return {kind: dict(counted) for kind, counted in numbers.items()}
 
 
@@ -53,8 +53,8 @@ def is_complete(nodes: Sequence[Node], expected: Mapping[str, Mapping[str, int]]
     published, subscribed = expected["publishers"], expected["subscriptions"]
     used = (published.keys() & subscribed.keys()).difference(EVERYWHERE)
     view = nodes[0]
-    ends: list[Any] = [one for node in nodes for one in (*node.publishers, *node.subscriptions)]
-    own = {one.topic_name for one in ends} & used
+    ends: list[Any] = [end for node in nodes for end in (*node.publishers, *node.subscriptions)]
+    own = {end.topic_name for end in ends} & used
     return (
         all(view.count_publishers(topic) >= published[topic] for topic in own)
         and all(view.count_subscribers(topic) >= subscribed[topic] for topic in own)
@@ -69,8 +69,8 @@ def is_complete(nodes: Sequence[Node], expected: Mapping[str, Mapping[str, int]]
 
 
 def _node_is_matched(node: Node, topics: Set[str]) -> bool:
-    return all(_publisher_is_matched(node, one) for one in node.publishers if one.topic_name in topics) and all(
-        is_matched(node, one) for one in node.subscriptions if one.topic_name in topics
+    return all(_publisher_is_matched(node, end) for end in node.publishers if end.topic_name in topics) and all(
+        is_matched(node, end) for end in node.subscriptions if end.topic_name in topics
     )
 
 

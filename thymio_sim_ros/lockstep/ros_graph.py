@@ -64,7 +64,7 @@ class Graph:
             barrier.wait(marks)
 
     def endpoints(self) -> dict[str, dict[str, int]]:
-        """Return the numbers of endpoints by kind and name."""
+        """The numbers of endpoints by kind and name."""
         self.has_new = self.has_changed = False
         return endpoints(self._alive())
 
@@ -112,9 +112,11 @@ class Graph:
         kind.init, kind.shutdown, kind.try_shutdown = init_context, leaving(shutdown), leaving(try_shutdown)
 
     def _leave(self, context: Context) -> None:
+        # The last mark goes out while the participant exists. Others wait for it before they continue, so that they
+        # receive what the program published just before its end.
         if self.has_new and context.ok():
             self._settle()
-        for barrier in [one for one in self._barriers if one.context is context]:
+        for barrier in [barrier for barrier in self._barriers if barrier.context is context]:
             if context.ok():
                 with self._own_calls():
                     barrier.mark()
@@ -145,6 +147,9 @@ class Graph:
             setattr(kind, name, noted(getattr(kind, name), is_new=False))
 
     def _settle_before(self, kind: Any, *names: str) -> None:
+        # DDS discards a message for a subscription that is not matched yet, and whether it is depends on real time. So
+        # the first use of a new endpoint waits for all matches. Calls of this class itself (`_is_own`) must not: they
+        # are made during that wait.
         def settled(function: Callable[..., Any]) -> Callable[..., Any]:
             def settling(own: Any, *args: Any, **kwargs: Any) -> Any:
                 if not self._is_own and getattr(own, "topic_name", "") not in EVERYWHERE:

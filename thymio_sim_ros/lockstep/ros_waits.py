@@ -39,6 +39,7 @@ def _install_clocks(turns: Turns) -> None:
     alive: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def new_clock(cls: Any, *, clock_type: Any = ClockType.SYSTEM_TIME) -> Any:
+        # Of the clocks of rcl, only those of type ROS_TIME can be set. rclpy has its handle in a private attribute.
         made = new(cls, clock_type=clock_type)
         made._Clock__clock = _rclpy.Clock(ClockType.ROS_TIME)
         made.handle.set_ros_time_override_is_enabled(True)
@@ -47,8 +48,8 @@ def _install_clocks(turns: Turns) -> None:
         return made
 
     def set_all(now_ns: int) -> None:
-        for one in list(alive):
-            _set(one, now_ns)
+        for living in list(alive):  # a copy: setting a clock calls its jump callbacks, which may create clocks
+            _set(living, now_ns)
 
     now = kind.now
 
@@ -69,8 +70,8 @@ def _install_clocks(turns: Turns) -> None:
     source._subscribe_to_clock_topic = lambda _self: None
 
 
-def _set(one: Any, now_ns: int) -> None:
-    one.handle.set_ros_time_override(_rclpy.rcl_time_point_t(now_ns, ClockType.ROS_TIME))
+def _set(target: Any, now_ns: int) -> None:
+    target.handle.set_ros_time_override(_rclpy.rcl_time_point_t(now_ns, ClockType.ROS_TIME))
 
 
 # --- waits ---
@@ -123,6 +124,8 @@ def _install_wait_set(turns: Turns) -> None:
             return self.add_by(lambda: real.add_timer(self, handle))
 
         def wait(self, timeout_ns: int) -> None:
+            # rcl never blocks here: its wait would last in real time, and the other threads would get no turn. Instead,
+            # each thread that passes its turn on calls `_look` for this one (`Turns._following`).
             if self._look():
                 return
             if timeout_ns == 0:

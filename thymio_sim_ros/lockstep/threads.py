@@ -34,7 +34,10 @@ def install(turns: Turns) -> None:
 
 def _lock_class(turns: Turns) -> type:
     class Lock:
-        """`threading.Lock` in simulated time."""
+        """`threading.Lock` in simulated time.
+
+        An attribute is enough: only one thread runs, and it passes its turn on in calls of `turns` only.
+        """
 
         def __init__(self) -> None:
             self._is_locked = False
@@ -79,6 +82,8 @@ def _install_threads(turns: Turns) -> None:
     start, bootstrap = kind.start, kind._bootstrap
 
     def start_in_turns(self: Any) -> None:
+        # Registered by the thread that starts it, whose turn it is: the new thread, which runs at once in real time,
+        # would register at an arbitrary moment.
         self._turns_thread = turns.add() if not hasattr(self, "_turns_thread") else self._turns_thread
         start(self)
 

@@ -1,4 +1,9 @@
-"""Turns: the threads of a program, of which one runs at a time, and the simulated time that they wait for."""
+"""Turns: the threads of a program, of which one runs at a time, and the simulated time that they wait for.
+
+Each thread has a gate, a lock that it acquires in order to wait. The running thread passes its turn on in two steps: it
+releases the gate of the next thread, then acquires its own. The next thread may return the turn between the two steps;
+the gate is then open, and the second step does not block.
+"""
 
 from __future__ import annotations
 
@@ -23,6 +28,7 @@ FOREIGN_S = 0.001
 """Real time between two looks of a thread that Python's `threading` did not start."""
 
 _allocate_lock = _thread.allocate_lock
+"""The real function: `threads.install` replaces the one of the module, and the locks of this module must block."""
 
 
 class WaitingThread:
@@ -42,7 +48,7 @@ class WaitingThread:
 
 
 class Turns:
-    """Whose turn it is, and the time. Invariant: only the thread `running` executes code of the program."""
+    """The thread whose turn it is, and the time. Invariant: only the thread `running` executes code of the program."""
 
     def __init__(self, end_turn: Callable[[], None]) -> None:
         """`end_turn()` is called when all threads wait; it returns when the program has its next turn.
@@ -89,6 +95,7 @@ class Turns:
         if is_ready():
             return True
         own = self.running
+        # A thread without the turn was not started by `threading`, such as a thread of a C library.
         if own.ident != _thread.get_ident():
             return self._wait_outside(is_ready, deadline_ns)
         own.is_ready, own.deadline_ns, own.waits_for = is_ready, deadline_ns, what
@@ -163,6 +170,8 @@ class Turns:
 
     def _following(self, own: WaitingThread) -> WaitingThread:
         """The thread that runs next: the next one that is ready, else the one that waits for the earliest time."""
+        # All decisions depend on the order in which threads were created and on simulated time only, so a run can be
+        # repeated. The search begins behind `own`: each thread that is ready gets a turn before any gets a second one.
         while True:
             index = self.threads.index(own) + 1
             for thread in (*self.threads[index:], *self.threads[:index]):
@@ -174,6 +183,7 @@ class Turns:
                 if _deadline_ns(first) < self.until_ns:
                     self._advance(_deadline_ns(first))
                     return first
+            # No thread can run before `until_ns`. Messages may arrive during the call, and time may pass: search again.
             self._end_turn()
 
 
