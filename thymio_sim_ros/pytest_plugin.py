@@ -34,7 +34,7 @@ NO_ROS = (
 
 @dataclass(frozen=True, slots=True)
 class Graded:
-    """What fixtures do under `thymio-sim grade`, in the stash of pytest's configuration.
+    """Settings of the fixtures under `thymio-sim grade`, in the stash of pytest's configuration.
 
     The files beside a test are those of a submission, too. Services, parameters and topics of the world belong to the
     test: programs do not reach them.
@@ -45,7 +45,7 @@ class Graded:
     handed_in: frozenset[str] = frozenset()
     """Files that a submission must contain, relative to the folder of the tests: what is handed in is not replaced."""
     output_bytes: int = 10_000_000
-    """What a program may print."""
+    """Limit of the output of a program."""
 
 
 GRADED = pytest.StashKey[Graded]()
@@ -110,7 +110,7 @@ def _is_graded(request: pytest.FixtureRequest) -> bool:
 
 
 def _playground(request: pytest.FixtureRequest, value: Any) -> Any:
-    """What a test calls a playground, as Classroom and Simulator take it."""
+    """The playground that a test names, as an argument of Classroom and Simulator."""
     from thymio_sim_ros.files.loading import is_playground_text
     from thymio_sim_ros.files.resources import playgrounds
     from thymio_sim_ros.testing.sources import playground_source

@@ -32,5 +32,5 @@ class Awaited:
         return value
 
     def missing(self) -> str:
-        """What the condition waits for, as the end of a failure message; empty if it could be evaluated."""
+        """The data that the condition lacks, as the end of a failure message; empty if it could be evaluated."""
         return f"\n({self._missing})" if self._missing else ""

@@ -22,7 +22,7 @@ class _Past:
         self.progress = TrackProgress(self._line)
 
     def catch_up(self) -> TrackProgress:
-        """Return the progress until now."""
+        """The progress until now."""
         path = self._thymio.path
         if self._cleared != self._thymio.record.cleared:
             self._forget()

@@ -15,7 +15,7 @@ SECOND_NS = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Where a robot was at a simulated time in s, and how fast: m/s along its heading, rad/s counter-clockwise."""
+    """Pose and velocity of a robot at a simulated time in s: m/s along its heading, rad/s counter-clockwise."""
 
     at_s: float
     pose: Pose

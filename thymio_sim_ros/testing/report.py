@@ -15,7 +15,7 @@ _LAST_EVENTS = 3
 
 
 def robot_lines(robots: Iterable[Thymio]) -> list[str]:
-    """Two or three lines for each robot: where it is, what its program does, what it said last."""
+    """Two or three lines for each robot: its pose, the state of its program, its last events."""
     lines: list[str] = []
     for thymio in robots:
         if thymio.name in thymio.stage.world.robots:
@@ -44,6 +44,6 @@ def _program(thymio: Thymio) -> list[str]:
     lines = [f"  program {machine.program.name}: {state}"]
     last = thymio.events[-_LAST_EVENTS:]
     if last:
-        said = ", ".join(f"{event.name} {list(event.args)} at {event.at_s:.2f} s" for event in last)
-        lines.append(f"  emitted {pluralized(len(thymio.events), 'event')}, last {said}")
+        emitted = ", ".join(f"{event.name} {list(event.args)} at {event.at_s:.2f} s" for event in last)
+        lines.append(f"  emitted {pluralized(len(thymio.events), 'event')}, last {emitted}")
     return lines

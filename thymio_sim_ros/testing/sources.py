@@ -1,4 +1,4 @@
-"""What a test names, as values: playgrounds and programs by name, by path beside the test, or as text."""
+"""Playgrounds and programs that a test names: by name, by path beside the test, or as text."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ class RobotMachine(Protocol):
 
     @property
     def program(self) -> ThymioProgram:
-        """What it runs."""
+        """Its program."""
 
 
 class Stage(Protocol):
@@ -114,12 +114,12 @@ class Thymio:
 
     @property
     def path(self) -> list[Moment]:
-        """Where it was after each tick that the test let pass."""
+        """Its motion: a moment for each tick that the test has executed."""
         return self.record.moments
 
     @property
     def touches(self) -> list[Touch]:
-        """What it began to touch, and when."""
+        """The objects that it began to touch, and the times."""
         return self.record.touches
 
     @property
@@ -130,12 +130,12 @@ class Thymio:
 
     @property
     def leds(self) -> Mapping[str, tuple[int, ...]]:
-        """How bright each light shines, 0…32, by group: "top", "circle", …"""
+        """Brightness of each light, 0…32, by group: "top", "circle", …"""
         return self.stage.world.robots[self.name].state(LedState).levels
 
     @property
     def drawing(self) -> tuple[Stroke, ...]:
-        """What its pen drew."""
+        """The strokes of its pen."""
         return self.stage.world.robots[self.name].state(PenState).strokes
 
     # --- its program ---
@@ -162,7 +162,7 @@ class Thymio:
 
     @property
     def program(self) -> ThymioProgram | None:
-        """What it runs, if it has a machine."""
+        """Its program, if it has a machine."""
         machine = self.stage.machine(self.name)
         return None if machine is None else machine.program
 
@@ -241,7 +241,7 @@ class Thymio:
         self.stage.engine.post(self.name, command)
 
     def level(self, group: str) -> tuple[int, ...]:
-        """How bright the lights of a group shine, 0…32; KeyError with the groups there are."""
+        """Brightness of the lights of a group, 0…32. Raises KeyError, which names the groups, for an unknown one."""
         if group not in LED_GROUPS:
             raise KeyError(f"no lights '{group}': expected one of {', '.join(LED_GROUPS)}")
         return self.leds[group]

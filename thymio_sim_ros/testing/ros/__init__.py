@@ -1,4 +1,4 @@
-"""What tests of ROS nodes are made of: a private graph, nodes under test, topics on record, a stepped simulator.
+"""Parts of tests of ROS nodes: a private graph, nodes under test, recorded topics, a stepped simulator.
 
 All nodes live in the test's own process and thread: ours on one executor, each node under test on its own. Waiting
 is always for a condition with a deadline, and simulated time is stepped, so that a slow machine changes nothing

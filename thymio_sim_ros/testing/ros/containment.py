@@ -53,7 +53,7 @@ class _Section:
 
     what: Callable[[], str]
     stops: int = 0
-    """How often it was interrupted."""
+    """Number of interruptions."""
 
 
 class Containment:

@@ -357,7 +357,7 @@ class Ros:
         where: Callable[[Any], Any] | None = None,
         qos: QoSProfile | int | None = None,
     ) -> Recorder:
-        """Return a list that is filled with the messages of a topic, or with those that satisfy `where`.
+        """A list that is filled with the messages of a topic, or with those that satisfy `where`.
 
         Waits for a publisher and uses its QoS. With durability transient local, earlier messages arrive too, unless
         `transient_local` is false. With `qos`, it does not wait.
@@ -410,7 +410,7 @@ class Ros:
         """Call a service and return its response."""
         __tracebackhide__ = True
         full = self.node.resolve_service_name(name)
-        if (answer := next(filter(None, (one.service(full) for one in self._local_nodes())), None)) is not None:
+        if (answer := next(filter(None, (local.service(full) for local in self._local_nodes())), None)) is not None:
             return answer(kind.Request() if request is None else request)
         with student.types_explained(self.node, CLIENT, kind, name):
             client = self.node.create_client(kind, name)
@@ -420,10 +420,10 @@ class Ros:
         return future.result()
 
     def _local_topic(self, name: str) -> LocalTopic | None:
-        return next(filter(None, (one.topic(name) for one in self._local_nodes())), None)
+        return next(filter(None, (local.topic(name) for local in self._local_nodes())), None)
 
     def _local_nodes(self) -> list[LocalNode]:
-        """Those of the nodes of this package whose endpoints only this process reaches."""
+        """The nodes of this package with endpoints that only this process reaches."""
         controls = (getattr(life, "control", None) for life in self._lives)
         return [control for control in controls if isinstance(control, LocalNode)]
 
@@ -449,7 +449,7 @@ class Ros:
         lines += [repr(recorder) for recorder in self._recorders]
         ours = [TEST_NODE, *(life.node.get_name() for life in self._lives)]
         for life in self._lives:
-            lines += [str(one) for one in Connections(life.node).find(is_settled=True)]
+            lines += [str(connection) for connection in Connections(life.node).find(is_settled=True)]
         pytest.fail("\n".join([*lines, *discovery.topic_lines(self.node, ours)]))
 
     def close(self) -> None:

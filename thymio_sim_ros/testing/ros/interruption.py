@@ -1,4 +1,4 @@
-"""Where code under test is, and how it is left even if it catches every exception."""
+"""Position of code under test, and a way to leave it even if it catches every exception."""
 
 from __future__ import annotations
 

@@ -83,6 +83,6 @@ def _place(stacks: str) -> str:
     for stack in stacks.split("\n\n"):
         frames = [found for line in stack.splitlines() if (found := _FRAME.search(line))]
         if frames and _OUR_FRAMES not in frames[0]["file"]:
-            inner = next((one for one in frames if "site-packages" not in one["file"]), frames[0])
+            inner = next((frame for frame in frames if "site-packages" not in frame["file"]), frames[0])
             return f"{inner['file']}, line {inner['line']}, in {inner['function']}"
     return ""

@@ -35,7 +35,7 @@ _LOOK_S = 0.05
 _LAST_LINES = 6
 
 OUTPUT_BYTES = 10_000_000
-"""What a program may print, unless the test says otherwise."""
+"""Default limit of the output of a program."""
 
 _SHOWN = 20_000
 """Characters of its output, from its end, that the report of the test has."""
@@ -77,12 +77,12 @@ class Program:
 
     @property
     def output(self) -> str:
-        """What it has written to standard output so far."""
+        """The text that it has written to standard output so far."""
         return _text(self._output)
 
     @property
     def errors(self) -> str:
-        """What it has written to standard error so far, with the traceback of its end if there is one."""
+        """The text that it has written to standard error so far, with the traceback of its end if there is one."""
         return _text(self._errors)
 
     def type(self, line: str) -> None:

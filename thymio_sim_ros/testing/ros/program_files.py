@@ -1,4 +1,4 @@
-"""Where a program is: a file, a module, or an executable of a package."""
+"""The location of a program: a file, a module, or an executable of a package."""
 
 from __future__ import annotations
 

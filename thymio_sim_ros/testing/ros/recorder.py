@@ -57,10 +57,10 @@ class Recorder(Sequence[Any]):
         __tracebackhide__ = True
         begin = len(self._messages)
 
-        def found() -> list[Any]:
+        def matching() -> list[Any]:
             return [message for message in self._messages[begin:] if where(message)]
 
-        return self._until(found, timeout, sim_time=sim_time, what=f"the next message on {self.topic}")[0]
+        return self._until(matching, timeout, sim_time=sim_time, what=f"the next message on {self.topic}")[0]
 
     def wait(self, count: int = 1, *, timeout: float | None = None, sim_time: float | None = None) -> None:
         """Wait until so many messages are there."""

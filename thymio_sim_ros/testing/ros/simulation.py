@@ -164,11 +164,11 @@ class Simulation:
     # --- programs ---
 
     def machine(self, robot: str) -> DeviceEndpoints | None:
-        """Return the machine of a robot if a runtime node of this test has one, otherwise None."""
+        """The machine of a robot if a runtime node of this test has one, otherwise None."""
         names = self.simulator.endpoints.robots.names
         wanted = names[robot].name if robot in names else robot
-        found = (ports for runtime in self._runtimes for ports in runtime.robots if ports.names.name == wanted)
-        return next(found, None)
+        endpoints = (ports for runtime in self._runtimes for ports in runtime.robots if ports.names.name == wanted)
+        return next(endpoints, None)
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Load a program into the machine of a robot. Raises LookupError if it has no machine."""
@@ -193,8 +193,8 @@ class Simulation:
 
         Raises LookupError if there is no machine.
         """
-        found = ((runtime, ports) for runtime in self._runtimes for ports in runtime.robots)
-        runtime, ports = next(found, (None, None))
+        machines = ((runtime, ports) for runtime in self._runtimes for ports in runtime.robots)
+        runtime, ports = next(machines, (None, None))
         if runtime is None or ports is None:
             raise LookupError(_NO_MACHINE.format("any robot"))
         layout = MultiArrayLayout(dim=[MultiArrayDimension(label=event, size=len(args), stride=1)])

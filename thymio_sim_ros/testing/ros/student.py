@@ -69,7 +69,7 @@ class StudentError(ThymioSimError):
 
 
 def load_class(source: str | Path, class_name: str = "") -> type[Node]:
-    """Return the node class of a file (*.py), or of a module given by its dotted name.
+    """The node class of a file (*.py), or of a module given by its dotted name.
 
     The only node class is taken, unless `class_name` names one. A file may start its node in its last lines: functions
     that spin do nothing while it is loaded.
@@ -98,7 +98,7 @@ def load_class(source: str | Path, class_name: str = "") -> type[Node]:
 def remap_arguments(
     name: str, namespace: str, remappings: Mapping[str, str], parameters: Mapping[str, Any] | None = None
 ) -> list[str]:
-    """Return the command line arguments of `ros2 run` that set name, namespace, remappings and parameters."""
+    """The command line arguments of `ros2 run` that set name, namespace, remappings and parameters."""
     rules = dict(remappings)
     if namespace:
         rules["__ns"] = "/" + namespace.strip("/")
