@@ -61,7 +61,7 @@ class Buffer(BufferInterface):
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Time | TimeMessage, timeout: Duration = NO_WAIT
     ) -> TransformStamped:
-        """Return the pose of `source_frame` in `target_frame`; wait until it is known, at most for `timeout`.
+        """The pose of `source_frame` in `target_frame`; waits until it is known, at most for `timeout`.
 
         Raises LookupException, ConnectivityException, ExtrapolationException or InvalidArgumentException.
         """
@@ -76,7 +76,7 @@ class Buffer(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_WAIT,
     ) -> TransformStamped:
-        """Return the pose of `source_frame` at one time in `target_frame` at another time.
+        """The pose of `source_frame` at one time in `target_frame` at another time.
 
         `fixed_frame` is a frame that does not move in between. Raises the exceptions of `lookup_transform`.
         """
@@ -139,7 +139,7 @@ class Buffer(BufferInterface):
         )
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> TransformStamped:
-        """Return the pose of `source_frame` in `target_frame`; the same as `lookup_transform`, as tf2_py has it."""
+        """The pose of `source_frame` in `target_frame`; the same as `lookup_transform`, as tf2_py has it."""
         return self.lookup_transform(target_frame, source_frame, time)
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> tuple[bool, str]:
@@ -154,7 +154,7 @@ class Buffer(BufferInterface):
         source_time: Time | TimeMessage,
         fixed_frame: str,
     ) -> TransformStamped:
-        """Return the pose of a frame at another time; the same as `lookup_transform_full`, as tf2_py has it."""
+        """The pose of a frame at another time; the same as `lookup_transform_full`, as tf2_py has it."""
         return self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame)
 
     def can_transform_full_core(
@@ -207,7 +207,7 @@ class Buffer(BufferInterface):
             return self._core.velocity(*frames, _ns(time), averaging_interval.nanoseconds)
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> Future:
-        """Return a future whose result is True as soon as the transform is known."""
+        """A future whose result is True as soon as the transform is known."""
         return self._future(lambda: self._core.lookup(target_frame, source_frame, _ns(time)))
 
     def wait_for_transform_full_async(
@@ -218,7 +218,7 @@ class Buffer(BufferInterface):
         source_time: Time | TimeMessage,
         fixed_frame: str,
     ) -> Future:
-        """Return a future whose result is True as soon as the transform between two times is known."""
+        """A future whose result is True as soon as the transform between two times is known."""
         return self._future(
             lambda: self._core.lookup_full(target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame)
         )
@@ -367,11 +367,16 @@ class TransformListener:
 
     def _on_transforms(self, data: bytes, *, is_static: bool) -> None:
         try:
-            found = [
-                StampedTransform(one.stamp_ns, one.frame, one.child, RigidTransform(one.translation, one.rotation))
-                for one in tf2_messages.decode(data)
+            transforms = [
+                StampedTransform(
+                    message.stamp_ns,
+                    message.frame,
+                    message.child,
+                    RigidTransform(message.translation, message.rotation),
+                )
+                for message in tf2_messages.decode(data)
             ]
-            self.buffer._store(found, "default_authority", is_static=is_static)
+            self.buffer._store(transforms, "default_authority", is_static=is_static)
         except (tf2_messages.TransformDataError, TransformException) as error:
             self._warn("tf:", f"{error}; does the node use the simulator's time (use_sim_time:=true)?")
 
@@ -403,7 +408,7 @@ class StaticTransformBroadcaster:
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
         """Publish one transform or several; they replace earlier ones of the same child frame."""
-        self._sent |= {one.child_frame_id: one for one in _several(transform)}
+        self._sent |= {stamped.child_frame_id: stamped for stamped in _several(transform)}
         self.pub_tf.publish(_encoded(self._sent.values()))
 
 
@@ -414,14 +419,18 @@ def _several(transform: TransformStamped | Iterable[TransformStamped]) -> list[T
 def _encoded(transforms: Iterable[TransformStamped]) -> bytes:
     placed = map(_placed, transforms)
     return tf2_messages.encode(
-        tf2_messages.Transform(one.stamp_ns, one.frame, one.child, one.motion.translation, one.motion.rotation)
-        for one in placed
+        tf2_messages.Transform(
+            stamped.stamp_ns, stamped.frame, stamped.child, stamped.motion.translation, stamped.motion.rotation
+        )
+        for stamped in placed
     )
 
 
 def _placed(transform: TransformStamped) -> StampedTransform:
-    one = tf2_messages.from_message(transform)
-    return StampedTransform(one.stamp_ns, one.frame, one.child, RigidTransform(one.translation, one.rotation))
+    message = tf2_messages.from_message(transform)
+    return StampedTransform(
+        message.stamp_ns, message.frame, message.child, RigidTransform(message.translation, message.rotation)
+    )
 
 
 def _message(placed: StampedTransform) -> TransformStamped:

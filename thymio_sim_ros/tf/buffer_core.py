@@ -146,7 +146,7 @@ class BufferCore:
                 cache.kept.clear()
 
     def lookup(self, target: str, source: str, time_ns: int = LATEST_NS) -> StampedTransform:
-        """Return the pose of `source` in `target`, which converts coordinates in `source` to coordinates in `target`.
+        """The pose of `source` in `target`, which converts coordinates in `source` to coordinates in `target`.
 
         Both frames are followed to their ancestors at that time; the result is composed at the first common ancestor.
         Raises InvalidArgumentException, LookupException, ConnectivityException or ExtrapolationException.
@@ -170,7 +170,7 @@ class BufferCore:
         return StampedTransform(time_ns, target, source, down[common].inverse() * up[common])
 
     def lookup_full(self, target: str, target_ns: int, source: str, source_ns: int, fixed: str) -> StampedTransform:
-        """Return the pose of `source` at one time in `target` at another time; `fixed` does not move in between.
+        """The pose of `source` at one time in `target` at another time; `fixed` does not move in between.
 
         Raises the exceptions of `lookup`.
         """

@@ -1,4 +1,4 @@
-"""What a buffer of transforms offers for messages of any type, and the registers of such types, as in `tf2_ros`.
+"""The interface of a buffer of transforms for messages of any type, and the registers of such types, as in `tf2_ros`.
 
 A package that has messages of its own registers a function that transforms each of them (`TransformRegistration`), and
 functions that convert them from and to messages of ROS (`ConvertRegistration`). The registers belong to the process.
@@ -109,8 +109,8 @@ class BufferInterface:
         Raises TypeException for a type without a function, and the exceptions of `lookup_transform`.
         """
         header, act = object_stamped.header, self.registration.get(type(object_stamped))
-        found = act(object_stamped, self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout))
-        return found if new_type is None else convert(found, new_type)
+        transformed = act(object_stamped, self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout))
+        return transformed if new_type is None else convert(transformed, new_type)
 
     def transform_full(
         self,
@@ -124,13 +124,13 @@ class BufferInterface:
         """Transform a message to another frame at another time; see `transform` and `lookup_transform_full`."""
         header, act = object_stamped.header, self.registration.get(type(object_stamped))
         known = (target_frame, target_time, header.frame_id, header.stamp, fixed_frame, timeout)
-        found = act(object_stamped, self.lookup_transform_full(*known))
-        return found if new_type is None else convert(found, new_type)
+        transformed = act(object_stamped, self.lookup_transform_full(*known))
+        return transformed if new_type is None else convert(transformed, new_type)
 
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Time | TimeMessage, timeout: Duration = NO_WAIT
     ) -> TransformStamped:
-        """Return the pose of `source_frame` in `target_frame`. Raises NotImplementedException in this class."""
+        """The pose of `source_frame` in `target_frame`. Raises NotImplementedException in this class."""
         raise _missing(self, "lookup_transform")
 
     def lookup_transform_full(
@@ -142,7 +142,7 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Duration = NO_WAIT,
     ) -> TransformStamped:
-        """Return the pose of a frame at another time. Raises NotImplementedException in this class."""
+        """The pose of a frame at another time. Raises NotImplementedException in this class."""
         raise _missing(self, "lookup_transform_full")
 
     def can_transform(
