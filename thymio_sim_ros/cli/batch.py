@@ -1,4 +1,4 @@
-"""What commands with many tasks share: options of the cluster, and progress on stderr.
+"""Parts of commands with many tasks: options of the cluster, and progress on stderr.
 
 The progress is one line that is rewritten on a terminal, otherwise a plain line now and then.
 """
@@ -22,7 +22,7 @@ TERMINAL_S, PLAIN_S = 0.2, 30.0
 
 
 def progress_text(noun: str, finished: int, total: int, failed: int, rate: float) -> str:
-    """Return finished and failed tasks, the rate, and the time left if the rate is known (above 0)."""
+    """Finished and failed tasks, the rate, and the time left if the rate is known (above 0)."""
     parts = [f"{finished} of {total} {noun}"]
     if failed:
         parts.append(f"{failed} with errors")
@@ -35,7 +35,7 @@ def progress_text(noun: str, finished: int, total: int, failed: int, rate: float
 
 
 def duration_text(seconds: float) -> str:
-    """Return a duration in its two largest units, such as "2 h 5 min"."""
+    """A duration in its two largest units, such as "2 h 5 min"."""
     whole = round(seconds)
     hours, minutes = divmod(whole // 60, 60)
     if hours:

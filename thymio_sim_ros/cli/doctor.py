@@ -48,29 +48,32 @@ def run(argv: Sequence[str]) -> int:
 
     try:
         with dds_profile.used(dds_profile.ANNOUNCING):
-            found = examine(os.environ, options.robot)
+            examination = examine(os.environ, options.robot)
     except NothingFoundError as error:
         raise UsageError(str(error)) from error
     with standard_output():
-        lines = [json.dumps(asdict(found), indent=2)] if options.json else _lines(found)
+        lines = [json.dumps(asdict(examination), indent=2)] if options.json else _lines(examination)
         sys.stdout.writelines(f"{line}\n" for line in lines)
-    return FAULTS if found.faults else 0
+    return FAULTS if examination.faults else 0
 
 
-def _lines(found: Examination) -> Iterator[str]:
-    robots = ", ".join(name or "one without a name" for name in found.robots)
-    yield f"Playground {found.playground}, robots: {robots or 'none'}; {found.where}"
-    yield from ("", "Topics that other nodes share with the robots:" if found.topics else "No other node uses a topic.")
-    for use in found.topics:
+def _lines(examination: Examination) -> Iterator[str]:
+    robots = ", ".join(name or "one without a name" for name in examination.robots)
+    yield f"Playground {examination.playground}, robots: {robots or 'none'}; {examination.where}"
+    yield from (
+        "",
+        "Topics that other nodes share with the robots:" if examination.topics else "No other node uses a topic.",
+    )
+    for use in examination.topics:
         yield f"  {use.name}  {use.type}"
         sides = (", ".join(side) or "no node" for side in (use.publishers, use.subscribers))
         yield f"    from {' to '.join(sides)}{_last(use)}"
-    if found.faults:
-        yield from ("", "What is wrong:", *(f"  {number}. {text}" for number, text in enumerate(found.faults, 1)))
+    if examination.faults:
+        yield from ("", "What is wrong:", *(f"  {number}. {text}" for number, text in enumerate(examination.faults, 1)))
     else:
         yield from ("", "Nothing is wrong.")
-    if found.notes:
-        yield from ("", "To know:", *(f"  - {text}" for text in found.notes))
+    if examination.notes:
+        yield from ("", "To know:", *(f"  - {text}" for text in examination.notes))
 
 
 def _last(use: TopicUse) -> str:

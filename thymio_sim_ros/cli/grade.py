@@ -55,17 +55,18 @@ def run(argv: Sequence[str]) -> int:
     check_dask("grade")
     try:
         assignment = assignments.load(options.assignment)
-        found = [submissions.prepared(one, assignment.expected) for one in submissions.find(options.submissions)]
+        handed_in = submissions.find(options.submissions)
+        prepared = [submissions.prepared(submission, assignment.expected) for submission in handed_in]
         level = _level(options.isolation)
         tests = grader.collect(assignment, level)
         _print(f"isolation: {level} ({LEVELS[level]})")
         total = number(sum((test.points for test in tests), start=Fraction(0)))
-        _print(f"{len(found)} submissions, {len(tests)} tests, {total} points")
+        _print(f"{len(prepared)} submissions, {len(tests)} tests, {total} points")
         if hidden := assignment.hidden_data():
             _print(f"for hidden tests only: {', '.join(hidden)}")
         if assignment.solution is not None:
             _check_solution(assignment, assignment.solution, tests, level)
-        return _Execution(options, assignment, found, tests, level).run()
+        return _Execution(options, assignment, prepared, tests, level).run()
     except (GradingError, EngineError) as error:
         raise UsageError(str(error)) from error
     except OSError as error:
@@ -81,11 +82,11 @@ class _Execution:
         self,
         options: argparse.Namespace,
         assignment: Assignment,
-        found: Sequence[Submission],
+        handed_in: Sequence[Submission],
         tests: Sequence[GradedTest],
         level: str,
     ) -> None:
-        self._options, self._assignment, self._found, self._tests = options, assignment, found, tests
+        self._options, self._assignment, self._submissions, self._tests = options, assignment, handed_in, tests
         self._level, self._output = level, options.output
         self._finished = FinishedReports(options.output / "finished", assignment)
         self._reports: dict[int, Report] = {}
@@ -100,7 +101,7 @@ class _Execution:
         missing = self._add_finished()
         if resumed := len(self._class):
             _print(f"{resumed} need no run: graded before ({self._output / 'finished'}), or nothing to grade")
-        progress = Progress("submissions", len(self._found), resumed)
+        progress = Progress("submissions", len(self._submissions), resumed)
         with StopSignal() as stop:
             try:
                 if missing:
@@ -108,12 +109,12 @@ class _Execution:
             finally:
                 self._write()
                 progress.end(len(self._class), self._not_graded)
-        if stop.number is not None and len(self._class) < len(self._found):
+        if stop.number is not None and len(self._class) < len(self._submissions):
             print("thymio-sim: stopped; the same command continues the grading", file=sys.stderr)
             exit_by_signal(stop.number)
         remove_former(self._output, self._class)
         _print("written: " + ", ".join(str(self._output / name) for name in ("marks.csv", "index.html", "junit.xml")))
-        runs = [(self._found[position - 1], report) for position, report in sorted(self._reports.items())]
+        runs = [(self._submissions[position - 1], report) for position, report in sorted(self._reports.items())]
         if self._assignment.solution is None and (failure := common_failure(runs, self._tests)):
             print(
                 f"thymio-sim grade: the marks are worth nothing: the same set-up failed for all submissions: {failure}."
@@ -125,7 +126,7 @@ class _Execution:
 
     def _run(self, missing: Sequence[int], stop: StopSignal, progress: Progress) -> None:
         cluster = {key: getattr(self._options, key) for key in CLUSTER}
-        waiting = [self._found[position - 1] for position in missing]
+        waiting = [self._submissions[position - 1] for position in missing]
         runs = grader.run_submissions(waiting, self._assignment, self._tests, self._level, **cluster)
         with closing(runs) as reports:
             for some in stop.until_signal(reports):
@@ -140,7 +141,7 @@ class _Execution:
     def _add_finished(self) -> list[int]:
         """Add what needs no run; return the positions of the other submissions."""
         missing = []
-        for position, submission in enumerate(self._found, start=1):
+        for position, submission in enumerate(self._submissions, start=1):
             report = None if self._options.again or submission.problem else self._finished.find(submission)
             if report or submission.problem:
                 self._add(position, report)
@@ -149,7 +150,7 @@ class _Execution:
         return missing
 
     def _add(self, position: int, report: Report | Failure | None) -> None:
-        submission = self._found[position - 1]
+        submission = self._submissions[position - 1]
         graded = self._class[position] = grader.graded(submission, self._tests, report, self._assignment.limits)
         write_submission(self._output, graded)
         if isinstance(report, Failure):

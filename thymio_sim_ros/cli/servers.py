@@ -89,7 +89,7 @@ def add_server_options(parser: argparse.ArgumentParser) -> None:
 
 
 def select_servers(options: argparse.Namespace, robots: int, tokens: Tokens) -> Servers:
-    """Return which servers run. One with a default port is off if that port is taken.
+    """The servers that run. One with a default port is off if that port is in use.
 
     Raises UsageError for a chosen port that cannot be used.
     """
@@ -111,7 +111,7 @@ def select_servers(options: argparse.Namespace, robots: int, tokens: Tokens) -> 
 
 
 def _aseba(options: argparse.Namespace, robots: int) -> tuple[int, str]:
-    """Return the port, and the line of the banner."""
+    """The port, and the line of the banner."""
     if options.no_aseba or (options.headless and options.aseba_port is None):
         return OFF, ""
     first = options.aseba_port or ASEBA_PORT
@@ -136,7 +136,7 @@ def _aseba(options: argparse.Namespace, robots: int) -> tuple[int, str]:
 
 
 def _tdm(options: argparse.Namespace, tokens: Tokens) -> tuple[int, int, str]:
-    """Return the ports for TCP and WebSocket, and the line of the banner."""
+    """The ports for TCP and WebSocket, and the line of the banner."""
     chosen = options.tdm_port, options.tdm_ws_port
     if options.no_tdm or (options.headless and chosen == (None, None)):
         return OFF, TDM_WS_PORT, ""
@@ -155,7 +155,7 @@ def _tdm(options: argparse.Namespace, tokens: Tokens) -> tuple[int, int, str]:
 
 
 def _http(options: argparse.Namespace, tokens: Tokens) -> str:
-    """Return the line of the banner."""
+    """The line of the banner."""
     if options.http_port is None:
         return ""
     try:

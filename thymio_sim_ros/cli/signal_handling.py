@@ -22,7 +22,7 @@ class StopSignal:
         """The signal received, or None."""
 
     def until_signal(self, steps: Iterable[Step]) -> Iterator[Step]:
-        """Yield these steps, up to the one during which a signal arrived."""
+        """These steps, up to the one during which a signal arrived."""
         for step in steps:
             yield step
             if self.number is not None:

@@ -126,11 +126,11 @@ def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def _suite_config(options: argparse.Namespace) -> SuiteConfig:
-    """Return the configuration. Raises UsageError for options that exclude each other."""
-    if options.robot and (found := _chosen(options, _SIMULATOR_ONLY)):
-        raise UsageError(f"--robot: found {found}; a real robot has no simulator, expected none of its options")
-    if options.replay is not None and (found := _chosen(options, (*_OF_WORLD, "program"))):
-        raise UsageError(f"--replay: found {found}; these come from the run log, expected none of them")
+    """The configuration. Raises UsageError for options that exclude each other."""
+    if options.robot and (excluded := _chosen(options, _SIMULATOR_ONLY)):
+        raise UsageError(f"--robot: found {excluded}; a real robot has no simulator, expected none of its options")
+    if options.replay is not None and (excluded := _chosen(options, (*_OF_WORLD, "program"))):
+        raise UsageError(f"--replay: found {excluded}; these come from the run log, expected none of them")
     has_none = options.robot or options.replay is not None
     return SuiteConfig(
         playground=options.playground,
@@ -156,7 +156,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
 
 
 def _chosen(options: argparse.Namespace, names: Sequence[str]) -> str:
-    """Return the options of a list that differ from their defaults, for the user; empty: none."""
+    """The options of a list that differ from their defaults, for the user; empty: none."""
     defaults = _parser().parse_args([])
     chosen = [name for name in names if getattr(options, name) != getattr(defaults, name)]
     return ", ".join(f"--{name.replace('_', '-')}" for name in chosen)

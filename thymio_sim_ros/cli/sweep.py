@@ -95,8 +95,8 @@ class _Execution:
                 if missing:
                     with closing(run_all(partial(run_robots, self._sweep), missing, **cluster)) as results:
                         for outcomes in stop.until_signal(results):
-                            for index, found in outcomes:
-                                self._add(missing[index], found)
+                            for index, outcome in outcomes:
+                                self._add(missing[index], outcome)
                             self._progress.show(len(self._rows), self._failed)
                             self._write_sometimes()
             finally:
@@ -109,12 +109,12 @@ class _Execution:
             exit_by_signal(stop.number)
         return FAILED if self._failed else 0
 
-    def _add(self, number: int, found: list[Row] | Failure) -> None:
-        if isinstance(found, Failure):
+    def _add(self, number: int, outcome: list[Row] | Failure) -> None:
+        if isinstance(outcome, Failure):
             self._failed += 1
-            self._rows[number] = [failed_row(self._sweep, number, found.reason)]
+            self._rows[number] = [failed_row(self._sweep, number, outcome.reason)]
         else:
-            self._rows[number] = found
+            self._rows[number] = outcome
 
     def _write_sometimes(self) -> None:
         if time.monotonic() - self._written_s > max(WRITE_S, self._write_took_s / WRITE_SHARE):
@@ -128,7 +128,7 @@ class _Execution:
 
 
 def _description(options: argparse.Namespace) -> Description:
-    """Return what file and options say together."""
+    """The description from file and options together."""
     description = Description() if options.file is None else read_description(options.file)
     given: dict[str, Any] = {
         key: getattr(options, key) for key in ("programs", "playgrounds", "seeds", "seconds", "measures", "limit_s")
