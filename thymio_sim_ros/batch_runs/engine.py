@@ -30,7 +30,7 @@ PULSE_S = 0.5
 """The caller of `run_all` gets something at least this often, in s."""
 
 ATTEMPTS = 2
-"""How often a group may lose its process on a cluster of this machine; another scheduler has a setting of its own."""
+"""Number of processes that a group may lose on a cluster of this machine; other schedulers have their own setting."""
 
 CONNECT_S = 20.0
 """Time-out for the scheduler and its first worker, in s."""
@@ -167,7 +167,7 @@ class _Dispatch(Generic[Task, Result]):
         self._threads, self._counted_s = 1, 0.0
 
     def outcomes(self) -> Iterator[Outcomes[Result]]:
-        """Yield the outcomes of all tasks."""
+        """The outcomes of all tasks, as they end."""
         while self._waiting or self._suspects or self._groups:
             self._send()
             try:
@@ -210,7 +210,7 @@ class _Dispatch(Generic[Task, Result]):
             self._threads = max(1, sum(self._client.nthreads().values()))
 
     def _collect(self, key: object, found: Any) -> Outcomes[Result]:
-        """Return the outcomes of a group that has ended: its seconds and results, or an exception."""
+        """The outcomes of a group that has ended: its seconds and results, or an exception."""
         _, numbers = self._groups.pop(key)
         if isinstance(found, KilledWorker):
             return self._suspect(numbers)

@@ -1,4 +1,4 @@
-"""What a task without a result leaves."""
+"""The failure of a task that has no result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How many tasks make a group, which is what the cluster schedules: few enough to share, many enough to be cheap.
+"""The number of tasks in a group, the unit that the cluster schedules: few enough to share, many enough to be cheap.
 
 Scheduling costs some milliseconds per group, whatever it contains. Groups should take so long that this cost
 disappears, and on large clusters so long that the scheduler keeps up. Towards the end they shrink, so that no worker
@@ -38,7 +38,7 @@ class GroupSize:
         self._largest = max(self._largest, tasks)
 
     def next(self, waiting: int, threads: int) -> int:
-        """Return the size for so many waiting tasks and threads of the cluster, from 1 to `waiting`."""
+        """The size for so many waiting tasks and threads of the cluster, from 1 to `waiting`."""
         if not self._tasks or not self._group_s:
             return 1
         mean_s = max(self._seconds / self._tasks, 1e-6)

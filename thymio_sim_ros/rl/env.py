@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float32]
 
 
 def action_space() -> spaces.Box:
-    """Return the space of actions: targets of the left and right wheel as parts of 500, -1…1."""
+    """The space of actions: targets of the left and right wheel as parts of 500, -1…1."""
     return spaces.Box(-1.0, 1.0, (2,), np.float32)
 
 

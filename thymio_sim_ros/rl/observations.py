@@ -1,4 +1,4 @@
-"""What an agent observes: readings of sensors as numbers 0…1 or -1…1.
+"""Observations of an agent: readings of sensors as numbers 0…1 or -1…1.
 
 The numbers are the integers of the robot divided by their largest value, so that a policy can be used unchanged in an
 Aseba program, a ROS node or on a real robot, which have the same integers.
@@ -37,18 +37,18 @@ SENSORS = {
     "ground": _Observed(slice(4, 6), 2, GROUND_FULL),
     "motor": _Observed(slice(0, 2), 2, FULL_TARGET, -1.0),
 }
-"""What can be observed, by the name of the sensor: prox.horizontal, prox.ground.delta, motor.left.speed and right."""
+"""Observations by the name of the sensor: prox.horizontal, prox.ground.delta, motor.left.speed and right."""
 
 
 def observation_space(sensors: Sequence[str]) -> spaces.Box:
-    """Return the space of the observations of one robot: the numbers of these sensors, one after the other."""
+    """The space of the observations of one robot: the numbers of these sensors, one after the other."""
     chosen = [SENSORS[name] for name in sensors]
     low = np.concatenate([np.full(sensor.size, sensor.low, np.float32) for sensor in chosen])
     return spaces.Box(low, np.ones_like(low), dtype=np.float32)
 
 
 def observe(sensors: Sequence[str], words: Sequence[Sequence[Sequence[int]]]) -> Observations:
-    """Return the observations of all robots, shape (robots, numbers).
+    """The observations of all robots, shape (robots, numbers).
 
     Args:
         sensors: names of the sensors.

@@ -43,11 +43,11 @@ class ThymioParallelEnv(ParallelEnv):  # type: ignore[misc]  # PettingZoo has no
         self._random, _ = seeding.np_random()
 
     def observation_space(self, agent: str) -> spaces.Box:
-        """Return the space of the observations of an agent."""
+        """The space of the observations of an agent."""
         return self._observation_spaces[agent]
 
     def action_space(self, agent: str) -> spaces.Box:
-        """Return the space of the actions of an agent."""
+        """The space of the actions of an agent."""
         return self._action_spaces[agent]
 
     def reset(
@@ -85,10 +85,10 @@ class ThymioParallelEnv(ParallelEnv):  # type: ignore[misc]  # PettingZoo has no
         return {agent: {"pose": pose} for agent, pose in self._by_agent(outcome.poses).items()}
 
     def _by_agent(self, values: Any) -> dict[str, Any]:
-        """Return the values of the agents that take part, of values in the order of all agents."""
+        """The values of the agents that take part, of values in the order of all agents."""
         return {agent: value for agent, value in zip(self.possible_agents, values, strict=True) if agent in self.agents}
 
 
 def parallel_env(**options: Any) -> ThymioParallelEnv:
-    """Return a `ThymioParallelEnv`, under the name by which PettingZoo's tools create environments."""
+    """A `ThymioParallelEnv`, under the name by which PettingZoo's tools create environments."""
     return ThymioParallelEnv(**options)

@@ -38,7 +38,7 @@ Bools = npt.NDArray[np.bool_]
 
 
 class Outcome(NamedTuple):
-    """What a step did to each robot.
+    """The effect of a step on each robot.
 
     `poses` are true poses in the frame of the playground, shape (robots, 3): x, y in m and heading in rad.
     """
@@ -119,7 +119,7 @@ class Simulation:
         return self._step(self._engine, values, restarted)
 
     def _draw(self, random: np.random.Generator, offsets: Collection[tuple[float, float]]) -> list[Pose]:
-        """Return start poses of the robots in the copies with these offsets."""
+        """Start poses of the robots in the copies with these offsets."""
         return [
             Pose(pose.x_m + x, pose.y_m + y, pose.yaw_rad)
             for x, y in offsets
@@ -176,6 +176,6 @@ class Simulation:
         return np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses])
 
     def _words(self, engine: Engine, sensor: str) -> list[tuple[int, ...]]:
-        """Return the words of what a sensor measures now, by robot."""
+        """The words of the present reading of a sensor, by robot."""
         readings = [engine.world.read(name, sensor) for name in self.names]
         return [reading.words for reading in readings if reading is not None]

@@ -49,7 +49,7 @@ class Starts:
         self._lengths_m = np.array([math.dist(a[:2], b[:2]) for a, b in self._pieces])
 
     def draw(self, random: np.random.Generator, count: int) -> list[Pose]:
-        """Return start poses of robots, not too near to solids, edges and each other.
+        """Start poses of robots, not too near to solids, edges and each other.
 
         Raises TaskError if there is no room, or if the playground has fewer robots and says where they start.
         """

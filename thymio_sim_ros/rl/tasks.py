@@ -17,8 +17,8 @@ __all__ = ["TASKS", "Rewards", "Start", "Task", "task_of"]
 _TICK_S = TICK_NS * 1e-9
 
 Start = Literal["anywhere", "line", "playground"]
-"""Where robots start: at a random free place of the floor, with a random heading; at a random place of the only track,
-in one of its directions; or where the playground says."""
+"""Start of a robot: at a random free place of the floor, with a random heading; at a random place of the only track, in
+one of its directions; or at its pose in the playground."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ def _expect(field: str, holds: bool, found: object, expected: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """What robots are to learn. Raises TaskError for a value that is unknown or out of range.
+    """A task that robots learn. Raises TaskError for a value that is unknown or out of range.
 
     `playground` is a shipped name, a path or a text (`loading.load_playground`). A step takes `step_s` of simulated
     time, a multiple of 10 ms; an episode is truncated after `seconds`. It is terminated when the robot has fallen off
@@ -109,7 +109,7 @@ TASKS = {
 
 
 def task_of(task: str | Task) -> Task:
-    """Return a task by name, or the task itself. Raises TaskError for an unknown name."""
+    """A task by name, or the task itself. Raises TaskError for an unknown name."""
     if isinstance(task, Task):
         return task
     if task not in TASKS:

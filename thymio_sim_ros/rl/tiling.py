@@ -18,7 +18,7 @@ GAP_M = 0.4
 
 
 def tiled(playground: Playground, count: int) -> tuple[Playground, tuple[Point, ...]]:
-    """Return a playground with this many copies of another in rows, without robots, and the offset of each copy, m.
+    """A playground with this many copies of another in rows, without robots, and the offset of each copy, m.
 
     Raises TaskError if there are several and the playground has no floor, on which robots stay in their copy, or
     something that moves, which would be common to all episodes of a copy.
@@ -50,7 +50,7 @@ def tiled(playground: Playground, count: int) -> tuple[Playground, tuple[Point, 
 
 
 def _size(playground: Playground) -> tuple[float, float]:
-    """Return width and height of all that a playground has, m."""
+    """Width and height of the content of a playground, m."""
     points = [point for item in (*playground.floors, *playground.paints) for point in item.vertices]
     for solid in playground.solids:
         reach = solid.outline.reach_m

@@ -28,7 +28,7 @@ MAX_SECONDS = 1e6
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """What a file of a sweep says; the names of its keys are those of the fields. `folder`: where relative paths begin.
+    """The content of a file of a sweep; its keys have the names of the fields. `folder`: base of relative paths.
 
     Raises SweepError for a value that is not possible by itself; `sweep` checks the rest.
     """
@@ -73,7 +73,7 @@ class Description:
         return sweep
 
     def _beside(self, name: str) -> str:
-        """Return the path of a file of this name in the folder, or the name, which may be a shipped one.
+        """The path of a file of this name in the folder, or the name, which may be a shipped one.
 
         A name may end in that of one of several playgrounds in an archive: `maps.zip#a.playground`.
         """
@@ -104,8 +104,8 @@ def read_description(path: Path) -> Description:
 
 
 def described(data: Mapping[str, object]) -> dict[str, Any]:
-    """Return values of the fields of a description, from what a file or options say. Raises SweepError."""
-    known = {one.name for one in fields(Description)} - {"folder"}
+    """Values of the fields of a description, from a file or from options. Raises SweepError."""
+    known = {field.name for field in fields(Description)} - {"folder"}
     for key in data:
         if key not in known:
             near = difflib.get_close_matches(key, known, 1)
@@ -135,7 +135,7 @@ def _parameters(found: object) -> dict[str, tuple[Value, ...]]:
 
 
 def _flat(found: Mapping[str, object], prefix: str = "") -> dict[str, object]:
-    """Return the entries by name with dots: TOML reads `playground.box.x_m = [0.1]` as tables in tables."""
+    """The entries by name with dots: TOML reads `playground.box.x_m = [0.1]` as tables in tables."""
     flat: dict[str, object] = {}
     for name, value in found.items():
         flat |= _flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {f"{prefix}{name}": value}
@@ -143,7 +143,7 @@ def _flat(found: Mapping[str, object], prefix: str = "") -> dict[str, object]:
 
 
 def _seeds(found: object) -> tuple[int, ...]:
-    """Return the seeds: a number of them, from 0, or a list."""
+    """The seeds: a number of them, from 0, or a list."""
     if isinstance(found, int) and not isinstance(found, bool):
         _expect("seeds", found, 1 <= found <= MAX_RUNS, "a number of seeds above 0, or a list")
         return tuple(range(found))
@@ -185,13 +185,13 @@ def _is_number(value: object) -> bool:
 
 
 def notes_of(sweep: Sweep) -> list[str]:
-    """Return what does not match between the files of the programs and the robots, each once."""
+    """Mismatches between the files of the programs and the robots, each once."""
     first = _first(sweep)
     return list(dict.fromkeys(note for number in range(len(first)) for note in notes(first.run(number))))
 
 
 def _first(sweep: Sweep) -> Sweep:
-    """Return a run for each program and playground, with the first value of each parameter."""
+    """A run for each program and playground, with the first value of each parameter."""
     return replace(sweep, seeds=sweep.seeds[:1], parameters=tuple((name, some[:1]) for name, some in sweep.parameters))
 
 

@@ -38,7 +38,7 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """What varies and what is measured. It contains all texts, so that any machine can execute any of its runs."""
+    """Parameters and measures of a sweep, with all texts, so that any machine can execute any of its runs."""
 
     programs: tuple[Source, ...]
     playgrounds: tuple[Source, ...]
@@ -63,7 +63,7 @@ class Sweep:
         return len(self.programs) * len(self.playgrounds) * combinations * len(self.seeds)
 
     def run(self, number: int) -> Run:
-        """Return a run by its number, 0 … len - 1: the seed varies fastest, then the last parameter."""
+        """A run by its number, 0 … len - 1: the seed varies fastest, then the last parameter."""
         rest, seed = divmod(number, len(self.seeds))
         values: list[tuple[str, Value]] = []
         for name, candidates in reversed(self.parameters):

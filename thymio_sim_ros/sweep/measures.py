@@ -1,4 +1,4 @@
-"""What a run measures: one record per robot, filled tick by tick, and a table of measures that read it."""
+"""Measures of a run: one record per robot, filled tick by tick, and a table of measures that read it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _TICK_S = TICK_NS * 1e-9
 
 
 class RobotRecord:
-    """What a robot did in a run so far."""
+    """The motion and contacts of a robot in a run so far."""
 
     def __init__(self, robot: Robot, device: AsebaDevice | None, line: TrackLine | None) -> None:
         """Begin the record of a robot, its device if it has one, and the track that it may follow."""
@@ -108,7 +108,7 @@ _NAMED = re.compile(r"(?P<kind>event|first|variable)\.(?P<name>[^\[\]]+)(\[(?P<i
 
 
 def measure_of(name: str) -> Measure:
-    """Return a measure by name: one of MEASURES, `event.NAME`, `first.NAME`, `variable.NAME` or `variable.NAME[i]`.
+    """A measure by name: one of MEASURES, `event.NAME`, `first.NAME`, `variable.NAME` or `variable.NAME[i]`.
 
     Raises SweepError for another name.
     """

@@ -1,4 +1,4 @@
-"""What a parameter changes, by its name.
+"""Parameters of a run, by the form of their names.
 
 | name | what |
 |---|---|
@@ -44,7 +44,7 @@ Words = tuple[tuple[str, int], ...]
 
 
 def check(run: Run) -> list[ThymioProgram]:
-    """Return the programs of a run, without a world.
+    """The programs of a run, without a world.
 
     Raises SweepError if a parameter does not fit program or playground.
     """
@@ -52,7 +52,7 @@ def check(run: Run) -> list[ThymioProgram]:
 
 
 def notes(run: Run) -> list[str]:
-    """Return what does not match between the program's file and the robots. Raises SweepError as `check` does."""
+    """Mismatches between the program's file and the robots. Raises SweepError as `check` does."""
     robots = tuple(robot.name for robot in _playground(run.playground, _fields(run)).robots)
     words = tuple((name, value) for name, value in run.values if isinstance(value, int))
     lines = note_lines((name, share.notes) for name, share in _assigned(run.program, robots, words).items())
@@ -60,7 +60,7 @@ def notes(run: Run) -> list[str]:
 
 
 def start(run: Run) -> Engine:
-    """Return a run at time 0. Raises SweepError for a parameter that does not fit its program or playground.
+    """A run at time 0. Raises SweepError for a parameter that does not fit its program or playground.
 
     At most one run of a process may be under way: the next one with the same playground takes its ground over.
     """
@@ -82,7 +82,7 @@ def start(run: Run) -> Engine:
 
 
 def _prepared(run: Run) -> tuple[Playground, dict[str, ThymioProgram], Words, dict[str, Value]]:
-    """Return playground, programs by robot, variables to set, and parameters of the simulator."""
+    """Playground, programs by robot, variables to set, and parameters of the simulator."""
     models = {name: value for name, value in run.values if name in MODELS}
     for name, value in models.items():
         _expect(name, value, value in MODELS[name], f"one of {', '.join(map(json.dumps, MODELS[name]))}")
@@ -110,14 +110,14 @@ def _fields(run: Run) -> str:
 
 @lru_cache(maxsize=4)
 def _ground(source: Source, fields: str) -> Ground:
-    """Return the ground of a playground, which takes a third of a short run to paint; a world restores it."""
+    """The ground of a playground, which takes a third of a short run to paint; a world restores it."""
     playground = _playground(source, fields)
     return Ground(playground.floors, playground.paints)
 
 
 @lru_cache(maxsize=16)
 def _playground(source: Source, fields: str) -> Playground:
-    """Return a playground with changed fields, as `_fields` returns them."""
+    """A playground with changed fields, as `_fields` returns them."""
     data = json.loads(source.text)
     for name, value in json.loads(fields).items():
         _set_field(data, name, value, source.name)
@@ -159,7 +159,7 @@ def _assigned(source: Source, robots: tuple[str, ...], words: Words) -> dict[str
 
 @lru_cache(maxsize=64)
 def _programs(source: Source, robots: tuple[str, ...], words: Words) -> tuple[dict[str, ThymioProgram], Words]:
-    """Return the programs by robot, and the variables to set; the other parameters are constants."""
+    """The programs by robot, and the variables to set; the other parameters are constants."""
     assigned, known = _assigned(source, robots, words), _constants(source)
     programs = {robot: found.program for robot, found in assigned.items() if found.program is not None}
     variables = tuple((name, word) for name, word in words if name not in known)

@@ -56,7 +56,7 @@ def run_robots(sweep: Sweep, number: int) -> list[Row]:
 
 
 def failed_row(sweep: Sweep, number: int, error: str) -> Row:
-    """Return the row of a run without a result."""
+    """The row of a run without a result."""
     return {**_head(sweep, number), "robot": None, **dict.fromkeys(sweep.measures), "fault": None, "error": error}
 
 

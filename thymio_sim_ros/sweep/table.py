@@ -35,7 +35,7 @@ def check_suffix(path: Path) -> None:
 
 
 def columns(sweep: Sweep) -> Columns:
-    """Return the columns of the table of a sweep."""
+    """The columns of the table of a sweep."""
     parameters = {name: _common_type(values) for name, values in sweep.parameters}
     measures = {name: measure_of(name).type for name in sweep.measures}
     head: dict[str, type[Value]] = {"sweep": str, "run": int, "program": str, "playground": str}
@@ -52,7 +52,7 @@ def write_table(path: Path, sweep: Sweep, rows: Mapping[int, Iterable[Row]]) -> 
 
 
 def read_table(path: Path, sweep: Sweep) -> dict[int, list[Row]]:
-    """Return the rows of the finished runs of a sweep by number; none if there is no file.
+    """The rows of the finished runs of a sweep by number; none if there is no file.
 
     Raises SweepError if the file is not a table of this sweep, OSError if it cannot be read.
     """
@@ -91,7 +91,7 @@ def _common_type(values: tuple[Value, ...]) -> type[Value]:
 
 
 def _coerced(value: Value | None, kind: type[Value]) -> Value | None:
-    """Return a value in the type of its column."""
+    """A value in the type of its column."""
     return value if value is None or type(value) is kind else kind(value)
 
 
