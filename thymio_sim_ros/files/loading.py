@@ -81,7 +81,7 @@ def load_playground(value: str) -> tuple[str, Playground]:
 
 
 def _hint(path: Path) -> str:
-    """What the file is instead of a playground, and how it is used, if it is a program."""
+    """A hint on the kind of a rejected file, and on its use if it is a program; empty for an unknown kind."""
     try:
         text = text_decoding.decode(path.read_bytes()[:MAX_BYTES]).text
         refuse_foreign(text)
@@ -91,7 +91,7 @@ def _hint(path: Path) -> str:
 
 
 def _archive_and_part(value: str) -> tuple[Path, str]:
-    """Return the file of a playground and, behind `#`, the name of one of several in it. Raises ResourceError."""
+    """The file of a playground and, behind `#`, the name of one of several in it. Raises ResourceError."""
     file, mark, part = value.partition(_PART)
     try:
         return resources.find_playground(value), ""
@@ -172,7 +172,7 @@ def assigned_to(
 
 
 def read_text(path: str) -> tuple[str, str]:
-    """Return text and name of the program that `path` denotes in `read_program`. Raises ResourceError."""
+    """Text and name of the program that `path` denotes in `read_program`. Raises ResourceError."""
     if path == NO_PROGRAM:
         return "", NO_PROGRAM
     found = resources.find_program(path)
@@ -194,7 +194,7 @@ def read_text(path: str) -> tuple[str, str]:
 
 
 def text_of(source: str, name: str) -> str:
-    """Return the text of a program that is given as text; a workspace of Blockly becomes an .aesl file.
+    """The text of a program that is given as text; a workspace of Blockly becomes an .aesl file.
 
     Raises ProgramError for blocks that cannot be converted.
     """
@@ -216,7 +216,7 @@ def _is_program(name: str, text: str) -> bool:
 
 
 def check_behaviour(name: str, layout: str = THYMIO) -> str:
-    """Return the name of a built-in behavior if a robot of this layout can run it; an empty name is valid too.
+    """The name of a built-in behavior if a robot of this layout can run it; an empty name is valid too.
 
     Raises ResourceError for an unknown name, ProgramError if the behavior uses what the robot does not have.
     """

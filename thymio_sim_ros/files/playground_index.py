@@ -20,7 +20,7 @@ class PlaygroundIndex:
         self._lock = threading.Lock()
 
     def text(self, name: str) -> bytes | None:
-        """Return a playground in this project's format with its images, in UTF-8; None for a name that is not shipped.
+        """A playground in this project's format with its images, in UTF-8; None for a name that is not shipped.
 
         Raises PlaygroundError for an invalid file.
         """

@@ -40,7 +40,7 @@ def _roots() -> Iterator[Path]:
 
 
 def _folder(*names: str) -> Path | None:
-    """Return the first folder with one of these names below a root, or None."""
+    """The first folder with one of these names below a root, or None."""
     for root in _roots():
         for name in names:
             folder = root / name
@@ -71,17 +71,17 @@ def _files(ours: list[Path], group: str, patterns: tuple[str, ...]) -> dict[str,
 
 
 def find_playground(name: str) -> Path:
-    """Return the file of a shipped playground or of a path. Raises ResourceError if there is neither."""
+    """The file of a shipped playground or of a path. Raises ResourceError if there is neither."""
     return _find(name, playgrounds(), "playground")
 
 
 def find_program(name: str) -> Path:
-    """Return the file of a built-in behavior or of a path. Raises ResourceError if there is neither."""
+    """The file of a built-in behavior or of a path. Raises ResourceError if there is neither."""
     return _find(name, behaviours(), "program")
 
 
 def check_behaviour(name: str) -> str:
-    """Return the name. Raises ResourceError if it is neither empty nor that of a built-in behavior."""
+    """The same name. Raises ResourceError if it is neither empty nor that of a built-in behavior."""
     if name and name not in behaviours():
         raise ResourceError(_unknown(name, behaviours(), "behaviour", "not"))
     return name

@@ -8,6 +8,6 @@ __all__ = ["type_name"]
 
 
 def type_name(kind: Any) -> str:
-    """Return the type name of a class of messages or services, such as `std_msgs/msg/Bool`."""
+    """The type name of a class of messages or services, such as `std_msgs/msg/Bool`."""
     package, form, *_ = kind.__module__.split(".")
     return f"{package}/{form}/{kind.__name__}"
