@@ -115,8 +115,8 @@ class RobotBodies:
 
     def finish_sub_step(self, earlier: int) -> None:
         """After a sub-step, which follows `earlier` ones of this tick: read back the robots in contact."""
-        # Robots without contact move exactly as they are told, so their poses are read once per tick (`end_tick`). In
-        # contact, the motion of each sub-step decides the forces of the next.
+        # A robot without contact moves exactly at the speeds that were written, so its pose is read once per tick
+        # (`end_tick`). In contact, the motion of each sub-step decides the forces of the next.
         if self._held:
             for robot in self._held:
                 robot.update_touching()
