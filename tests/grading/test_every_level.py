@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Collection
 from fractions import Fraction
 
 import pytest
@@ -70,30 +72,42 @@ CASES = {
 }
 """What a submission does in one test after the other, the verdict, and the first line of its message."""
 
-TESTS = f"""
+TESTS = """
 import runpy
 from pathlib import Path
 
 import pytest
 
-@pytest.mark.parametrize("number", range({len(CASES)}))
+@pytest.mark.parametrize("number", range({count}))
 def test_it(number):
     runpy.run_path(str(Path(__file__).with_name("answer.py")))[f"answer_{{number}}"]()
 """
-NAMES = tuple(f"test_it.py::test_it[{number}]" for number in range(len(CASES)))
+
+
+def verdicts(level: str, actions: Collection[str]) -> list[tuple[str, str]]:
+    """Verdict and first line of the message of a test for each action."""
+    if reason := why_unavailable(level):
+        pytest.skip(f"{level}: {reason}")
+    names = tuple(f"test_it.py::test_it[{number}]" for number in range(len(actions)))
+    files = {"test_it.py": TESTS.format(count=len(actions)).encode()}
+    assignment = Assignment("it", ("test_it.py",), frozenset(), ("answer.py",), files, LIMITS)
+    tests = [GradedTest(name, Fraction(1)) for name in names]
+    imports = "import os, pytest, shutil, sys\n"
+    answers = [f"def answer_{number}():\n    {action}\n" for number, action in enumerate(actions)]
+    submission = Submission("Anna", files={"answer.py": (imports + "".join(answers)).encode()})
+    report = grader.run_submission(submission, assignment=assignment, tests=names, level=level)
+    graded = grader.graded(submission, tests, report, LIMITS)
+    return [(one.outcome, one.message.partition("\n")[0]) for one in graded.verdicts]
 
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_verdicts_and_reasons_are_the_same_at_every_level(level: str) -> None:
-    if reason := why_unavailable(level):
-        pytest.skip(f"{level}: {reason}")
-    files = {"test_it.py": TESTS.encode()}
-    assignment = Assignment("it", ("test_it.py",), frozenset(), ("answer.py",), files, LIMITS)
-    tests = [GradedTest(name, Fraction(1)) for name in NAMES]
-    imports = "import os, pytest, sys\n"
-    answers = [f"def answer_{number}():\n    {action}\n" for number, action in enumerate(CASES)]
-    submission = Submission("Anna", files={"answer.py": (imports + "".join(answers)).encode()})
-    report = grader.run_submission(submission, assignment=assignment, tests=NAMES, level=level)
-    verdicts = grader.graded(submission, tests, report, LIMITS).verdicts
-    found = [(one.outcome, one.message.partition("\n")[0]) for one in verdicts]
-    assert dict(zip(CASES, found, strict=True)) == CASES
+    assert dict(zip(CASES, verdicts(level, CASES), strict=True)) == CASES
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_a_submission_that_removes_all_that_it_can_does_the_next_test_no_harm(level: str) -> None:
+    if level == "limits" and os.geteuid():
+        pytest.skip("at this level, a submission has the rights of the user")
+    remove = "[shutil.rmtree(os.path.join('..', name), True) for name in os.listdir('..')]"
+    assert verdicts(level, [remove, "pass"]) == [PASSED, PASSED]

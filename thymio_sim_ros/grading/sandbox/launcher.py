@@ -33,7 +33,8 @@ def main() -> int:
         return namespaces.run_inside(int(job.limits.disk_mb * 1e6), partial(_run_in_namespaces, job, user))
     with tempfile.TemporaryDirectory(prefix="thymio-grade-", ignore_cleanup_errors=True) as folder:
         if user is not None:
-            os.chown(folder, user, user)
+            os.chown(folder, -1, user)
+            os.chmod(folder, 0o750)  # its folders cannot be removed or renamed
         has_landlock = job.level == "landlock"
         confinement = Confinement(
             user,
