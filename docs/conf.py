@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT / "docs"))  # docstring_sections
 
 project = "Thymio Sim ROS"
 author = "Thymio Sim ROS maintainers"
@@ -41,5 +43,5 @@ autodoc2_packages = [
 ]
 autodoc2_output_dir = "docs/apidocs"
 autodoc2_render_plugin = "myst"
-autodoc2_docstring_parser_regexes = [(r".*", "myst")]
+autodoc2_docstring_parser_regexes = [(r".*", "docstring_sections")]
 autodoc2_hidden_objects = {"private", "dunder", "inherited", "undoc"}
