@@ -204,7 +204,7 @@ def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simula
     until the next one, as with the driver and `ros2 launch`.
     """
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
-    from thymio_sim_ros.ros.suite_config import SuiteConfig
+    from thymio_sim_ros.suite_config import SuiteConfig
     from thymio_sim_ros.testing.ros import Simulation
 
     def make(**parameters: Any) -> Simulation:

@@ -16,7 +16,7 @@ from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.cli import banner
 from thymio_sim_ros.names import addresses
 from thymio_sim_ros.names.domain import describe_domain
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 
 @pytest.mark.process

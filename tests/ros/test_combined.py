@@ -14,7 +14,7 @@ from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.ros import combined
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 
 def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):

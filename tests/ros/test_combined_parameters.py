@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, assigned, defaults
 from thymio_sim_ros.ros.rclpy_ext import parameters
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 NODES = (SIMULATOR, RUNTIME, BRIDGE, PAGE)
 SHARED = {"cmd_vel_timeout", "port", "foxglove_port", "address", "robot_names"}

@@ -24,7 +24,7 @@ from thymio_sim_ros.device.event_queue import POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.simulator import parameters as simulator_params
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 ROOT = Path(__file__).parents[2]
 LAUNCH = ROOT / "thymio_sim_ros" / "launch" / "thymio.launch.py"

@@ -16,7 +16,7 @@ from tests.processes import Process, free_port, wait_for_port
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros import combined
 from thymio_sim_ros.ros.compat import dds_profile
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 pytestmark = pytest.mark.process
 

@@ -7,7 +7,7 @@ import pytest
 from tests.processes import free_port
 from thymio_sim_ros.ros import combined
 from thymio_sim_ros.ros.interface.names import PROXIMITY, is_hidden
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 MOST = 40
 """Topics that a student may meet at first, those of ROS itself included."""

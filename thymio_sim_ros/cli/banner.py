@@ -11,7 +11,7 @@ from thymio_sim_ros.cli import foxglove_layout
 from thymio_sim_ros.names.addresses import describe_access, describe_urls, loopback_problem, urls
 from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.network.robot_target import parse_target
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["banner", "qr_code", "startup_notice"]
 

@@ -26,7 +26,7 @@ from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.names.domain import describe_range
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["run"]
 

@@ -18,10 +18,10 @@ from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.files.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments, read_program
 from thymio_sim_ros.network.robot_target import TargetError, parse_target
-from thymio_sim_ros.ros.suite_config import SuiteConfig
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
+from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = [
     "EXAMPLE",

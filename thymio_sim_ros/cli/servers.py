@@ -21,7 +21,7 @@ from thymio_sim_ros.network.settings import (
     TDM_WS_PORT,
     NetworkSettings,
 )
-from thymio_sim_ros.ros.suite_config import ADDRESS
+from thymio_sim_ros.suite_config import ADDRESS
 
 __all__ = ["Servers", "add_server_options", "address_argument", "port_argument", "select_servers"]
 

@@ -33,7 +33,7 @@ from thymio_sim_ros.engine.run_log import RunLogError
 from thymio_sim_ros.files.loading import NO_PROGRAM
 from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
 from thymio_sim_ros.network.settings import OFF
-from thymio_sim_ros.ros.suite_config import ADDRESS, OUT_OF_RANGE, SuiteConfig
+from thymio_sim_ros.suite_config import ADDRESS, OUT_OF_RANGE, SuiteConfig
 
 __all__ = ["run"]
 

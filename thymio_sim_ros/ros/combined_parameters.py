@@ -17,7 +17,7 @@ from thymio_sim_ros.ros.aseba.parameters import NetworkParams, RuntimeParams, is
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
-from thymio_sim_ros.ros.suite_config import SuiteConfig
+from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["BRIDGE", "PAGE", "RUNTIME", "SIMULATOR", "SUITE", "Target", "assigned", "defaults", "targets"]
 

@@ -27,9 +27,9 @@ from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_position
-from thymio_sim_ros.ros.suite_config import SuiteConfig
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["own_sensors", "published", "table", "text", "type_name"]
 

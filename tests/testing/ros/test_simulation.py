@@ -7,8 +7,8 @@ from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 
 from tests.testing.test_thymio import WALL
-from thymio_sim_ros.ros.suite_config import SuiteConfig
 from thymio_sim_ros.sim.playground.reader import RobotStart
+from thymio_sim_ros.suite_config import SuiteConfig
 from thymio_sim_ros.testing import emitted, no_contact, reached, shows, slower_than
 
 GREET = """<network><event size="1" name="hello"/><node name="thymio-II">var heard = 0

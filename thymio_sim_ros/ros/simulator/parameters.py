@@ -19,7 +19,6 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, EndpointOptions
 from thymio_sim_ros.ros.simulator.visualization.transforms import TransformOptions
-from thymio_sim_ros.ros.suite_config import OUT_OF_RANGE, REPLAY_FROM_S
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.clock import TICK_NS
@@ -28,6 +27,7 @@ from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
 from thymio_sim_ros.sim.sensors.proximity import SENSOR as SCANNER
+from thymio_sim_ros.suite_config import OUT_OF_RANGE, REPLAY_FROM_S
 
 __all__ = ["CurrentParams", "SimulatorParams"]
 

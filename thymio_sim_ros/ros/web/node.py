@@ -24,8 +24,8 @@ from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
-from thymio_sim_ros.ros.suite_config import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.ros.web import tokens as node_tokens
+from thymio_sim_ros.suite_config import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.web import Content, PageThread, Settings
 from thymio_sim_ros.web.settings import max_connections
 
