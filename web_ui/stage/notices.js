@@ -17,8 +17,14 @@ function placeOfNotices() {
   return view?.checkVisibility() === false ? document.querySelector("#work") : view;
 }
 
-/** Over the view, notices come before what the robots say. @param {Element} place @param {HTMLElement} element */
+/**
+ * Over the view, notices come before what the robots say; in the work area, before the open tab.
+ *
+ * @param {Element} place @param {HTMLElement} element
+ */
 function put(place, element) {
+  const tabs = place.querySelector(":scope > #tabs");
+  if (tabs !== null) return tabs.after(element);
   const fallen = place.querySelector(":scope > .fallen");
   if (fallen === null) place.append(element);
   else fallen.before(element);
