@@ -211,6 +211,11 @@ def test_a_program_can_be_given_to_some_robots_only():
     assert engine.world.robots["bert"].pose.yaw_rad < -0.1
 
 
+def test_a_program_for_a_robot_that_is_not_there_is_an_error():
+    with pytest.raises(KeyError, match="no robot 'carl', only anna, bert"):
+        Engine(playgrounds.loads(TWO, "two"), {"carl": load_program("", "a")})
+
+
 def test_a_button_stops_the_line_program_and_lets_it_go_again():
     engine = line_follower_engine(0)
     robot = engine.world.robots["thymio"]

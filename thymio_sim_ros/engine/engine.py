@@ -383,9 +383,15 @@ def _device_starts(
     programs: Mapping[str, ThymioProgram | DeviceStart] | ThymioProgram | None,
     behaviour: str,
 ) -> dict[str, DeviceStart]:
-    """Return the start of each robot that has a device; robots are numbered in their order."""
+    """Return the start of each robot that has a device; robots are numbered in their order.
+
+    Raises KeyError for a program of a robot that is not there.
+    """
     if isinstance(programs, ThymioProgram):
         programs = dict.fromkeys(robots, programs)
+    for name in programs or {}:
+        if name not in robots:
+            raise KeyError(f"no robot '{name}', only {', '.join(robots) or 'none'}")
     starts = {}
     for number, name in enumerate(robots, start=1):
         given = (programs or {}).get(name)
