@@ -195,7 +195,7 @@ class StructuredProgram:
         """Append the block at `pc`, which ends in a branch, and its arms, and return the address after them.
 
         The compiler emits three patterns (docs/spec/aseba-bytecode-vm.md section 6). The word before the branch target
-        tells them apart: a JUMP back to `pc` closes a loop, a JUMP forward ends a then-arm with an else-arm, anything
+        distinguishes them: a JUMP back to `pc` closes a loop, a JUMP forward ends a then-arm with an else-arm, anything
         else is an `if` without `else`.
         """
         block = self.blocks.by_address[pc]

@@ -8,7 +8,7 @@ The export has a folder `submission_123` for each submission and one `submission
         :sid: '4711'
         :email: anna@school.example
 
-A pupil who hands in again gets another number, so that the number does not tell whose submission it is.
+A pupil who hands in again gets another number, so the number does not identify the pupil.
 """
 
 from __future__ import annotations

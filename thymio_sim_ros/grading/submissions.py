@@ -54,7 +54,7 @@ class Submission:
     identifier: str = ""
     """The number of the pupil or submission in the learning platform, if there is one."""
     key: str = ""
-    """Tells the pupil from others of the same name, also after another submission; empty: `identifier` does."""
+    """Distinguishes the pupil from others of the same name, also after another submission; empty: `identifier` does."""
     files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     problem: str = ""
     notes: tuple[str, ...] = ()

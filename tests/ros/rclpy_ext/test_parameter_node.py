@@ -252,7 +252,7 @@ def test_only_what_differs_reaches_the_callbacks(ros):
 
 
 def test_the_present_value_of_a_parameter_that_acts_says_how_to_get_its_effect_again(ros):
-    """`ros2 param set` prints the reason of a success: without it, nothing would tell that nothing happened."""
+    """`ros2 param set` prints the reason of a success: without it, the user would not know that nothing happened."""
     acted = [False]
     node = ros.add(
         ParameterNode(
