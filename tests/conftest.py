@@ -152,14 +152,14 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Name the tests that passed only at the second try."""
+    """Name the tests that passed only at the second try, with the failure of the first."""
     stats = terminalreporter.stats
     failed = {report.nodeid for kind in ("failed", "error") for report in stats.get(kind, ())}
-    names = sorted({report.nodeid for report in stats.get("rerun", ())} - failed)
-    if names:
+    found = {report.nodeid: report for report in stats.get("rerun", ()) if report.nodeid not in failed}
+    if found:
         terminalreporter.section("passed only at the second try: mend today (docs/testing.md)", red=True)
-        for name in names:
-            terminalreporter.write_line(name)
+        for name, report in sorted(found.items()):
+            terminalreporter.write_line(f"{name}\n{report.longreprtext}\n")
 
 
 class Border:

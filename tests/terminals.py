@@ -17,7 +17,7 @@ from pathlib import Path
 from tests import pages
 from tests.pages import INTERRUPT, ROOT, Block, Command
 from tests.patience import PATIENCE_S, PROGRAM_S, Deadline
-from tests.processes import free_port, wait_until_asleep
+from tests.processes import free_port, until, wait_until_asleep
 
 HAS_ROS2 = importlib.util.find_spec("ros2cli") is not None or shutil.which("ros2") is not None
 NO_ROS2 = "all but the commands `ros2`, which this machine does not have (docs/ros2-tools.md says how to get them)"
@@ -116,7 +116,7 @@ class Terminal:
         """Press Ctrl-C and wait for the end: the last lines are those of the page, and there is no traceback."""
         assert self.is_busy, f"line {command.line}: nothing runs in terminal {command.terminal} to press Ctrl-C for"
         assert self.exit_code is None, f"{self._running!r} ended with {self.exit_code} before Ctrl-C\n{self.printed}"
-        wait_until_asleep(os.tcgetpgrp(self._master))
+        wait_until_asleep(self._wait_for_program())
         self._write("\x03")
         self._wait(lambda: self.exit_code is not None)
         name, self._running = self._running, ""
@@ -132,6 +132,14 @@ class Terminal:
         self._shell.kill()
         self._shell.wait()
         os.close(self._master)
+
+    def _wait_for_program(self) -> int:
+        """Wait until the shell has started what was typed, and would not get Ctrl-C itself; return its group.
+
+        A program that ends by itself at once may have printed something, its prompt at least.
+        """
+        until(lambda: os.tcgetpgrp(self._master) != self._shell.pid or select.select([self._master], [], [], 0.0)[0])
+        return os.tcgetpgrp(self._master)
 
     def _type(self, text: str) -> None:
         self._raw, self._matched, self._running = b"", 0, text

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests import terminals
+from tests.pages import INTERRUPT, Command
 
 pytestmark = [
     pytest.mark.process,
@@ -20,11 +23,11 @@ COUNTER = """\
 Save it as `count.py`:
 
 ```python
-import sys
+import itertools
 import time
 
 try:
-    for number in range(1000):
+    for number in itertools.count():
         print(f"number {number}")
         time.sleep(0.01)
 except KeyboardInterrupt:
@@ -60,6 +63,27 @@ def test_a_page_that_keeps_its_promises(follow: Callable[[str], terminals.Reader
         + console("# terminal 2", "$ ^C", "the end", "$ echo 'now free'", "now free", "$ sleep 1000")
     )
     assert not reader.has_skipped
+
+
+def test_ctrl_c_waits_until_the_shell_has_started_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    in_front: list[int] = []
+
+    def group(terminal: int) -> int:
+        """The group in front; the shell, which has not read its command, goes on only then."""
+        in_front.append(tcgetpgrp(terminal))
+        os.kill(in_front[0], signal.SIGCONT)
+        return in_front[-1]
+
+    tcgetpgrp = os.tcgetpgrp
+    with terminals.reader(tmp_path, domain=0) as reader:
+        reader.follow(console("$ echo a", "a"))
+        terminal = reader._terminals[1]
+        monkeypatch.setattr(os, "tcgetpgrp", group)
+        os.kill(terminal._shell.pid, signal.SIGSTOP)
+        terminal.run(Command(1, "sleep 1000", (), 0), stays=True)
+        terminal.interrupt(Command(1, INTERRUPT, (), 0))
+        assert terminal.exit_code == 128 + signal.SIGINT
+        assert in_front[0] == terminal._shell.pid != in_front[-1]
 
 
 @pytest.mark.parametrize(
