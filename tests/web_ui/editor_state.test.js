@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { meetOtherTabs } from "../../web_ui/browser/other_tabs.js";
+import { meetOtherTabs, openPages } from "../../web_ui/browser/other_tabs.js";
 import { newAesl } from "../../web_ui/editor/aesl.js";
 import { marks } from "../../web_ui/editor/marks.js";
 import { firstFault, notesOf, readVerdict } from "../../web_ui/input/check_service.js";
@@ -402,6 +402,107 @@ test("two open editors of a browser know of each other", () => {
   assert.deepEqual(met, [0, 0]);
   meetOtherTabs(() => met[1]++, open);
   assert.deepEqual(met, [1, 1]);
+});
+
+/** Locks of a browser, as `navigator.locks` of its pages, with an end of each page. */
+function newLocks() {
+  /** @type {{ page: symbol, name: string }[]} */ const held = [];
+  /** @type {{ name: string, grant: () => void }[]} */ let waiting = [];
+  const settle = () => {
+    const free = waiting.filter(({ name }) => !held.some((one) => one.name === name));
+    waiting = waiting.filter((one) => !free.includes(one));
+    for (const { grant } of free) grant();
+  };
+  return () => {
+    const page = Symbol("page");
+    const request = (/** @type {string} */ name, /** @type {any} */ options) =>
+      new Promise((/** @type {(value?: any) => void} */ resolve) => {
+        if (options.mode === "shared") waiting.push({ name, grant: resolve });
+        else held.push({ page, name });
+        settle();
+      });
+    const close = () => {
+      held.splice(0, held.length, ...held.filter((one) => one.page !== page));
+      settle();
+    };
+    return { locks: /** @type {any} */ ({ request }), close };
+  };
+}
+
+/** The next page of a browser. @param {any} storage @param {ReturnType<typeof newLocks>} openPage */
+function pageWithLocks(storage, openPage) {
+  const { locks, close } = openPage();
+  let offers = 0;
+  const session = new Workspace({
+    fileStore: new FileStore(storage, openPages(locks)),
+    now: () => 7,
+    changed: () => {},
+    offered: () => (offers += 1),
+  });
+  assert.equal(session.at(ALL).text, blank().text);
+  return { session, close, offers: () => offers };
+}
+
+/** Until all promises that are due have been settled. */
+const turn = () => new Promise((resolve) => setImmediate(resolve));
+
+test("a draft is offered once the tab that writes it is closed, and no sooner", async () => {
+  const storage = newStorage();
+  const openPage = newLocks();
+  const first = pageWithLocks(storage, openPage);
+  first.session.edit("a = 1");
+  const [second, third] = [pageWithLocks(storage, openPage), pageWithLocks(storage, openPage)];
+  await turn();
+  assert.deepEqual([second.session.draft, second.offers()], [null, 0]);
+  first.session.edit("a = 2");
+  first.close();
+  await turn();
+  for (const { session, offers } of [second, third]) {
+    assert.match(session.draft?.text ?? "", /a = 2/);
+    assert.equal(offers(), 1);
+  }
+  await turn();
+});
+
+test("a restored draft is offered in no other tab, be it open or new, until this one is closed", async () => {
+  const storage = newStorage();
+  const openPage = newLocks();
+  const first = pageWithLocks(storage, openPage);
+  first.session.edit("a = 1");
+  first.close();
+  const [second, third] = [pageWithLocks(storage, openPage), pageWithLocks(storage, openPage)];
+  await turn();
+  second.session.restoreDraft();
+  third.session.storageChanged("editor.recent");
+  assert.match(third.session.draft?.text ?? "", /a = 1/);
+  third.session.storageChanged("editor.draft.*");
+  const fourth = pageWithLocks(storage, openPage);
+  await turn();
+  assert.deepEqual([third.session.draft, fourth.session.draft], [null, null]);
+  second.close();
+  await turn();
+  for (const { session } of [third, fourth]) assert.match(session.draft?.text ?? "", /a = 1/);
+});
+
+test("a draft that its tab has saved or removed before it is closed is not offered", async () => {
+  const storage = newStorage();
+  const openPage = newLocks();
+  const first = pageWithLocks(storage, openPage);
+  first.session.edit("a = 1");
+  const second = pageWithLocks(storage, openPage);
+  first.session.saved();
+  first.close();
+  await turn();
+  assert.equal(second.session.draft, null);
+});
+
+test("where the browser refuses locks, the drafts of all other tabs are offered", async () => {
+  const storage = newStorage();
+  const refuse = () => ({ locks: /** @type {any} */ ({ request: () => Promise.reject(new Error("no locks")) }), close() {} });
+  pageWithLocks(storage, refuse).session.edit("a = 1");
+  const second = pageWithLocks(storage, refuse);
+  await turn();
+  assert.match(second.session.draft?.text ?? "", /a = 1/);
 });
 
 test("a miniature has the first lines that say something, of any file", () => {

@@ -16,6 +16,7 @@ from tests.web_ui.page_support import (
     open_editor,
     open_page,
     open_tab,
+    wait_for_frame,
     wait_for_service,
     watch_it_avoid,
 )
@@ -290,6 +291,24 @@ def test_own_programs_come_first_a_draft_can_be_discarded_and_a_second_tab_warns
     open_tab(second, "program")
     for one in (editor, second):
         one.locator(".notice.warning", has_text="open in another tab of this browser").wait_for()
+
+
+@pytest.mark.slow
+def test_a_draft_is_offered_to_another_tab_only_when_its_own_is_closed(editor):
+    write(editor, "var first = 1")
+    second = editor.context.new_page()
+    open_page(second, editor.url)
+    open_tab(second, "program")
+    second.locator(".notice.warning", has_text="open in another tab of this browser").wait_for()
+    second.wait_for_function("async () => (await navigator.locks.query()).pending.length === 1")  # for the first tab
+    draft = second.locator(".program-draft:not(#program-foreign)")
+    wait_for_frame(second)
+    playwright.expect(draft).to_be_hidden()
+    editor.close()
+    playwright.expect(draft).to_contain_text("My program.aesl")
+    draft.locator("[data-draft=restore]").click()
+    expect(second, ".cm-content").to_have_text("var first = 1")
+    second.context.close()
 
 
 @pytest.mark.slow

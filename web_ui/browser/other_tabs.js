@@ -1,4 +1,4 @@
-// Other tabs of this browser in which the editor of this page is open: they share its storage.
+// Other tabs of this browser in which this page is open: they share its storage.
 
 const CHANNEL = "thymio-editor";
 
@@ -15,4 +15,28 @@ export function meetOtherTabs(met, open = (name) => new BroadcastChannel(name)) 
     met();
   };
   channel.postMessage("opened");
+}
+
+/**
+ * @typedef {object} OpenPages   the pages of this browser that are open
+ * @property {(page: string) => void} join   this page is open under this name until it is closed or crashes
+ * @property {(page: string, act: () => void) => void} whenClosed   call `act` once the page of this name is not open
+ */
+
+/**
+ * A page holds a lock with its name for as long as it is open: only the browser notices a crash. Browsers have no locks
+ * where the page comes from another computer without TLS; then every other page counts as closed.
+ *
+ * @param {Pick<LockManager, "request"> | undefined} locks   `navigator.locks`
+ * @returns {OpenPages}
+ */
+export function openPages(locks) {
+  if (locks === undefined) return { join() {}, whenClosed: (_page, act) => act() };
+  /** @param {string} page */
+  const nameOf = (page) => `thymio-page.${page}`;
+  return {
+    join: (page) => void locks.request(nameOf(page), () => new Promise(() => {})).catch(() => {}),
+    // Granted when the page lets go of its lock; shared, because several pages may wait. It fails without storage.
+    whenClosed: (page, act) => void locks.request(nameOf(page), { mode: "shared" }, () => {}).then(act, act),
+  };
 }

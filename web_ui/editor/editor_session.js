@@ -14,8 +14,12 @@ const TOOLBOX_KEY = "program.toolbox";
 const SIZES = [10, 11, 12, 13, 14, 16, 18, 20, 24, 28, 32]; // pixels
 
 export class EditorSession {
-  /** @param {import("../browser/local_storage.js").KeyValueStore} storage @param {() => number} now */
-  constructor(storage, now) {
+  /**
+   * @param {import("../browser/local_storage.js").KeyValueStore} storage
+   * @param {() => number} now
+   * @param {import("../browser/other_tabs.js").OpenPages} [pages]
+   */
+  constructor(storage, now, pages) {
     this.storage = storage;
     this.state = INITIAL;
     this.history = new History();
@@ -27,11 +31,13 @@ export class EditorSession {
     /** @type {Map<string, any>} editor state of each text: cursor and undo history */ this.texts = new Map();
     /** @type {() => void} */ this.onText = () => {};
     /** @type {(text: string) => void} */ this.onWritten = () => {};
+    /** @type {() => void} */ this.onOffer = () => {};
     this.workspace = new Workspace({
-      fileStore: new FileStore(storage),
+      fileStore: new FileStore(storage, pages),
       now,
       changed: () => this.onText(),
       written: (text) => this.onWritten(text),
+      offered: () => this.onOffer(),
     });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));
     /** @type {import("./toolbox_file.js").Toolbox} what a teacher's file hides */

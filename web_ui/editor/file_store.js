@@ -1,6 +1,8 @@
 // Browser storage of the editor: recent files, and one draft per tab of the editor. All tabs of a browser share it: a
 // draft that another one wrote, or an earlier visit, goes to the recent files before it is replaced.
 
+import { openPages } from "../browser/other_tabs.js";
+
 /**
  * @typedef {object} StoredFile
  * @property {string} name
@@ -10,6 +12,7 @@
  * @property {string} [writer]    of a draft: the page that wrote it
  */
 /** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
+/** @typedef {import("../browser/other_tabs.js").OpenPages} OpenPages */
 
 const RECENT_KEY = "editor.recent";
 const DRAFT_KEY = "editor.draft.";
@@ -18,11 +21,13 @@ export const MAX_FILES = 10;
 export const MAX_CHARACTERS = 1_000_000;
 
 export class FileStore {
-  /** @param {KeyValueStore} storage */
-  constructor(storage) {
+  /** @param {KeyValueStore} storage @param {OpenPages} [pages]  without them, all other pages count as closed */
+  constructor(storage, pages = openPages(undefined)) {
     this.storage = storage;
+    this.pages = pages;
     /** Names this page among all that share the storage. */
     this.writer = Math.random().toString(36).slice(2);
+    pages.join(this.writer);
     /** @type {Map<string, string>} */ this.ownDrafts = new Map(); // as they were written here, by tab
   }
 
@@ -53,6 +58,34 @@ export class FileStore {
     return this.#read(DRAFT_KEY + tab);
   }
 
+  /**
+   * Call `use` with the draft that an earlier visit has left: at once, or when the page that writes it is closed.
+   *
+   * @param {string} tab
+   * @param {(draft: StoredFile) => void} use
+   */
+  whenLeft(tab, use) {
+    const writer = this.draft(tab)?.writer;
+    const look = () => {
+      const draft = this.draft(tab);
+      if (draft === null) return;
+      if (draft.writer === writer) use(draft);
+      else this.whenLeft(tab, use); // another page has written meanwhile
+    };
+    if (writer === undefined) look();
+    else if (writer !== this.writer) this.pages.whenClosed(writer, look);
+  }
+
+  /**
+   * Whether a change of the storage under this key concerns the draft of a tab.
+   *
+   * @param {string} tab
+   * @param {string | null} key   null: all was removed
+   */
+  isOfDraft(tab, key) {
+    return key === null || key === DRAFT_KEY + tab;
+  }
+
   /** @param {string} tab @param {StoredFile | null} draft  null removes the draft */
   storeDraft(tab, draft) {
     const key = DRAFT_KEY + tab;
@@ -67,7 +100,9 @@ export class FileStore {
 
   /** Continue with a draft, or discard it: it goes to no other place when it is replaced. @param {string} tab @param {StoredFile} draft */
   adoptDraft(tab, draft) {
-    if (this.draft(tab)?.text === draft.text) this.#own(tab);
+    if (this.draft(tab)?.text !== draft.text) return;
+    this.#write(DRAFT_KEY + tab, { ...draft, writer: this.writer });
+    this.#own(tab);
   }
 
   /** @param {string} tab */

@@ -28,12 +28,14 @@ export class Workspace {
    * @param {() => number} options.now      milliseconds since 1970
    * @param {() => void} options.changed    called when another text must be shown
    * @param {(text: string) => void} [options.written]   called when the user has written a text
+   * @param {() => void} [options.offered]   called when there is another draft, or none, to offer
    */
-  constructor({ fileStore, now, changed, written = () => {} }) {
+  constructor({ fileStore, now, changed, written = () => {}, offered = () => {} }) {
     this.fileStore = fileStore;
     this.now = now;
     this.changed = changed;
     this.written = written;
+    this.offered = offered;
     this.tab = ALL;
     /** @type {Map<string, Document>} */ this.documents = new Map();
     /** @type {import("./aesl.js").Aesl | null} */ this.parsed = null;
@@ -72,9 +74,29 @@ export class Workspace {
     if (known !== undefined) return known;
     const document = blank(tab === ALL ? undefined : fileName(tab));
     this.documents.set(tab, document);
-    const draft = this.fileStore.draft(tab);
-    if (draft !== null) this.drafts.set(tab, draft);
+    this.#offerDraft(tab);
     return document;
+  }
+
+  /** @param {string} tab */
+  #offerDraft(tab) {
+    this.fileStore.whenLeft(tab, (draft) => {
+      this.drafts.set(tab, draft);
+      this.offered();
+    });
+  }
+
+  /**
+   * Another page has changed the storage: a draft that it continues or has removed is not offered any more.
+   *
+   * @param {string | null} key
+   */
+  storageChanged(key) {
+    for (const tab of [...this.drafts.keys()].filter((each) => this.fileStore.isOfDraft(each, key))) {
+      this.drafts.delete(tab);
+      this.#offerDraft(tab);
+      this.offered();
+    }
   }
 
   /** @param {string} tab */

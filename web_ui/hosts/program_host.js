@@ -8,7 +8,7 @@
 
 import { BLOCKS, looksLikeBlocks } from "../blockly/language.js";
 import { localStore } from "../browser/local_storage.js";
-import { meetOtherTabs } from "../browser/other_tabs.js";
+import { meetOtherTabs, openPages } from "../browser/other_tabs.js";
 import { textOf } from "../browser/text_file.js";
 import { looksLikeToolbox } from "../editor/toolbox_file.js";
 import { importerOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
@@ -209,8 +209,10 @@ export class ProgramHost {
     if (module === null) return false;
     this.#module ??= module;
     if (this.session === null) {
-      this.session = new module.EditorSession(localStore, Date.now);
-      this.session.onWritten = (text) => this.#sendDraft(text);
+      const session = new module.EditorSession(localStore, Date.now, openPages(navigator.locks));
+      this.session = session;
+      session.onWritten = (text) => this.#sendDraft(text);
+      addEventListener("storage", ({ key }) => session.workspace.storageChanged(key));
       meetOtherTabs(() => {
         const { store, text } = /** @type {Context} */ (this.context);
         store.dispatch({ type: "notice", level: "warning", text: text("program")("program.otherTab") });

@@ -123,6 +123,7 @@ export class ProgramTab {
     this.sizes = new ResizeObserver(() => this.#placeFileMenu());
     this.sizes.observe(this.element);
     session.onText = () => this.#follow();
+    session.onOffer = redraw;
   }
 
   /**
