@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -92,6 +94,25 @@ def test_a_teachers_message_is_seen_in_every_tab_and_covers_nothing(world, page,
     page.locator(".build-tool").nth(1).click()
     page.locator(".placing-hints").get_by_role("button").first.wait_for()
     page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=TEACHER_NOTE)
+
+
+@pytest.mark.slow
+def test_a_fallen_robot_is_put_back_beside_a_long_message_of_the_teacher(world, page, tmp_path):
+    ground = {"kind": "rectangle", "size_x_m": 0.8, "size_y_m": 0.8, "color": "#ffffff"}
+    robots = [{"name": "thymio", "x_m": 0.25, "y_m": 0}]
+    playground, program = tmp_path / "table.json", tmp_path / "off.aesl"
+    playground.write_text(json.dumps({"format": 1, "title": "Table", "shapes": [ground], "robots": robots}))
+    program.write_text("motor.left.target = 300\nmotor.right.target = 300\n")
+    address = world(playground, program)
+    with world.client() as client:
+        set_and_answer(client, ms.Parameter("/web_ui.notice", "Look at the board: we compare the first results. " * 4))
+    page.emulate_media(reduced_motion="reduce")
+    open_page(page, address, unfold=False)
+    page.locator("[data-fallen]").wait_for()
+    for width, height in (*SMALL, (640, 360), (195, 422), (1366, 768)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=(".fallen", "button"))
+        page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=TEACHER_NOTE)
 
 
 @pytest.mark.slow

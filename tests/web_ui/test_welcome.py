@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import pytest
@@ -26,6 +27,18 @@ IN_SIGHT = """() => [...document.querySelectorAll(".welcome-start, .welcome-watc
     const {left, top, right, bottom} = element.getBoundingClientRect();
     return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
 })"""
+
+GREETING_IS_WHOLE = """() => {
+    const hello = document.querySelector(".welcome-hello");
+    const {left, top, right, bottom} = hello.getBoundingClientRect();
+    const view = document.querySelector("#view").getBoundingClientRect();
+    const robot = window.thymio.partPosition("robot");
+    const tip = left + parseFloat(getComputedStyle(hello, "::after").left);
+    return left >= view.left && right <= view.right && top >= view.top && bottom <= view.bottom
+        && hello.scrollWidth <= hello.clientWidth && left <= robot.x && robot.x <= right
+        && Math.abs(tip - robot.x) < 30;
+}"""
+"""The greeting is in the view, and its tip is at the robot."""
 
 OFFER_IS_FREE = """() => {
     const box = (element) => element.getBoundingClientRect();
@@ -188,6 +201,23 @@ def test_everything_is_in_sight_and_accessible_on_every_screen(world, page, size
     page.locator(".view-row").wait_for()
     wait_for_none(page, OVERLAPPING)
     assert page.locator(".welcome-tour").count() == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("x_m", [-0.9, 0.9])
+def test_the_greeting_of_a_robot_at_an_edge_of_the_view_is_whole(world, page, tmp_path, x_m):
+    ground = {"kind": "rectangle", "size_x_m": 2, "size_y_m": 1, "color": "#ffffff"}
+    robots = [{"name": "thymio", "x_m": x_m, "y_m": 0}]
+    playground = tmp_path / "wide.json"
+    playground.write_text(json.dumps({"format": 1, "title": "Wide", "shapes": [ground], "robots": robots}))
+    page.emulate_media(reduced_motion="reduce")
+    visit(page, world(playground, "welcome"), "welcome=on&tour=off")
+    for language in ("en", "fr"):
+        choose_language(page, language)
+        page.locator(STARTS).wait_for()
+        for width, height in ((390, 844), (640, 400), (1024, 768)):
+            page.set_viewport_size({"width": width, "height": height})
+            page.wait_for_function(GREETING_IS_WHOLE)
 
 
 @pytest.mark.slow

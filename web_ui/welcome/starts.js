@@ -19,13 +19,17 @@ const PULSE = "welcome-pulse";
 /** The behavior that drives by the robot's own arrow buttons, and stops in front of things. */
 const DRIVE = "thesis_basic";
 const WATCH = "line_follower";
-/** From the lower edge of the scene to the starts. */
+/** From the edges of the scene to the starts and to the greeting. */
 const EDGE_PX = 12;
 /** Height of the greeting's tip above the robot's origin, in meters. */
 const OVER_ROBOT_M = 0.075;
+/** From the tip to the greeting. */
+const TIP_PX = 10;
+/** From the tip to the left and right edge of the greeting, at least: its corners are round. */
+const TIP_FROM_EDGE_PX = 24;
 
 export class Starts {
-  #transform = "";
+  #place = "";
   #topic = "";
 
   /**
@@ -82,9 +86,7 @@ export class Starts {
       const [before, after] = t("ros.text", { topic: "\n" }).split("\n");
       this.rosText.replaceChildren(before, h("b", {}, topic), after);
     }
-    const place = greetingPlace(this.context, state);
-    this.hello.hidden = place === null;
-    if (place !== null && place !== this.#transform) this.hello.style.transform = this.#transform = place;
+    this.#placeGreeting(state);
   }
 
   destroy() {
@@ -95,6 +97,25 @@ export class Starts {
       for (const each of [this.hello, this.element, this.sheet.element]) each.remove();
     });
     this.context.scene.invalidate();
+  }
+
+  /** Put the greeting over the robot, but inside the view; its tip stays at the robot. @param {State} state */
+  #placeGreeting(state) {
+    const { hello } = this;
+    const at = greetingTip(this.context, state);
+    hello.hidden = at === null;
+    if (at === null) return;
+    const { clientWidth, clientHeight } = this.context.scene.canvas;
+    const { offsetWidth, offsetHeight } = hello;
+    const left = clamp(at.x - Math.round(offsetWidth / 2), EDGE_PX, clientWidth - offsetWidth - EDGE_PX);
+    const top = clamp(at.y - TIP_PX - offsetHeight, EDGE_PX, clientHeight - offsetHeight - EDGE_PX);
+    const tip = clamp(at.x - left, TIP_FROM_EDGE_PX, offsetWidth - TIP_FROM_EDGE_PX);
+    const transform = `translate(${left}px, ${top}px)`;
+    const place = `${transform} ${tip}`;
+    if (place === this.#place) return;
+    this.#place = place;
+    hello.style.transform = transform;
+    hello.style.setProperty("--tip", `${tip}px`);
   }
 
   /** Start a behavior on the chosen robot; time runs, so that something moves. @param {string} name */
@@ -168,12 +189,12 @@ function card(symbol, meaning, title, about, action) {
 }
 
 /**
- * Where the greeting is: over the chosen robot; null while the robot is not in sight.
+ * Where the greeting's tip is: over the chosen robot, in CSS pixels of the view; null while the robot is not in sight.
  *
  * @param {Context} context
  * @param {State} state
  */
-function greetingPlace({ scene }, { robots, selected }) {
+function greetingTip({ scene }, { robots, selected }) {
   const pose = robots[selected]?.latest?.pose;
   if (pose === undefined) return null;
   const at = scene.projection.toWindow(pose.x, pose.y, pose.z + OVER_ROBOT_M);
@@ -181,7 +202,12 @@ function greetingPlace({ scene }, { robots, selected }) {
   const { left, top, width, height } = scene.canvas.getBoundingClientRect();
   const [x, y] = [Math.round(at.x - left), Math.round(at.y - top)];
   if (x < 0 || y < 0 || x > width || y > height) return null;
-  return `translate(${x}px, ${y - 10}px) translate(-50%, -100%)`;
+  return { x, y };
+}
+
+/** The nearest value of a range; its begin if the range is empty. @param {number} value @param {number} least @param {number} most */
+function clamp(value, least, most) {
+  return Math.max(least, Math.min(value, most));
 }
 
 /** Let the pad pulse once: that is where the arrows are. */
