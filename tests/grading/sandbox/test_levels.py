@@ -5,13 +5,17 @@ from __future__ import annotations
 import os
 import socket
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from thymio_sim_ros.grading.assignment import Limits
+from thymio_sim_ros.grading.sandbox import levels
 from thymio_sim_ros.grading.sandbox.job import Job
 from thymio_sim_ros.grading.sandbox.levels import AUTOMATIC, run_job, why_unavailable
+from thymio_sim_ros.grading.sandbox.readable import NOBODY, closed_path
 
 pytestmark = [
     pytest.mark.process,
@@ -75,3 +79,52 @@ def test_a_level_gives_what_it_promises(level: str, tmp_path: Path) -> None:
     assert {name: one.outcome for name, one in report.outcomes.items()} == dict.fromkeys(names, "failed") | {
         names[0]: "passed"
     }
+
+
+USER = NOBODY if sys.platform.startswith("linux") and os.geteuid() == 0 else None
+"""A user to whom a folder of mode 0 is closed."""
+
+
+@pytest.fixture
+def closed_folder() -> Iterator[Path]:
+    """A folder with an interpreter and a package, in a folder that is closed as /root is."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        folder.chmod(0o755)
+        home = folder / "home"
+        (home / "python" / "bin").mkdir(parents=True)
+        python = home / "python" / "bin" / "python"
+        python.write_text("")
+        python.chmod(0o755)
+        (folder / "venv").mkdir(mode=0o755)
+        (folder / "venv" / "python").symlink_to(python)
+        home.chmod(0)
+        yield folder
+        home.chmod(0o700)
+
+
+def test_a_closed_folder_is_found_on_every_way_to_a_path(closed_folder: Path) -> None:
+    home, link, inside = closed_folder / "home", closed_folder / "venv" / "python", closed_folder / "home" / "python"
+    for path in (home, inside, link):
+        assert closed_path([str(closed_folder), str(path)], USER) == (str(path), str(home))
+    home.chmod(0o755)
+    assert closed_path([str(home), str(inside), str(link)], USER) is None
+    (inside / "bin" / "python").chmod(0)
+    assert closed_path([str(link)], USER) == (str(link), str(inside / "bin" / "python"))
+
+
+@pytest.mark.parametrize("level", ["landlock", "limits"])
+def test_a_level_of_root_says_which_folder_is_closed_to_the_tests(
+    level: str, closed_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link, home = str(closed_folder / "venv" / "python"), str(closed_folder / "home")
+    monkeypatch.setattr(os, "geteuid", lambda: 0)
+    monkeypatch.setattr(levels, "NOBODY", USER)
+    monkeypatch.setattr(levels, "needed_paths", lambda: [link])
+    begin = f"started by root, tests run as a user without rights, and this user may not use {home}"
+    advice = "grade as an ordinary user, or install Python and this package elsewhere, as in /opt"
+    assert why_unavailable(level) == f"{begin}, which leads to {link}: {advice}"
+    monkeypatch.setattr(levels, "needed_paths", list)
+    monkeypatch.setattr(tempfile, "tempdir", home)
+    advice = "set TMPDIR to a folder that is open to all users"
+    assert why_unavailable(level) == f"{begin}, the place of temporary files: {advice}"

@@ -6,12 +6,13 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Mapping, Sequence
 
 from thymio_sim_ros.grading.assignment import Limits
 from thymio_sim_ros.grading.errors import DestroyedError, GradingError
 from thymio_sim_ros.grading.sandbox.job import Job, Report
-from thymio_sim_ros.grading.sandbox.readable import python_path
+from thymio_sim_ros.grading.sandbox.readable import NOBODY, closed_path, needed_paths, python_path
 
 __all__ = ["LEVELS", "best_level", "run_job", "why_unavailable"]
 
@@ -46,6 +47,8 @@ def why_unavailable(level: str) -> str:
     """Why a level is not available here; empty if it is. It is tried, not guessed."""
     if not sys.platform.startswith("linux"):
         return "found no Linux; on Windows use WSL 2"
+    if level != "namespaces" and os.geteuid() == 0 and (reason := _why_closed(needed_paths(), user=NOBODY)):
+        return reason
     probe = b"def test_nothing(): pass\n"
     job = Job(level, ("test_probe.py",), {"test_probe.py": probe}, {}, None, Limits())
     try:
@@ -53,6 +56,21 @@ def why_unavailable(level: str) -> str:
     except GradingError as error:
         return str(error)
     return "" if report.collected else report.remark.strip().rpartition("\n")[2]
+
+
+def _why_closed(paths: Sequence[str], user: int | None) -> str:
+    """Why the user of the tests cannot start them with these files of the host; empty if it can.
+
+    A job of root runs as a user without rights. Only in namespaces it has a file system of its own.
+    """
+    begin = "started by root, tests run as a user without rights, and this user may not use"
+    if found := closed_path(paths, user):
+        path, closed = found
+        part = closed if closed == path else f"{closed}, which leads to {path}"
+        return f"{begin} {part}: grade as an ordinary user, or install Python and this package elsewhere, as in /opt"
+    if found := closed_path([tempfile.gettempdir()], user):
+        return f"{begin} {found[1]}, the place of temporary files: set TMPDIR to a folder that is open to all users"
+    return ""
 
 
 def run_job(job: Job) -> Report:
