@@ -15,7 +15,7 @@ from thymio_sim_ros.grading.assignment import Limits
 from thymio_sim_ros.grading.sandbox import levels
 from thymio_sim_ros.grading.sandbox.job import Job
 from thymio_sim_ros.grading.sandbox.levels import AUTOMATIC, run_job, why_unavailable
-from thymio_sim_ros.grading.sandbox.readable import NOBODY, closed_path
+from thymio_sim_ros.grading.sandbox.readable import UNPRIVILEGED_ID, closed_path
 
 pytestmark = [
     pytest.mark.process,
@@ -81,7 +81,7 @@ def test_a_level_gives_what_it_promises(level: str, tmp_path: Path) -> None:
     }
 
 
-USER = NOBODY if sys.platform.startswith("linux") and os.geteuid() == 0 else None
+USER = UNPRIVILEGED_ID if sys.platform.startswith("linux") and os.geteuid() == 0 else None
 """A user to whom a folder of mode 0 is closed."""
 
 
@@ -119,7 +119,7 @@ def test_a_level_of_root_says_which_folder_is_closed_to_the_tests(
 ) -> None:
     link, home = str(closed_folder / "venv" / "python"), str(closed_folder / "home")
     monkeypatch.setattr(os, "geteuid", lambda: 0)
-    monkeypatch.setattr(levels, "NOBODY", USER)
+    monkeypatch.setattr(levels, "UNPRIVILEGED_ID", USER)
     monkeypatch.setattr(levels, "needed_paths", lambda: [link])
     begin = f"started by root, tests run as a user without rights, and this user may not use {home}"
     advice = "grade as an ordinary user, or install Python and this package elsewhere, as in /opt"

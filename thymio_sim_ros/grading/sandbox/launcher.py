@@ -15,7 +15,7 @@ from pathlib import Path
 from thymio_sim_ros.grading.sandbox import namespaces, syscalls
 from thymio_sim_ros.grading.sandbox.confinement import Confinement
 from thymio_sim_ros.grading.sandbox.job import Job
-from thymio_sim_ros.grading.sandbox.readable import NOBODY, PACKAGE_FOLDER, readable_paths
+from thymio_sim_ros.grading.sandbox.readable import PACKAGE_FOLDER, UNPRIVILEGED_ID, readable_paths
 from thymio_sim_ros.grading.sandbox.supervisor import Place, supervise
 
 __all__ = ["main"]
@@ -62,7 +62,7 @@ def _unprivileged_user() -> int | None:
         return None
     wanted = _FIRST_USER + os.getpid()
     ranges = [tuple(map(int, line.split())) for line in Path("/proc/self/uid_map").read_text("ascii").splitlines()]
-    return wanted if any(first <= wanted < first + count for first, _, count in ranges) else NOBODY
+    return wanted if any(first <= wanted < first + count for first, _, count in ranges) else UNPRIVILEGED_ID
 
 
 def _threads_of_user() -> int:

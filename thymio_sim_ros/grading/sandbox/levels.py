@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from thymio_sim_ros.grading.assignment import Limits
 from thymio_sim_ros.grading.errors import DestroyedError, GradingError
 from thymio_sim_ros.grading.sandbox.job import Job, Report
-from thymio_sim_ros.grading.sandbox.readable import NOBODY, closed_path, needed_paths, python_path
+from thymio_sim_ros.grading.sandbox.readable import UNPRIVILEGED_ID, closed_path, needed_paths, python_path
 
 __all__ = ["LEVELS", "best_level", "run_job", "why_unavailable"]
 
@@ -47,7 +47,7 @@ def why_unavailable(level: str) -> str:
     """Why a level is not available here; empty if it is. It is tried, not guessed."""
     if not sys.platform.startswith("linux"):
         return "found no Linux; on Windows use WSL 2"
-    if level != "namespaces" and os.geteuid() == 0 and (reason := _why_closed(needed_paths(), user=NOBODY)):
+    if level != "namespaces" and os.geteuid() == 0 and (reason := _why_closed(needed_paths(), user=UNPRIVILEGED_ID)):
         return reason
     probe = b"def test_nothing(): pass\n"
     job = Job(level, ("test_probe.py",), {"test_probe.py": probe}, {}, None, Limits())

@@ -12,7 +12,13 @@ from pathlib import Path
 import thymio_sim_ros
 
 __all__ = [
-    "DEVICES", "NOBODY", "PACKAGE_FOLDER", "closed_path", "needed_paths", "package_folders", "python_path",
+    "DEVICES",
+    "PACKAGE_FOLDER",
+    "UNPRIVILEGED_ID",
+    "closed_path",
+    "needed_paths",
+    "package_folders",
+    "python_path",
     "readable_paths",
 ]  # fmt: skip
 
@@ -27,7 +33,7 @@ _SYSTEM = (
 _PARTS = ("aseba_vm", "thymio_sim_ros", "playgrounds", "share")
 """What is read of it. A source tree has other files, perhaps an assignment."""
 
-NOBODY = 65534
+UNPRIVILEGED_ID = 65534
 """A user and group without rights."""
 
 DEVICES = ("null", "full", "random", "urandom")
