@@ -17,7 +17,6 @@ TESTS = Path(__file__).parent
 OWNER = "patience.py"
 SLEEPS = {
     "network/test_live_tools.py": "a window that does not report whether it is ready",
-    "ros/test_runaway.py": "a robot that takes the whole slice",
     "testing/ros/test_cpu_limit.py": "real time in which no processor time is used",
 }
 """Modules that sleep outside of `patience.until`, and what for."""

@@ -241,10 +241,14 @@ def runtime(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., AsebaRunt
             marked = program_source(_wanted(request).get("program", ""), folder)
             source, path = ("", marked) if is_name(marked) else (marked, "")
         defaults = RuntimeParams(source=source, path=program_source(path, folder), **parameters)
-        made = AsebaRuntime(ros.context, defaults, use_sim_time=True, is_closed=_is_graded(request))
+        simulation = ros.simulation if isinstance(ros.simulation, Simulation) else None
+        simulator = None if simulation is None else simulation.simulator
+        made = AsebaRuntime(
+            ros.context, defaults, use_sim_time=True, is_closed=_is_graded(request), simulator=simulator
+        )
         node: AsebaRuntime = ros.live(made)
-        if isinstance(ros.simulation, Simulation):
-            ros.simulation.run_program(node)
+        if simulation is not None:
+            simulation.run_program(node)
         ros.settle()
         return node
 

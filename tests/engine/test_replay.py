@@ -8,11 +8,26 @@ from pathlib import Path
 
 import pytest
 
+from aseba_vm import protocol
 from tests.sim.builders import FLOOR, ROBOT, box, make, shipped
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.device.programs.status import PAUSED
 from thymio_sim_ros.engine.engine import Engine
-from thymio_sim_ros.engine.inputs import BreakpointsSet, Controlled, EventSent, Input, Removed, VariableSet
+from thymio_sim_ros.engine.inputs import (
+    BreakpointsSet,
+    ClientConnected,
+    ClientDisconnected,
+    Controlled,
+    DevicesAdded,
+    DeviceStart,
+    EventSent,
+    Input,
+    Loaded,
+    MessagesReceived,
+    Remembered,
+    Removed,
+    VariableSet,
+)
 from thymio_sim_ros.engine.replay import replay
 from thymio_sim_ros.engine.run_log import RunLog, RunLogError
 from thymio_sim_ros.files.loading import read_program
@@ -249,10 +264,61 @@ def test_what_a_pupil_does_to_a_program_is_replayed(tmp_path: Path) -> None:
     assert replay(path).differs is not None
 
 
+def test_what_a_tool_on_the_network_does_is_replayed(tmp_path: Path) -> None:
+    """A client loads bytecode of a text that it has sent, sets a breakpoint and variables, steps and runs."""
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    engine = Engine(shipped("two_robots"))
+    log.begin("two_robots", engine)
+    engine.run(0.1)
+    first, second = engine.world.robots
+    starts = {first: DeviceStart(1, None, "menu"), second: DeviceStart(2, load_program(FILE, "mine.aesl"))}
+    engine.apply(DevicesAdded(starts))
+    engine.apply(ClientConnected(first, 5))
+    program = load_program(FILE, "mine.aesl")
+    engine.apply(Remembered(first, program))
+    words = program.program.words
+    sent = (protocol.SetBytecode(0, 1, 0, words), protocol.Reset(0, 1), protocol.Run(0, 1))
+    engine.apply(MessagesReceived(first, 5, sent))
+    engine.run(0.4)
+    assert engine.hosts[first].program == program
+    engine.apply(MessagesReceived(first, 5, (protocol.Pause(0, 1), protocol.Step(0, 1))))
+    engine.run(0.1)
+    engine.apply(MessagesReceived(first, 5, (protocol.GetVariables(0, 1, 0, 10),)))
+    engine.apply(MessagesReceived(first, 5, (protocol.SetVariables(0, 1, 0, (3,)), protocol.Run(0, 1))))
+    engine.run(0.2)
+    replies = engine.pop_sent()
+    assert any(isinstance(message, protocol.Variables) for sent in replies for message in sent.messages)
+    assert any(sent.client is None for sent in replies)
+    engine.apply(ClientDisconnected(first, 5))
+    engine.apply(Loaded(second, None))
+    engine.apply(Loaded(first, load_program("leds.top = [9, 9, 9]", "light"), "menu"))
+    engine.run(1.0)
+    engine.reset()
+    engine.run(0.5)
+    log.close()
+    found = replay(path)
+    assert (found.runs, found.differs, found.is_complete) == (2, None, True)
+    lines = path.read_text().splitlines()
+    assert sum('"receive"' in line for line in lines) == 3, "a question changes nothing"
+
+
+def test_devices_that_are_added_run_as_from_the_start(tmp_path: Path) -> None:
+    """The programs of an engine that starts with them, and of one that gets them before its first tick."""
+    program = load_program(FILE, "mine.aesl")
+    given = Engine(shipped("two_robots"), program, seed=2)
+    added = Engine(shipped("two_robots"), seed=2)
+    added.apply(DevicesAdded({name: DeviceStart(at, program) for at, name in enumerate(added.world.robots, start=1)}))
+    for engine in (given, added):
+        engine.run(1.0)
+    assert given.digest() == added.digest()
+
+
 @pytest.mark.parametrize(
     ("happened", "error"),
     [
         (Controlled("thymio", "fly"), ValueError),
+        (EventSent(("thymio",), "ping", (1, 2, 3)), ValueError),
         (Controlled("ghost", "run"), KeyError),
         (VariableSet("thymio", "n", (1, 2)), ValueError),
         (VariableSet("thymio", "nothing", (1,)), KeyError),
@@ -264,7 +330,7 @@ def test_what_a_pupil_does_to_a_program_is_replayed(tmp_path: Path) -> None:
 def test_an_input_that_is_refused_is_not_in_the_log(tmp_path: Path, happened: Input, error: type[Exception]) -> None:
     path = tmp_path / "run.jsonl"
     log = log_to(path)
-    engine = Engine(shipped("line"), load_program("var n = 0", "n"))
+    engine = Engine(shipped("line"), load_program(FILE.replace("hello", "ping"), "n"))
     log.begin("line", engine)
     with pytest.raises(error):
         engine.apply(happened)

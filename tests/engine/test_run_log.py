@@ -12,7 +12,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, make
 from thymio_sim_ros.engine.engine import Engine
-from thymio_sim_ros.engine.inputs import Posted, Removed, Spawned
+from thymio_sim_ros.engine.inputs import DevicesAdded, Posted, Removed, Spawned
 from thymio_sim_ros.engine.run_log import LogEnded, RunLog, RunLogError, StateSeen, WorldReset, WorldStarted, read
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.playground.reader import RobotStart
@@ -107,7 +107,7 @@ def test_a_log_contains_everything_in_order(written: Path) -> None:
         (150, Spawned(RobotStart("late", 1.0, 1.0))),
         (150, Removed("late")),
     ]
-    assert [line for line in lines if isinstance(line, WorldReset)] == [WorldReset(150, {})]
+    assert [line for line in lines if isinstance(line, WorldReset)] == [WorldReset(150, DevicesAdded({}))]
     assert [line.tick for line in lines if isinstance(line, StateSeen)] == [100, 150, 2]
     assert lines[-1] == LogEnded()
 

@@ -9,7 +9,10 @@ from rcl_interfaces.msg import Parameter as ParameterMsg
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
-from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
+from sensor_msgs.msg import Range
+from std_msgs.msg import Bool, Int16MultiArray, MultiArrayDimension, MultiArrayLayout
+
+from thymio_sim_ros.ros.interface.names import PROXIMITY
 
 
 def set_parameters(ros, wanted, node="/aseba_runtime"):
@@ -44,6 +47,28 @@ def words(*values):
 def event(name, *values):
     dimension = MultiArrayDimension(label=name, size=len(values), stride=len(values))
     return Int16MultiArray(layout=MultiArrayLayout(dim=[dimension]), data=values)
+
+
+class Proximity:
+    """The proximity sensors of a robot, as its driver publishes them."""
+
+    def __init__(self, ros, robot=""):
+        self._publishers = [ros.publisher(Range, f"{robot}/proximity/{name}", depth=1) for name in PROXIMITY]
+
+    def send(self, *ranges):
+        """Publish seven ranges in m; the driver has -1.0 for no obstacle."""
+        for publisher, value in zip(self._publishers, ranges, strict=True):
+            publisher.publish(seen(value))
+
+
+def seen(range_m):
+    """The message of a proximity sensor."""
+    return Range(min_range=0.0215, max_range=0.14, range=range_m)
+
+
+def press(ros, button, robot=""):
+    """Publish that a button is pressed, as the driver does."""
+    ros.publisher(Bool, f"{robot}/buttons/{button}").publish(Bool(data=True))
 
 
 class Status:

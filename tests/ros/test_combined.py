@@ -21,7 +21,8 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     device = DeviceOptions("playground", "playground", tmp_path / "card", tmp_path / "flash")
     models = {"motor_model": "firmware", "proximity_model": "cone"}
     suite = SuiteConfig(playground="base", program="none", device=device, **models, web=False, foxglove=False)
-    simulator, runtime = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    (simulator,) = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    (runtime,) = simulator.attached
     assert simulator.params.values.motor_model == "firmware"
     assert simulator.params.values.proximity_model == "cone"
     assert runtime.values.params.options == device
@@ -30,12 +31,22 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     assert robot.device.variables.get("sd.present") == (1,)
 
 
+@pytest.mark.parametrize(("words", "shown"), [([], True), (["--headless"], False)])
+def test_the_executable_can_leave_out_bridge_and_page(monkeypatch, words, shown):
+    started = []
+    monkeypatch.setattr(combined, "_run", lambda suite, args, wrap: started.append((suite, args)))
+    combined.main([*words, "--ros-args", "-p", "seed:=3"])
+    ((suite, args),) = started
+    assert (suite.foxglove, suite.web) == (shown, shown)
+    assert args == ["--ros-args", "-p", "seed:=3"]
+
+
 def test_a_page_opened_from_elsewhere_reaches_the_bridge_if_its_origin_is_allowed(ros):
     here, elsewhere = "127.0.0.1", "127.0.0.2"
     for address, hosts in (("localhost", [here]), ("0.0.0.0", [here, elsewhere])):
         ports = {"port": 0, "foxglove_port": free_port()}
         suite = SuiteConfig(playground="base", program="none", address=address, tokens=Tokens(), **ports)
-        _, _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+        _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
         for host in (here, elsewhere):
             opening = {"subprotocols": SUBPROTOCOLS, "origin": f"http://{host}:{page.port}"}
             if host in hosts:
@@ -52,7 +63,7 @@ def test_a_page_opened_from_elsewhere_reaches_the_bridge_if_its_origin_is_allowe
 def test_in_the_network_the_bridge_creates_tokens_that_the_page_gets(ros, monkeypatch):
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     suite = SuiteConfig(playground="base", program="none", address="0.0.0.0", port=0, foxglove_port=free_port())
-    _, _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
     assert bridge.tokens.is_required
     assert page.tokens == bridge.tokens
     assert f"/#token={bridge.tokens.full}" in page.access_urls

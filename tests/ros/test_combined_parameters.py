@@ -109,8 +109,16 @@ def test_other_arguments_stay_as_they_are(given):
     with assigned(words) as (arguments, warnings):
         assert (arguments, warnings) == (words, [])
     with assigned([*words[:2], "-p", "seed:=1", *words[2:]]) as (arguments, _):
-        assert arguments[:-3] == words
-        assert arguments[-3:-1] == ["--ros-args", "--params-file"]
+        assert [*arguments[:2], *arguments[4:]] == words
+        assert arguments[2] == "--params-file"
+
+
+def test_of_two_values_of_a_parameter_the_last_one_counts(given, tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text("/**/simulator:\n  ros__parameters: {seed: 7}\n")
+    of_file, of_rule = ("--params-file", str(file)), ("-p", "seed:=8")
+    assert given(*of_file, *of_rule)[0][SIMULATOR]["seed"] == 8
+    assert given(*of_rule, *of_file)[0][SIMULATOR]["seed"] == 7
 
 
 def test_parameters_with_one_name_in_several_nodes_have_a_rule():

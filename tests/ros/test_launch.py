@@ -28,8 +28,9 @@ from thymio_sim_ros.suite_config import SuiteConfig
 
 ROOT = Path(__file__).parents[2]
 LAUNCH = ROOT / "thymio_sim_ros" / "launch" / "thymio.launch.py"
-# Executable → the module whose parameter dataclass it declares.
+# Executable or node → its module, which has the dataclass of its parameters.
 MODULES = {
+    "thymio": "combined",
     "simulator": "simulator.node",
     "aseba_runtime": "aseba.node",
     "foxglove_bridge": "foxglove.node",
@@ -41,7 +42,7 @@ NAMES = {
     "launch.conditions": ["IfCondition"],
     "launch.events": [],
     "launch.events.process": ["ProcessExited"],
-    "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution", "PythonExpression"],
+    "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution"],
     "launch_ros": [],
     "launch_ros.actions": ["Node"],
     "launch_ros.parameter_descriptions": ["ParameterValue"],
@@ -59,9 +60,7 @@ class Call:
         """The text of a substitution, by the launch arguments."""
         if type(self).__name__ == "LaunchConfiguration":
             return context[self.args[0]]
-        assert type(self).__name__ == "PythonExpression"
-        parts = [part if isinstance(part, str) else part.perform(context) for part in self.args[0]]
-        return str(eval("".join(parts)))
+        raise AssertionError(f"unknown: {type(self).__name__}")
 
 
 @pytest.fixture
@@ -90,7 +89,7 @@ def _defaults(description: Call) -> dict[str, str]:
 
 
 def _ours(description: Call, **arguments: str) -> list[dict[str, Any]]:
-    """How each of our own nodes is started with these launch arguments."""
+    """How each of our own processes is started with these launch arguments."""
     make_nodes = _function(description, "_nodes")
     nodes = [node.kwargs for node in make_nodes(_defaults(description) | arguments)]
     assert {node["package"] for node in nodes} == {"thymio_sim_ros"}
@@ -106,12 +105,14 @@ def _value(parameter: Any, context: dict[str, str]) -> Any:
 
 
 def _command_line(description: Call, node: dict[str, Any], folder: Path, **arguments: str) -> list[str]:
-    """The arguments of ROS by which launch starts a node."""
+    """The arguments by which launch starts a process."""
     context = _defaults(description) | arguments
-    words = ["--ros-args", "-r", f"__node:={node['name']}"]
+    words = [*node.get("arguments", ()), "--ros-args", *node.get("ros_arguments", ())]
+    if "name" in node:
+        words += ["-r", f"__node:={node['name']}"]
     if namespace := node["namespace"].perform(context):
         words += ["-r", f"__ns:=/{namespace}"]
-    for number, parameters in enumerate(node["parameters"]):
+    for number, parameters in enumerate(node.get("parameters", ())):
         if isinstance(parameters, dict):
             file = folder / f"{node['name']}_{number}.yaml"
             values = {name: _value(value, context) for name, value in parameters.items()}
@@ -133,33 +134,45 @@ def _declared(module: str) -> dict[str, type]:
     }
 
 
-def test_every_executable_is_started_as_the_node_of_its_name(description: Call) -> None:
-    nodes = _ours(description)
-    assert [node["executable"] for node in nodes] == [node["name"] for node in nodes] == list(MODULES)
+def _rules(node: dict[str, Any]) -> dict[tuple[str, str], str]:
+    """The parameters on the command line of a process: node and name → value as it is written."""
+    rules = [rule.partition(":=") for rule in node["ros_arguments"] if ":=" in rule]
+    return {(name.partition(":")[0], name.partition(":")[2]): value for name, _, value in rules}
+
+
+def test_simulator_and_runtime_are_one_process_and_the_others_nodes_of_their_names(description: Call) -> None:
+    robots, *others = _ours(description)
+    assert (robots["executable"], robots["arguments"], "name" in robots) == ("thymio", ["--headless"], False)
+    assert [node["executable"] for node in others] == [node["name"] for node in others] == list(MODULES)[-2:]
 
 
 def test_every_parameter_that_is_passed_is_declared_with_its_type(description: Call) -> None:
+    robots, *others = _ours(description, playground="5")
     passed = {
         (node["name"], name): value.kwargs["value_type"]
-        for node in _ours(description)
+        for node in others
         for name, value in node["parameters"][0].items()
         if name != "use_sim_time"
     }
+    for key, value in _rules(robots).items():
+        read = yaml.safe_load(value)
+        passed[key] = list[str] if isinstance(read, list) else type(read)
     declared = {(node, name): kind for node, module in MODULES.items() for name, kind in _declared(module).items()}
     lists = {list: list[str]}  # the only lists that are passed are lists of names
     assert passed == {key: lists.get(declared.get(key), declared.get(key)) for key in passed}
 
 
-def test_all_but_the_simulator_follow_simulated_time(description: Call) -> None:
-    follow = {node["name"] for node in _ours(description) if node["parameters"][0].get("use_sim_time")}
-    assert follow == MODULES.keys() - {"simulator"}
+def test_bridge_and_page_have_simulated_time(description: Call) -> None:
+    _, *others = _ours(description)
+    assert [node["parameters"][0]["use_sim_time"] for node in others] == [True, True]
 
 
 def test_every_argument_has_a_text_and_is_used(description: Call) -> None:
     arguments = _actions(description, "DeclareLaunchArgument")
     assert all(argument.kwargs["description"] for argument in arguments)
     source = LAUNCH.read_text()
-    assert [name for (name,) in (argument.args for argument in arguments) if f'value["{name}"]' not in source] == []
+    used = set(re.findall(r'(?:value|text)\["(\w+)"\]', source))
+    assert {argument.args[0] for argument in arguments} <= used
 
 
 def test_an_argument_with_choices_has_those_of_its_parameter(description: Call) -> None:
@@ -182,12 +195,16 @@ def test_the_pages_say_how_long_a_velocity_command_lasts(description: Call) -> N
 
 
 def test_a_file_of_parameters_is_last_and_must_exist(description: Call, tmp_path: Path) -> None:
-    assert all(len(node["parameters"]) == 1 for node in _ours(description))
+    robots, *others = _ours(description)
+    assert all(len(node["parameters"]) == 1 for node in others)
+    assert "--params-file" not in robots["ros_arguments"]
     file = tmp_path / "mine.yaml"
     with pytest.raises(RuntimeError, match=r"params_file: found '.*mine\.yaml', expected a YAML file"):
         _ours(description, params_file=str(file))
     file.touch()
-    assert all(node["parameters"][1:] == [str(file)] for node in _ours(description, params_file=str(file)))
+    robots, *others = _ours(description, params_file=str(file))
+    assert robots["ros_arguments"][-2:] == ["--params-file", str(file)]
+    assert all(node["parameters"][1:] == [str(file)] for node in others)
 
 
 @pytest.mark.process
@@ -213,7 +230,7 @@ def test_the_nodes_run_with_a_namespace_names_and_a_file_of_parameters(ros, desc
         wanted = {f"/lab1/{robot}/{topic}" for robot in ("anna", "bert") for topic in ("odom", "tf", "_aseba/status")}
         ros.until(lambda: all(map(ros.node.count_publishers, wanted)), PATIENCE_S, what=f"publishers of {wanted}")
         assert ros.node.count_publishers("/tf") == 0
-        nodes = {(name, "/lab1") for name in MODULES}
+        nodes = {(name, "/lab1") for name in MODULES if name != "thymio"}
         ros.until(lambda: nodes <= set(ros.node.get_node_names_and_namespaces()), PATIENCE_S, what="all nodes")
         for port in ("port", "foxglove_port"):
             wait_for_port(int(arguments[port]))

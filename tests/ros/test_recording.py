@@ -8,9 +8,12 @@ from functools import partial
 from geometry_msgs.msg import Twist, Vector3
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import Range
 from std_msgs.msg import Int16MultiArray
 
+from thymio_sim_ros.ros.aseba.driver_input import proximity_count
 from thymio_sim_ros.ros.compat import tf2_messages
+from thymio_sim_ros.ros.interface.names import PROXIMITY
 
 PROGRAM = "var n = 0\ntimer.period[0] = 100\nonevent timer0\nn = n + 1"
 # One topic of each kind: transient local, sensor, clock, transforms, runtime. No command is sent.
@@ -75,14 +78,19 @@ def test_a_robot_that_is_driven_by_a_recording_drives_the_same_way(ros, simulati
 
 def test_a_program_runs_on_recorded_readings(ros, simulation, runtime):
     sim = simulation(playground="obstacle")
-    recorded = []
-    ros.node.create_subscription(Int16MultiArray, "/_raw/proximity", recorded.append, 10, raw=True)
+    recorded = {}
+    for place, name in enumerate(PROXIMITY):
+        ros.node.create_subscription(
+            Range, f"/proximity/{name}", lambda data, place=place: recorded.update({place: data}), 10, raw=True
+        )
     ros.settle()
     sim.step(0.5)
-    seen = list(deserialize_message(recorded[-1], Int16MultiArray).data)
+    seen = [proximity_count(deserialize_message(recorded[place], Range)) for place in range(len(PROXIMITY))]
+    assert any(seen)
     ros.end(sim.simulator)
     ros.simulation = None
     runtime("var kept[7]\nonevent prox\nkept = prox.horizontal", watch=["kept"])
     reported = ros.collect(Int16MultiArray, "/aseba/variables/kept", transient_local=True)
-    ros.publisher(Int16MultiArray, "/_raw/proximity").publish(bytes(recorded[-1]))
+    for place, name in enumerate(PROXIMITY):
+        ros.publisher(Range, f"/proximity/{name}").publish(bytes(recorded[place]))
     ros.until(lambda: reported and list(reported[-1].data) == seen)

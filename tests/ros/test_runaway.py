@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 import time
 from functools import partial
@@ -13,9 +14,9 @@ from std_srvs.srv import Trigger
 
 from tests.patience import PATIENCE_S
 from tests.ros.aseba_tools import Status, get_variables, set_parameters
-from thymio_sim_ros.ros.aseba.bus import SLICE_S
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.ros.rclpy_ext.node_runner import run_node
+from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 
 PROGRAMS = sorted((Path(__file__).parent.parent / "data" / "runaway").glob("*.aesl"))
 ANSWER_CPU_S = 1.0
@@ -25,11 +26,12 @@ FLOOD = "var i\nvar k = 0\nwhile k == 0 do\ni = (i + 1) % 32\ncall leds.top(i, 0
 
 @pytest.fixture
 def threaded(ros):
-    """Make a runtime with a thread of its own, as in a process of ours; ended with the test."""
+    """Make a simulator with a runtime and a thread of its own, as in a process of ours; ended with the test."""
     stop, threads = threading.Event(), []
 
-    def make(**parameters):
-        runnable = AsebaRuntime(ros.context, RuntimeParams(follow_simulator=False, **parameters))
+    def make(*names, **parameters):
+        runnable = Simulator(ros.context, SimulatorParams(playground=playground(names)))
+        runnable.attached = (AsebaRuntime(ros.context, RuntimeParams(**parameters), simulator=runnable),)
         thread = threading.Thread(target=run_node, args=(runnable, ros.context, stop.is_set))
         threads.append((runnable, thread))
         thread.start()
@@ -44,6 +46,13 @@ def threaded(ros):
         runnable.close()
 
 
+def playground(names):
+    """A floor with robots of these names in a row."""
+    floor = {"kind": "rectangle", "size_x_m": 4.0, "size_y_m": 4.0, "color": "#ffffff"}
+    robots = [{"name": name, "x_m": 0.3 * place, "y_m": 0.0} for place, name in enumerate(names)]
+    return json.dumps({"format": 1, "title": "row", "shapes": [floor], "robots": robots})
+
+
 def test_there_are_twenty_programs():
     assert len(PROGRAMS) == 20
 
@@ -52,7 +61,7 @@ def test_there_are_twenty_programs():
 def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
     robots = ["anna", "bert"]
     folders = {"card": str(tmp_path / "card"), "settings": str(tmp_path / "settings")}
-    node = threaded(robots=robots, path=str(program), **folders)
+    node = threaded(*robots, path=str(program), **folders)
     status = Status(ros, "/anna")
     ros.until(lambda: status.messages)
     began_s = node.processor_s()
@@ -68,7 +77,7 @@ def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
 
 
 def test_an_overload_is_reported_until_it_ends(ros, threaded):
-    threaded(source=FLOOD)
+    threaded("thymio", source=FLOOD)
     status = Status(ros)
     diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", transient_local=True)
     ros.until(lambda: diagnostics and diagnostics[-1].level == DiagnosticStatus.WARN)
@@ -81,30 +90,11 @@ def test_an_overload_is_reported_until_it_ends(ros, threaded):
 
 
 def test_robots_share_the_node_in_turn(ros, threaded):
-    runnable = threaded(robots=["anna", "bert", "carl", "dora"], source="var i\nvar k = 0\nwhile k == 0 do\ni++\nend")
+    names = ("anna", "bert", "carl", "dora")
+    threaded(*names, source="var i\nvar k = 0\nwhile k == 0 do\ni++\nend")
 
     def counts():
-        return [get_variables(ros, "i", robot=f"/{endpoints.names.name}")[0][0] for endpoints in runnable.robots]
+        return [get_variables(ros, "i", robot=f"/{name}")[0][0] for name in names]
 
     first = counts()
     ros.until(lambda: all(now != before for now, before in zip(counts(), first, strict=True)))
-
-
-def test_a_slice_ends_whatever_waits_and_the_rest_goes_on_in_order(ros):
-    runnable = ros.live(AsebaRuntime(ros.context, RuntimeParams(robots=[f"r{n}" for n in range(8)])))
-    taken = []
-
-    def run_slice(endpoints):
-        taken.append(endpoints)
-        time.sleep(SLICE_S)
-
-    for endpoints in runnable.robots:
-        endpoints.run_slice = partial(run_slice, endpoints)
-    with runnable.robots.bus.slice():
-        runnable.robots.bus.run_until_idle(*runnable.robots)
-    assert taken == list(runnable.robots[: len(taken)])
-    assert len(taken) < len(runnable.robots)
-    assert runnable.robots.bus.has_ready_robots
-    runnable.robots.bus.run_until_idle()  # in lock-step there are no slices
-    assert taken == list(runnable.robots)
-    assert not runnable.robots.bus.has_ready_robots

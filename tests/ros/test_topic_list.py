@@ -36,7 +36,6 @@ FOR_TOOLS = {
     "/_raw/ground",
     "/_sound/state",
     "/_sound/state/wave",
-    "/simulator/_raw",
     "/simulator/_state",
 }
 

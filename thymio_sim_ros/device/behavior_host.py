@@ -81,6 +81,8 @@ class BehaviorHost:
         self._first: ThymioProgram | str = self.program
         self._entry = PROGRAM_ENTRY
         self._notices: list[str] = []
+        self.breakpoints: tuple[int, ...] = ()
+        """The lines at which the user asked that the user program pauses, from 1."""
         self._loaded: list[ThymioProgram] = []
         """The programs that were loaded with their text, the last one at the end."""
 
@@ -108,8 +110,14 @@ class BehaviorHost:
         names = self._loaded[-1].events if self._loaded else ()
         program = next(found, None) or foreign_program(words, self.device.layout, names)
         self._set_user_program(program)
-        self.program = program
+        self.program, self.breakpoints = program, ()
         self.device.adopt(program)
+
+    def set_breakpoints(self, lines: Sequence[int]) -> None:
+        """Replace the breakpoints at lines of the user program, also for its next starts."""
+        self.breakpoints = tuple(lines)
+        if self._is_user_program(self.program):
+            self.device.run_control.set_breakpoints(lines)
 
     def remember(self, program: ThymioProgram | None) -> None:
         """Remember the text of a program, so that `adopt` recognizes its bytecode."""
@@ -190,6 +198,11 @@ class BehaviorHost:
         self.program = program
         initial_event = EmittedEvent(_OPEN, (self._entry, int(self._user_program is not None), wait))
         self.device.load(program, warm=warm, initial_event=initial_event)
+        if self.breakpoints and self._is_user_program(program):
+            self.device.run_control.set_breakpoints(self.breakpoints)
+
+    def _is_user_program(self, program: ThymioProgram) -> bool:
+        return program is self._first or program is self._user_program
 
 
 def _unless_empty(program: ThymioProgram | None) -> ThymioProgram | None:

@@ -218,10 +218,6 @@ class AsebaDevice:
 
         self.variables.measure_on_read(self._inputs.addresses_of(sensors), store)
 
-    def receives_from(self, sender: AsebaDevice) -> bool:
-        """Whether the radios of both devices are set to the same network."""
-        return self.radio == sender.radio
-
     def declares(self, event: str) -> bool:
         """Whether the program declares a global event of this name."""
         return self._network_events.declares(event)

@@ -49,6 +49,11 @@ class LocalEvents:
         self._watched = frozenset(index for index, name in enumerate(self.names) if name in names)
         self._select()
 
+    @property
+    def has_occurred(self) -> bool:
+        """Whether `pop` would return events."""
+        return bool(self._occurred)
+
     def pop(self) -> list[str]:
         """Return and clear the names of the watched events that occurred, in order."""
         occurred, self._occurred = self._occurred, []

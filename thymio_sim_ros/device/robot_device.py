@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from typing import Protocol
 
 from aseba_vm.protocol import Message
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.notices import Notices
 from thymio_sim_ros.device.programs.breakpoints import Breakpoints
@@ -36,6 +37,10 @@ class RobotVariables(Protocol):
 class RobotRunControl(Protocol):
     """Run control; the methods are those of `device.run_control.RunControl`."""
 
+    @property
+    def breakpoints(self) -> Breakpoints:
+        """The breakpoints at lines."""
+
     def resume(self) -> None:
         """Continue execution, or switch the robot on."""
 
@@ -57,12 +62,13 @@ class RobotRunControl(Protocol):
     def switch_off(self) -> None:
         """Switch the robot off."""
 
-    def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
-        """Replace all breakpoints."""
-
 
 class RobotLocalEvents(Protocol):
     """Local events that are published."""
+
+    @property
+    def has_occurred(self) -> bool:
+        """Whether `pop` would return events."""
 
     def watch(self, names: Collection[str]) -> None:
         """Replace the names of the events."""
@@ -115,8 +121,12 @@ class RobotDevice(Protocol):
         """Whether `run` has work."""
 
     @property
-    def is_due(self) -> bool:
-        """Whether `run` or `pop_commands` has anything to do."""
+    def due(self) -> DueTime:
+        """The time from which `run` or `pop_commands` has anything to do."""
+
+    @property
+    def has_emitted(self) -> bool:
+        """Whether `pop_events` would return events."""
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store the words of a reading."""
@@ -151,8 +161,23 @@ class RobotHost(Protocol):
     def program(self) -> ThymioProgram:
         """The program that the robot runs."""
 
+    @property
+    def user_program(self) -> ThymioProgram | None:
+        """The program of the user, which `restart` starts or which waits in the menu."""
+
+    @property
+    def behaviour(self) -> str:
+        """Name of the built-in program that `restart` starts; "" if it starts that of the user."""
+
+    @property
+    def breakpoints(self) -> Sequence[int]:
+        """The lines at which the user asked that the user program pauses, from 1."""
+
     def load(self, program: ThymioProgram) -> None:
         """Load a user program and start it."""
+
+    def set_breakpoints(self, lines: Sequence[int]) -> None:
+        """Replace the breakpoints at lines of the user program, also for its next starts."""
 
     def remember(self, program: ThymioProgram) -> None:
         """Remember the text of a program whose bytecode may come from the network."""

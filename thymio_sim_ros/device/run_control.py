@@ -59,6 +59,8 @@ class RunControl:
 
         It then waits before its first instruction, as tools of a network expect it; until the machine runs again.
         """
+        self.breakpoints = Breakpoints()
+        """The breakpoints at lines."""
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
         self._addresses: list[int] = []
@@ -158,10 +160,10 @@ class RunControl:
 
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
         """Replace all breakpoints at lines of the program's file, from 1. Returns the lines where they were set."""
-        breakpoints = self._debugger.set_breakpoints(lines)
+        self.breakpoints = self._debugger.set_breakpoints(lines)
         for pc in self._addresses:
             self._vm.set_breakpoint(pc)
-        return breakpoints
+        return self.breakpoints
 
     def add_breakpoint(self, pc: int) -> bool:
         """Add a breakpoint at an address; return False if there are 16 already, or no such address."""

@@ -12,24 +12,24 @@ or its variables are read (`AsebaDevice.measure_on_read`), unless a program hand
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.network_events import EmittedEvent
+from thymio_sim_ros.device.network_node import QUESTIONS
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
-from thymio_sim_ros.engine.devices import Devices
+from thymio_sim_ros.device.robot_device import RobotHost, RobotNode
+from thymio_sim_ros.engine.devices import Devices, SentMessages
 from thymio_sim_ros.engine.inputs import (
-    CONTROLS,
-    BreakpointsSet,
-    Controlled,
+    DevicesAdded,
     DeviceStart,
     EventSent,
     Input,
     Loaded,
+    MessagesReceived,
     Posted,
     Recorder,
     Removed,
@@ -71,14 +71,15 @@ class Engine:
         seed: int = 0,
         noise: bool = True,
         periods_ns: Mapping[str, int] | None = None,
+        shares_numbers: bool = False,
         ground: Ground | None = None,
     ) -> None:
         """Create the world and a device for each robot with a program: one program for all, or one by robot name.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu. A
         `DeviceStart` in place of a program says all of one robot. `periods_ns`: the sensors that measure, see `World`.
-        A `ground` of the playground that exists already, from a run that has ended, need not be painted again.
-        SdCardError, SettingsError: a folder of the options cannot be used.
+        `shares_numbers`: see `RunStart`. A `ground` of the playground that exists already, from a run that has ended,
+        need not be painted again. SdCardError, SettingsError: a folder of the options cannot be used.
         """
         self.world = World(
             playground,
@@ -90,38 +91,26 @@ class Engine:
             ground=ground,
         )
         starts = _device_starts(list(self.world.robots), programs, behaviour)
-        self.start = RunStart(playground, self.world.options, starts, options)
+        self.start = RunStart(playground, self.world.options, starts, options, shares_numbers)
         """What the run started with, since the last reset."""
         self.recorder: Recorder | None = None
         """Gets the inputs from now on, and digests of the state."""
         self._devices = Devices(self._choose_fed)
-        alone = len(self.world.robots) == 1
-        for name, started in starts.items():
-            device = AsebaDevice(node_id=started.number, options=options.for_robot(name, alone=alone))
-            self._devices.hosts[name] = BehaviorHost(device)
-        self.devices = {name: host.device for name, host in self.hosts.items()}
+        self.devices: dict[str, AsebaDevice] = {}
         """The device of each robot that has one."""
         self._robot_changes = -1
         """`world.robot_changes` when the present devices were updated."""
         self._device_of_robot: list[AsebaDevice | None] = []
         """The device of each robot in the world, in its order."""
-        self._bound = frozenset(bindings.sensor_names()) if self.devices else frozenset()
-        self._on_read = self._bound & {
-            sensor.name for sensor in all_sensors() if sensor.is_stateless and sensor.period_ns <= TICK_NS
-        }
+        self._bound: frozenset[str] = frozenset()
+        """Sensors whose readings are variables of a program."""
+        self._on_read: frozenset[str] = frozenset()
         """Sensors that measure when variables are read, unless a program handles their events."""
-        self._fed = self._bound
+        self._fed: frozenset[str] = frozenset()
         """Sensors whose readings are fed to the devices."""
         self._wanted_events: list[frozenset[int]] = []
         """The local events that the devices wanted when `_fed` was chosen."""
-        for name, device in self.devices.items():
-            device.measure_on_read(self._on_read, self._measuring(name))
-        for name, host in self.hosts.items():
-            started = starts[name]
-            if started.behaviour:
-                host.start(started.behaviour, started.program)
-            elif started.program is not None:
-                host.load(started.program)
+        self._create_devices(DevicesAdded(starts, options, shares_numbers))
         self._begin()
 
     @classmethod
@@ -136,19 +125,40 @@ class Engine:
             proximity_model=world.proximity_model,
             seed=world.seed,
             noise=world.noise,
+            shares_numbers=start.shares_numbers,
             periods_ns=None if world.periods_ns is None else dict(world.periods_ns),
             ground=ground,
         )
 
     @property
-    def hosts(self) -> Mapping[str, BehaviorHost]:
+    def hosts(self) -> Mapping[str, RobotHost]:
         """The selection of the program of each robot that has a device."""
         return self._devices.hosts
+
+    @property
+    def nodes(self) -> Mapping[str, RobotNode]:
+        """Each robot with a device as a node of an Aseba network."""
+        return self._devices.nodes
 
     @property
     def emitted(self) -> Sequence[tuple[str, EmittedEvent]]:
         """The events of the last step as (robot, event), in order."""
         return self._devices.emitted
+
+    @property
+    def ran(self) -> Set[str]:
+        """The robots whose devices ran in the last step."""
+        return self._devices.ran
+
+    @property
+    def runs(self) -> int:
+        """How often devices have run."""
+        return self._devices.runs
+
+    @property
+    def has_clients(self) -> bool:
+        """Whether a robot's network has clients."""
+        return self._devices.has_clients
 
     @property
     def now_ns(self) -> int:
@@ -170,8 +180,7 @@ class Engine:
         wanted = sensors if sensors is None else self._fed if not sensors else self._fed.union(sensors)
         result = self.world.step(wanted)
         if self.devices:
-            if self._robot_changes != self.world.robot_changes:
-                self._update_present_devices()
+            self._update_present_devices()
             if isinstance(result.readings, ReadingTable):
                 self._feed(result.readings, result.now_ns)
             self._run_devices()
@@ -214,17 +223,16 @@ class Engine:
                 self.world.remove(name)
             case Reset():
                 self._reset()
-            case Loaded(robot, program):
-                self._load(robot, program)
-            case Controlled(robot, action):
-                self._control(robot, action)
-            case BreakpointsSet(robot, lines):
-                self.devices[robot].run_control.set_breakpoints(lines)
-            case VariableSet(robot, variable, words):
-                self.devices[robot].variables.set(variable, words)
-            case EventSent(robots, event, args, source):
-                self._receive_event(robots, event, args, source)
-        if self.recorder is not None:
+            case DevicesAdded():
+                self._add_devices(happened)
+            case _:
+                self._update_present_devices()
+                if isinstance(happened, Loaded):
+                    self.devices[happened.robot].end_tick(self.now_ns)
+                if self._devices.apply(happened):
+                    self._choose_fed()
+                    self._run_devices()
+        if self.recorder is not None and not _is_question(happened):
             self.recorder.record(tick, happened)
 
     def post(self, robot: str, command: Command) -> None:
@@ -262,6 +270,10 @@ class Engine:
         """Write a whole variable of a program. Raises KeyError for an unknown name, ValueError for wrong words."""
         self.apply(VariableSet(robot, variable, tuple(words)))
 
+    def pop_sent(self) -> list[SentMessages]:
+        """Return and clear the messages for clients of the robots' networks, in order."""
+        return self._devices.pop_sent()
+
     def reset(self) -> None:
         """Reset world, noise and programs to the start."""
         self.apply(Reset())
@@ -283,37 +295,33 @@ class Engine:
         )
         return hashlib.blake2b(repr(state).encode(), digest_size=_DIGEST_BYTES).hexdigest()
 
-    def _load(self, robot: str, program: ThymioProgram) -> None:
-        self._update_present_devices()
-        self.devices[robot].end_tick(self.now_ns)
-        self._devices.hosts[robot].load(program)
-        self._run_at_once()
+    def _create_devices(self, added: DevicesAdded) -> None:
+        if added.devices and not self._bound:
+            self._bound = frozenset(bindings.sensor_names())
+            self._on_read = self._bound & {
+                sensor.name for sensor in all_sensors() if sensor.is_stateless and sensor.period_ns <= TICK_NS
+            }
+            self._fed = self._bound
+        devices = self._devices.create(added, alone=len(self.world.robots) == 1)
+        self.devices |= devices
+        for name, device in devices.items():
+            device.measure_on_read(self._on_read, self._measuring(name))
+        self._devices.begin(added.devices)
 
-    def _control(self, robot: str, action: str) -> None:
-        if action not in CONTROLS:
-            raise ValueError(f"control: found '{action}', expected one of {', '.join(CONTROLS)}")
-        host = self.hosts[robot]
-        if action == "run":
-            host.resume()
-        else:
-            getattr(host.device.run_control, action)()
-        self._run_at_once()
-
-    def _receive_event(self, robots: Sequence[str], event: str, args: Sequence[int], source: int) -> None:
-        devices = [self.devices[robot] for robot in robots]
-        if not all(device.declares(event) for device in devices):
-            raise KeyError(event)
-        for device in devices:
-            device.receive_event(event, args, source=source)
+    def _add_devices(self, added: DevicesAdded) -> None:
+        self.start = replace(self.start, options=added.options, shares_numbers=added.shares_numbers)
+        self._create_devices(added)
+        for name in added.devices:
+            self.devices[name].advance(self.now_ns)
+        self._robot_changes = -1
+        self._update_present_devices(restart=False)
+        self._choose_fed()
+        self._run_devices()
 
     def _reset(self) -> None:
         if self.recorder is not None:
             self.recorder.record_digest(self.tick, self.digest())
-        starts = {
-            name: replace(started, program=host.user_program, behaviour=host.behaviour)
-            for (name, started), host in zip(self.start.devices.items(), self.hosts.values(), strict=True)
-        }
-        self.start = replace(self.start, devices=starts)
+        self.start = replace(self.start, devices=self._devices.starts())
         self.world.reset()
         for host in self.hosts.values():
             host.restart()
@@ -325,11 +333,6 @@ class Engine:
             device.advance(self.now_ns)
         self._run_devices()
         self._choose_fed()
-
-    def _run_at_once(self) -> None:
-        """Run the devices between two ticks, after an input whose effect is visible before the next one."""
-        self._choose_fed()
-        self._run_devices()
 
     def _run_devices(self) -> None:
         for name, command in self._devices.run(self.now_ns):
@@ -367,15 +370,22 @@ class Engine:
 
         return measure
 
-    def _update_present_devices(self) -> None:
+    def _update_present_devices(self, *, restart: bool = True) -> None:
         """Update the devices after robots were added or removed; the device of a robot added again restarts."""
+        if self._robot_changes == self.world.robot_changes:
+            return
         robots, self._robot_changes = self.world.robots, self.world.robot_changes
         present = {name: device for name, device in self.devices.items() if name in robots}
         for name in present:
-            if name not in self._devices.present:
+            if restart and name not in self._devices.present:
                 self.hosts[name].restart()
         self._devices.present = present
         self._device_of_robot = [present.get(name) for name in robots]
+
+
+def _is_question(happened: Input) -> bool:
+    """Whether an input changes nothing."""
+    return isinstance(happened, MessagesReceived) and all(isinstance(each, QUESTIONS) for each in happened.messages)
 
 
 def _device_starts(

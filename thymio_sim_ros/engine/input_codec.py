@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from aseba_vm.protocol import FrameReader, decode, encode
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.foreign import foreign_program
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_node, place_of
 from thymio_sim_ros.engine import command_codec
 from thymio_sim_ros.engine.inputs import (
     BreakpointsSet,
+    ClientConnected,
+    ClientDisconnected,
     Controlled,
+    DevicesAdded,
     DeviceStart,
     EventSent,
     Input,
     Loaded,
+    MessagesReceived,
     Posted,
+    Remembered,
     Removed,
     Reset,
     RunStart,
@@ -31,9 +38,12 @@ from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.playground.writer import dumps
 from thymio_sim_ros.sim.world import WorldOptions
 
-__all__ = ["read_devices", "read_input", "read_start", "write_devices", "write_input", "write_start"]
+__all__ = ["pop_devices", "read_input", "read_start", "write_devices", "write_input", "write_start"]
 
-_PLAIN = {kind.__name__: kind for kind in (BreakpointsSet, Controlled, EventSent, VariableSet)}
+_PLAIN = {
+    kind.__name__: kind
+    for kind in (BreakpointsSet, ClientConnected, ClientDisconnected, Controlled, EventSent, VariableSet)
+}
 """Inputs whose fields are numbers and texts."""
 
 
@@ -49,8 +59,15 @@ def write_input(happened: Input) -> dict[str, Any]:
             return {"remove": name}
         case Reset():
             return {"reset": True}
-        case Loaded(robot, program):
-            return {"load": robot, "program": _write_program(program)}
+        case Loaded(robot, program, behaviour):
+            return {"load": robot, "program": program and _write_program(program), "behaviour": behaviour}
+        case Remembered(robot, program):
+            return {"remember": robot, "program": _write_program(program)}
+        case DevicesAdded():
+            return {"add": write_devices(happened)}
+        case MessagesReceived(robot, client, messages):
+            frames = b"".join(map(encode, messages))
+            return {"receive": robot, "client": client, "messages": base64.b64encode(frames).decode("ascii")}
         case _:
             kind, values = command_codec.encode(happened)
             return {"input": kind, "with": values}
@@ -65,8 +82,15 @@ def read_input(data: Mapping[Any, Any]) -> Input | None:
             return Spawned(fields.read(RobotStart, start, "spawn"))
         case {"remove": str(name)}:
             return Removed(name)
-        case {"load": str(robot), "program": dict(program)}:
-            return Loaded(robot, _read_program(program))
+        case {"load": str(robot), "program": program, "behaviour": str(behaviour)}:
+            return Loaded(robot, None if program is None else _read_program(program), behaviour)
+        case {"remember": str(robot), "program": dict(program)}:
+            return Remembered(robot, _read_program(program))
+        case {"add": dict(members)}:
+            return pop_devices(dict(members))
+        case {"receive": str(robot), "client": int(client), "messages": str(text)}:
+            frames = FrameReader().feed(base64.b64decode(text, validate=True))
+            return MessagesReceived(robot, client, tuple(map(decode, frames)))
         case {"input": kind, "with": values}:
             read: Input = command_codec.decode(kind, values, _PLAIN)
             return read
@@ -75,16 +99,11 @@ def read_input(data: Mapping[Any, Any]) -> Input | None:
 
 def write_start(name: str, start: RunStart) -> dict[str, Any]:
     """Return the members of the start of a run; `name` is that of the playground."""
-    options = start.options
-    folders = {"card": options.card, "settings": options.settings}
     return {
         "name": name,
         "playground": dumps(start.playground),
         **asdict(start.world),
-        **write_devices(start.devices),
-        "layout": options.layout,
-        "events": options.events,
-        **{key: str(folder) for key, folder in folders.items() if folder is not None},
+        **write_devices(DevicesAdded(start.devices, start.options, start.shares_numbers)),
     }
 
 
@@ -94,16 +113,17 @@ def read_start(head: dict[str, Any]) -> tuple[str, RunStart]:
     if not isinstance(name, str) or not isinstance(text, str):
         raise ValueError("found a world whose name or playground is no text, expected both")
     pairs = None if periods is None else tuple((str(sensor), int(period_ns)) for sensor, period_ns in periods)
-    devices = read_devices({"programs": head.pop("programs", ()), "devices": head.pop("devices", {})})
-    options: dict[str, Any] = {key: head.pop(key) for key in ("layout", "events") if key in head}
-    options |= {key: Path(head.pop(key)) for key in ("card", "settings") if key in head}
-    playground = playgrounds.loads(text, name)
-    return name, RunStart(playground, WorldOptions(**head, periods_ns=pairs), devices, DeviceOptions(**options))
+    added = pop_devices(head)
+    world = WorldOptions(**head, periods_ns=pairs)
+    start = RunStart(playgrounds.loads(text, name), world, added.devices, added.options, added.shares_numbers)
+    return name, start
 
 
-def write_devices(devices: Mapping[str, DeviceStart]) -> dict[str, Any]:
-    """Return the members of the starts of devices: each program once, and its place for each device."""
+def write_devices(added: DevicesAdded) -> dict[str, Any]:
+    """Return the members of the starts of devices: each program once, and its place for each device; their options."""
+    devices, options = added.devices, added.options
     programs = list(dict.fromkeys(start.program for start in devices.values() if start.program is not None))
+    folders = {"card": options.card, "settings": options.settings}
     return {
         "programs": [_write_program(program) for program in programs],
         "devices": {
@@ -111,23 +131,32 @@ def write_devices(devices: Mapping[str, DeviceStart]) -> dict[str, Any]:
                 "number": start.number,
                 "program": None if start.program is None else programs.index(start.program),
                 "behaviour": start.behaviour,
+                "breakpoints": list(start.breakpoints),
             }
             for name, start in devices.items()
         },
+        "layout": options.layout,
+        "events": options.events,
+        "shares_numbers": added.shares_numbers,
+        **{key: str(folder) for key, folder in folders.items() if folder is not None},
     }
 
 
-def read_devices(members: Mapping[str, Any]) -> dict[str, DeviceStart]:
-    """Return the starts of devices. Raises as `read_start` does."""
-    programs = [_read_program(program) for program in members["programs"]]
-    return {
+def pop_devices(members: dict[str, Any]) -> DevicesAdded:
+    """Remove the members of the starts of devices, and return these. Raises as `read_start` does."""
+    programs = [_read_program(program) for program in members.pop("programs", ())]
+    options: dict[str, Any] = {key: members.pop(key) for key in ("layout", "events") if key in members}
+    options |= {key: Path(members.pop(key)) for key in ("card", "settings") if key in members}
+    starts = {
         str(name): DeviceStart(
             int(start["number"]),
             None if start["program"] is None else programs[start["program"]],
             str(start["behaviour"]),
+            tuple(int(line) for line in start.get("breakpoints", ())),
         )
-        for name, start in members["devices"].items()
+        for name, start in members.pop("devices", {}).items()
     }
+    return DevicesAdded(starts, DeviceOptions(**options), bool(members.pop("shares_numbers", False)))
 
 
 def _write_program(program: ThymioProgram) -> dict[str, Any]:

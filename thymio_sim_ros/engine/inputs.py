@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from aseba_vm.protocol import Message
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.sim.commands import Command
@@ -18,13 +19,19 @@ from thymio_sim_ros.sim.world import WorldOptions
 __all__ = [
     "CONTROLS",
     "BreakpointsSet",
+    "ClientConnected",
+    "ClientDisconnected",
     "Controlled",
     "DeviceStart",
+    "DevicesAdded",
     "EventSent",
     "Input",
     "Loaded",
+    "MessagesReceived",
     "Posted",
+    "ProgramInput",
     "Recorder",
+    "Remembered",
     "Removed",
     "Reset",
     "RunStart",
@@ -38,7 +45,7 @@ CONTROLS = ("run", "pause", "step", "step_line", "stop", "reset", "switch_off")
 
 @dataclass(frozen=True, slots=True)
 class DeviceStart:
-    """What the device of a robot starts with: its number on the network, and its program.
+    """What the device of a robot starts with: its number on the network, its program, and breakpoints at lines of it.
 
     With a `behaviour`, such as "menu", the robot is switched on with that, and the program waits in the menu.
     """
@@ -46,6 +53,7 @@ class DeviceStart:
     number: int
     program: ThymioProgram | None
     behaviour: str = ""
+    breakpoints: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +64,8 @@ class RunStart:
     world: WorldOptions
     devices: Mapping[str, DeviceStart] = field(default_factory=dict)
     options: DeviceOptions = DEFAULTS
+    shares_numbers: bool = False
+    """Whether other programs have given all robots one list of events, so that events without names reach others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +96,29 @@ class Reset:
 
 
 @dataclass(frozen=True, slots=True)
+class DevicesAdded:
+    """Robots got devices, which start together; a device that the robot had is replaced. See `RunStart`."""
+
+    devices: Mapping[str, DeviceStart]
+    options: DeviceOptions = DEFAULTS
+    shares_numbers: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Loaded:
-    """A program was loaded into a robot and started."""
+    """A program was loaded into a robot and started; or a robot was switched on with a built-in `behaviour`.
+
+    With a behaviour the program, if any, waits in the menu.
+    """
+
+    robot: str
+    program: ThymioProgram | None
+    behaviour: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Remembered:
+    """The text of a program whose bytecode may come from the network."""
 
     robot: str
     program: ThymioProgram
@@ -103,7 +134,7 @@ class Controlled:
 
 @dataclass(frozen=True, slots=True)
 class BreakpointsSet:
-    """All breakpoints of a robot were replaced by these lines of its file, from 1."""
+    """All breakpoints of a robot were replaced by these lines of its program's file, from 1."""
 
     robot: str
     lines: tuple[int, ...]
@@ -120,9 +151,9 @@ class VariableSet:
 
 @dataclass(frozen=True, slots=True)
 class EventSent:
-    """A global event arrived at these robots, whose programs declare it; they handle it in the next tick.
+    """A global event arrived at these robots, whose programs declare it.
 
-    `source` is the number of the sender, 0 for a computer.
+    `source` is the number of the sender, 0 for a computer. Values that are not given are 0.
     """
 
     robots: tuple[str, ...]
@@ -131,7 +162,44 @@ class EventSent:
     source: int = 0
 
 
-Input = Posted | Spawned | Removed | Reset | Loaded | Controlled | BreakpointsSet | VariableSet | EventSent
+@dataclass(frozen=True, slots=True)
+class ClientConnected:
+    """A client of the Aseba network of a robot has come."""
+
+    robot: str
+    client: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClientDisconnected:
+    """A client of the Aseba network of a robot has gone."""
+
+    robot: str
+    client: int
+
+
+@dataclass(frozen=True, slots=True)
+class MessagesReceived:
+    """Messages of a client arrived at a robot."""
+
+    robot: str
+    client: int
+    messages: tuple[Message, ...]
+
+
+ProgramInput = (
+    DevicesAdded
+    | Loaded
+    | Remembered
+    | Controlled
+    | BreakpointsSet
+    | VariableSet
+    | EventSent
+    | ClientConnected
+    | ClientDisconnected
+    | MessagesReceived
+)
+Input = Posted | Spawned | Removed | Reset | ProgramInput
 
 
 class Recorder(Protocol):

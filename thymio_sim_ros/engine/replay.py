@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from thymio_sim_ros.engine.engine import DIGEST_TICKS, Engine
@@ -119,7 +119,9 @@ def _runs(path: str, lines: list[tuple[int, LogEntry]]) -> Iterator[LoggedRun]:
             _add_states(path, number, run, line)
         elif isinstance(line, WorldReset):
             yield run
-            start = run.start if line.devices is None else replace(run.start, devices=line.devices)
+            start, added = run.start, line.added
+            if added is not None:
+                start = RunStart(start.playground, start.world, added.devices, added.options, added.shares_numbers)
             run = LoggedRun(run.name, start, run.line)
         elif line[0] < max(run.ticks, run.last):
             raise RunLogError(path, number, f"found tick {line[0]}, expected {max(run.ticks, run.last)} or later")

@@ -40,14 +40,14 @@ from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.engine.command_codec import CommandJsonError
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.input_codec import (
-    read_devices,
+    pop_devices,
     read_input,
     read_start,
     write_devices,
     write_input,
     write_start,
 )
-from thymio_sim_ros.engine.inputs import DeviceStart, Input, Reset, RunStart
+from thymio_sim_ros.engine.inputs import DevicesAdded, Input, Reset, RunStart
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
@@ -117,10 +117,10 @@ class LogEnded:
 
 @dataclass(frozen=True, slots=True)
 class WorldReset:
-    """The run was reset after so many ticks; `devices`: what these start with, None as before."""
+    """The run was reset after so many ticks; `added`: the devices that it starts with, None as before."""
 
     tick: int
-    devices: Mapping[str, DeviceStart] | None
+    added: DevicesAdded | None
 
 
 LogEntry = WorldStarted | WorldReset | StateSeen | TicksChecked | LogEnded | tuple[int, Input]
@@ -155,7 +155,8 @@ class RunLog:
         """Record an input after `tick` ticks; with a reset, what the devices start with from then on."""
         line = {"tick": tick, **write_input(happened)}
         if isinstance(happened, Reset) and self._engine is not None:
-            line |= write_devices(self._engine.start.devices)
+            start = self._engine.start
+            line |= write_devices(DevicesAdded(start.devices, start.options, start.shares_numbers))
         self._write(line)
 
     def record_digest(self, tick: int, digest: str) -> None:
@@ -246,7 +247,7 @@ def _line(data: Any) -> LogEntry:
         case {"end": True}:
             return LogEnded()
         case {"tick": int(tick), "reset": True, "programs": _, "devices": _}:
-            return WorldReset(tick, read_devices(data))
+            return WorldReset(tick, pop_devices(dict(data)))
         case {"tick": int(tick), "reset": True}:
             return WorldReset(tick, None)
         case {"tick": int(tick), **members} if (happened := read_input(members)) is not None:

@@ -1,10 +1,11 @@
-"""The whole suite as separate nodes: simulator, Aseba runtime, Foxglove bridge and web page.
+"""The whole suite: simulator and Aseba runtime in one process, Foxglove bridge and web page in others.
 
 ros2 launch thymio_sim_ros thymio.launch.py playground:=line program:=line_follower
 """
 
 from __future__ import annotations
 
+import json
 import secrets
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable, Shutdown
 from launch.conditions import IfCondition
 from launch.events.process import ProcessExited
-from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
@@ -72,7 +73,7 @@ WORLD_TOPICS = ("_markers", "_markers/objects", "map")
 
 
 def generate_launch_description() -> LaunchDescription:
-    """The four nodes and, optionally, RViz; all except the simulator use simulated time."""
+    """The processes and, optionally, RViz; all except the simulator have simulated time."""
     value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
     return LaunchDescription(
         [
@@ -97,36 +98,39 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def _nodes(context: LaunchContext) -> list[Node]:
-    """The nodes of the suite with their parameters. Raises RuntimeError if the file of parameters does not exist."""
+    """The processes of the suite with their parameters. Raises RuntimeError if there is no such file of parameters."""
     value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
-    file = value["params_file"].perform(context)
+    text = {name: configuration.perform(context) for name, configuration in value.items()}
+    file = text["params_file"]
     if file and not Path(file).expanduser().is_file():
         raise RuntimeError(f"params_file: found '{file}', expected a YAML file of ROS parameters")
     shared = [str(Path(file).expanduser())] if file else []
-    has_driver = ["'", value["driver_compat"], "'.lower() in ('true', '1')"]
-    range_convention = PythonExpression(["'driver' if ", *has_driver, " else 'rep117'"])
-    simulator = {
-        "playground": ParameterValue(value["playground"], value_type=str),
-        "seed": ParameterValue(value["seed"], value_type=int),
-        "log": ParameterValue(value["log"], value_type=str),
-        "real_time_factor": ParameterValue(value["real_time_factor"], value_type=float),
-        "cmd_vel_timeout": ParameterValue(value["cmd_vel_timeout"], value_type=float),
-        "robot_names": ParameterValue(value["robot_names"], value_type=list[str]),
-        "namespaced_tf": ParameterValue(value["namespaced_tf"], value_type=bool),
-        "motor_model": ParameterValue(value["motor_model"], value_type=str),
-        "proximity_model": ParameterValue(value["proximity_model"], value_type=str),
-        "out_of_range": ParameterValue(range_convention, value_type=str),
-        "driver_topics": ParameterValue(PythonExpression(has_driver), value_type=bool),
+    has_driver = text["driver_compat"].lower() in ("true", "1")
+    robots = {
+        "simulator": {
+            "playground": _quoted(text["playground"]),
+            "seed": text["seed"],
+            "log": _quoted(text["log"]),
+            "real_time_factor": text["real_time_factor"],
+            "cmd_vel_timeout": text["cmd_vel_timeout"],
+            "robot_names": text["robot_names"],
+            "namespaced_tf": text["namespaced_tf"],
+            "motor_model": _quoted(text["motor_model"]),
+            "proximity_model": _quoted(text["proximity_model"]),
+            "out_of_range": _quoted("driver" if has_driver else "rep117"),
+            "driver_topics": json.dumps(has_driver),
+        },
+        "aseba_runtime": {
+            "script.path": _quoted(text["program"]),
+            "behaviour": _quoted(text["behaviour"]),
+            "card": _quoted(text["card"]),
+            "settings": _quoted(text["settings"]),
+            "layout": _quoted(text["layout"]),
+            "events": _quoted(text["events"]),
+        },
     }
-    runtime = {
-        "script.path": ParameterValue(value["program"], value_type=str),
-        "behaviour": ParameterValue(value["behaviour"], value_type=str),
-        "card": ParameterValue(value["card"], value_type=str),
-        "settings": ParameterValue(value["settings"], value_type=str),
-        "layout": ParameterValue(value["layout"], value_type=str),
-        "events": ParameterValue(value["events"], value_type=str),
-        "use_sim_time": True,
-    }
+    rules = [f"{node}:{name}:={given}" for node, values in robots.items() for name, given in values.items()]
+    words = [word for rule in rules for word in ("-p", rule)]
     address = ParameterValue(value["address"], value_type=str)
     bridge = {
         "address": address,
@@ -141,10 +145,14 @@ def _nodes(context: LaunchContext) -> list[Node]:
         "use_sim_time": True,
     }
     return [
-        _node("simulator", [simulator, *shared], value),
-        _node("aseba_runtime", [runtime, *shared], value),
-        _node("foxglove_bridge", [bridge, *shared], value),
-        _node("web_ui", [page, *shared], value, condition=IfCondition(value["web"])),
+        _process(
+            "thymio",
+            value,
+            arguments=["--headless"],
+            ros_arguments=[*words, *(word for path in shared for word in ("--params-file", path))],
+        ),
+        _process("foxglove_bridge", value, name="foxglove_bridge", parameters=[bridge, *shared]),
+        _process("web_ui", value, name="web_ui", parameters=[page, *shared], condition=IfCondition(value["web"])),
     ]
 
 
@@ -158,14 +166,17 @@ def _give_tokens(context: LaunchContext) -> list[SetEnvironmentVariable]:
     ]
 
 
-def _node(name: str, parameters: list[object], value: dict[str, LaunchConfiguration], **options: object) -> Node:
-    """A node of this package; its executable has the same name. Later parameters override earlier ones."""
+def _quoted(text: str) -> str:
+    """A text that YAML reads as one, whatever it looks like."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _process(executable: str, value: dict[str, LaunchConfiguration], **options: object) -> Node:
+    """A process of this package. Later parameters override earlier ones."""
     return Node(
         package="thymio_sim_ros",
-        executable=name,
-        name=name,
+        executable=executable,
         namespace=value["namespace"],
-        parameters=parameters,
         output="screen",
         respawn=value["respawn"],
         respawn_delay=RESPAWN_DELAY_S,

@@ -1,8 +1,8 @@
 """All nodes in one process, each with its own executor and thread: `ros2 run thymio_sim_ros thymio`.
 
 The nodes are the same as in separate processes and have the same topics. With Fast DDS the endpoints of the four nodes
-do not match each other (`compat/dds_profile.py`): subscriptions of runtime and bridge belong to peers
-(`rclpy_ext/peers.py`), and the runtime passes commands to the simulator directly (`simulator/local_commands.py`).
+do not match each other (`compat/dds_profile.py`): subscriptions of the bridge belong to peers (`rclpy_ext/peers.py`).
+Simulator and Aseba runtime share one thread and one engine.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
-from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, RunnableNode, StartError, announce, run_main
@@ -26,6 +25,9 @@ from thymio_sim_ros.suite_config import SuiteConfig
 
 REFUSED = 2
 """Exit code for invalid arguments."""
+
+HEADLESS = "--headless"
+"""Argument of `thymio`, the same as that of `thymio-sim`."""
 
 
 class SuitePeers:
@@ -37,10 +39,6 @@ class SuitePeers:
     def __init__(self, args: Sequence[str]) -> None:
         """`args`: the ROS arguments of the process."""
         self._receiving, self._sending = PeerContext(args), PeerContext(args)
-
-    def link(self, simulator: Simulator) -> SimulatorLink:
-        """Create the connection of the runtime to the simulator."""
-        return SimulatorLink(lambda: self._receiving.node("_aseba_runtime"), simulator.local_commands.post)
 
     def of_bridge(self) -> tuple[Node, Node]:
         """Create the nodes that subscribe and publish for the clients of the bridge."""
@@ -58,8 +56,8 @@ def suite_nodes(
     """Create simulator, Aseba runtime and, depending on the suite, bridge and page, in this order.
 
     With a real robot there is no simulator, and no simulated time. `warnings` about the arguments are logged by the
-    first node. `peers` are needed if the endpoints of `context` do not
-    match each other. Raises StartError if a node cannot start.
+    first node. `peers` are needed if the endpoints of `context` do not match each other. Raises StartError if a node
+    cannot start.
     """
     given = defaults(suite)
     foxglove_port, tokens = suite.foxglove_port, suite.tokens
@@ -67,11 +65,12 @@ def suite_nodes(
     if is_simulated:
         simulator = Simulator(context, given[SIMULATOR])
         _log(simulator.node, warnings)
-        robots = [names.name for names in simulator.endpoints.robots.names.values()]
+        try:
+            simulator.attached = (AsebaRuntime(context, given[RUNTIME], simulator=simulator, tokens=tokens),)
+        except StartError:
+            simulator.close()
+            raise
         yield simulator
-        link = None if peers is None else peers.link(simulator)
-        params = replace(given[RUNTIME], robots=robots)
-        yield AsebaRuntime(context, params, use_sim_time=True, link=link, tokens=tokens)
     else:
         runtime = AsebaRuntime(context, given[RUNTIME], use_sim_time=False, tokens=tokens)
         _log(runtime.node, warnings)
@@ -105,8 +104,13 @@ def run(suite: SuiteConfig, args: Sequence[str] | None = None, *, on_ready: Call
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """The executable `thymio`: the suite with its default values, which ROS arguments can change."""
-    return _run(SuiteConfig(), args, announce)
+    """The executable `thymio`: the suite with its default values, which ROS arguments can change.
+
+    With `--headless` before them it has no bridge and no page.
+    """
+    words = sys.argv[1:] if args is None else list(args)
+    is_shown = not (words and words[0] == HEADLESS)
+    return _run(SuiteConfig(foxglove=is_shown, web=is_shown), words[not is_shown :], announce)
 
 
 def _run(

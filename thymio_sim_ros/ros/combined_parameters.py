@@ -108,7 +108,7 @@ def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
 
     The arguments name a temporary file, which exists until the context ends. Raises StartError if it cannot be written.
     """
-    rest, given = _split(words)
+    before, given, after = _split(words)
     if not given:
         yield list(words), []
         return
@@ -117,17 +117,21 @@ def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
         with tempfile.NamedTemporaryFile("w", suffix=".yaml", encoding="utf-8") as file:
             file.write(_yaml(sections))
             file.flush()
-            yield [*rest, "--ros-args", "--params-file", file.name], warnings
+            yield [*before, "--params-file", file.name, *after], warnings
     except OSError as error:
         raise StartError(
             f"cannot write the parameters to a temporary file: {error.strerror} ({error.filename})"
         ) from error
 
 
-def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Split words into the parameters, `node:name:=value` or `name:=value`, and all other words."""
+def _split(words: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
+    """Split words into the parameters, `node:name:=value` or `name:=value`, and the others before and after the last.
+
+    What comes after it, such as a file of parameters, overrides it.
+    """
     rest: list[str] = []
     given: list[str] = []
+    place = 0
     is_of_ros, waiting = False, list(words)
     while waiting:
         word = waiting.pop(0)
@@ -135,9 +139,10 @@ def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
             is_of_ros = word == "--ros-args"
         if is_of_ros and word in _PARAMETER and waiting and ":=" in waiting[0]:
             given.append(waiting.pop(0))
+            place = len(rest)
         else:
             rest.append(word)
-    return rest, given
+    return rest[:place], given, rest[place:]
 
 
 def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str]]:

@@ -30,7 +30,7 @@ from thymio_sim_ros.ros.interface import qos
 __all__ = ["Examination", "NothingFoundError", "TopicUse", "examine"]
 
 NAME = "thymio_doctor"
-SUITE = ("simulator", "aseba_runtime", "_aseba_runtime", "foxglove_bridge", "web_ui")
+SUITE = ("simulator", "aseba_runtime", "foxglove_bridge", "web_ui")
 """Names of the nodes of a suite."""
 FIND_S = 8.0
 """Longest wait for a simulator: discovery, and the next `/diagnostics`."""

@@ -186,6 +186,8 @@ ros2 run thymio_sim_ros thymio --ros-args -p playground:=maze -p port:=8081 -p f
 
 In addition, `use_sim_time` goes to all nodes but the simulator, `qos_overrides.…` to the simulator, and
 `script.constants.<NAME>` and `robots.<name>.…` to the runtime. `thymio-sim --ros-args …` accepts the same parameters.
+Of a parameter and a `--params-file` that gives it as well, the later one has priority.
+`ros2 run thymio_sim_ros thymio --headless` has neither bridge nor page.
 """
 
 AFTER = """\

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
+from thymio_sim_ros.device.robot_device import RobotDevice
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.run_log import RunLog
 from thymio_sim_ros.files.loading import robot_ids
@@ -30,7 +30,7 @@ __all__ = ["Classroom"]
 
 @dataclass(frozen=True, slots=True)
 class _ClassroomMachine:
-    device: AsebaDevice
+    device: RobotDevice
     program: ThymioProgram
 
 

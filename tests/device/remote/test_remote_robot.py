@@ -120,7 +120,7 @@ def test_events_go_both_ways(pair: Pair) -> None:
     assert pair.remote.declares("ping")
     pair.remote.receive_event("ping", [5])
     pair.exchange()
-    assert pair.remote.is_due
+    assert pair.remote.has_emitted
     assert pair.remote.pop_events() == [EmittedEvent("pong", (15, 7))]
     with pytest.raises(KeyError):
         pair.remote.receive_event("nothing", [])

@@ -23,7 +23,6 @@ from thymio_sim_ros.ros.foxglove import cdr_complexity, json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError
 from thymio_sim_ros.ros.foxglove.json_messages import JsonMessageError
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
-from thymio_sim_ros.ros.interface import raw_topic
 from thymio_sim_ros.ros.rclpy_ext.raw_publisher import words_of
 
 PARAMETER_TYPES = (None, "float64", "float64_array", "byte_array")
@@ -40,12 +39,6 @@ def _json(data: bytes) -> None:
     message = json_messages.from_json(body, MarkerArray if kind == b"m" else Twist)
     serialize_message(message)
     json_messages.to_json(message)
-
-
-def _raw(data: bytes) -> None:
-    decoder = raw_topic.RawDecoder()
-    first = list(decoder.decode(data))
-    assert list(decoder.decode(data)) == first
 
 
 def _long_message(data: bytes) -> None:
@@ -74,8 +67,7 @@ def _tf() -> Iterator[bytes]:
     yield tf2_messages.encode([one, one._replace(child="thymio/a")])
 
 
-def _raws() -> Iterator[bytes]:
-    yield raw_topic.encode([("thymio", "proximity", (1, 2, 3)), ("", "ground", (-4,))])
+def _words() -> Iterator[bytes]:
     yield bytes(serialize_message(Int16MultiArray(data=[1, -2])))
 
 
@@ -91,8 +83,7 @@ TARGETS = (
         ],
         ('"points":[', '"text":', "1e999", "null"),
     ),
-    Target("ros-raw", _raw, (RuntimeError, ValueError), _raws),
-    Target("ros-words", lambda data: list(words_of(data)), (RuntimeError,), _raws),
+    Target("ros-words", lambda data: list(words_of(data)), (RuntimeError,), _words),
     Target(
         "ros-twist",
         lambda data: deserialize_message(data, Twist),

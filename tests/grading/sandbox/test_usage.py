@@ -36,4 +36,4 @@ def process(request: pytest.FixtureRequest) -> Iterator[subprocess.Popen[bytes]]
 
 @pytest.mark.parametrize(("process", "is_busy"), [("dds.ev.0", False), ("worker", True)], indirect=["process"])
 def test_threads_of_dds_make_no_program_busy(process: subprocess.Popen[bytes], is_busy: bool) -> None:
-    assert all(is_working(process.pid) for _ in range(1000)) == is_busy
+    assert any(is_working(process.pid) for _ in range(1000)) == is_busy

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from std_msgs.msg import Bool, Empty, Int16MultiArray
+from std_msgs.msg import Bool, Empty
 from std_srvs.srv import Trigger
 
-from tests.ros.aseba_tools import Status, get_variables, set_parameters
+from tests.ros.aseba_tools import Proximity, Status, get_variables, set_parameters
 
 SOURCE = """var n = 0
 var m
@@ -22,12 +22,12 @@ onevent prox
 @pytest.fixture
 def prox(ros):
     """Send readings of proximity to the only robot."""
+    sensors = []
 
     def send():
-        publisher = send.publisher = getattr(send, "publisher", None) or ros.publisher(
-            Int16MultiArray, "/_raw/proximity"
-        )
-        publisher.publish(Int16MultiArray(data=[0] * 7))
+        if not sensors:
+            sensors.append(Proximity(ros))
+        sensors[0].send(*[-1.0] * 7)
 
     return send
 
@@ -102,7 +102,7 @@ def test_breakpoints_hold_over_a_new_program_and_a_reset(ros, runtime, prox):
     status = Status(ros)
     prox()
     ros.until(lambda: status.place == ("paused", "prox", "5"))
-    node.robots[0].restart()
+    node.robots.restart()
     prox()
     ros.until(lambda: status.place == ("paused", "prox", "5"))
 
@@ -117,7 +117,7 @@ def test_breakpoints_do_not_stop_built_in_behaviours(ros, runtime):
 
 
 def test_each_robot_may_have_breakpoints_of_its_own(ros, runtime):
-    runtime(SOURCE, robots=["anna", "bert"], follow_simulator=False)
+    runtime(SOURCE, robots=["anna", "bert"])
     anna, bert = Status(ros, "/anna"), Status(ros, "/bert")
     assert set_parameters(ros, {"breakpoints": [5], "robots.bert.breakpoints": [7]}).successful
     ros.until(lambda: anna["breakpoints"] == "[5]" and bert["breakpoints"] == "[7]")
@@ -166,7 +166,7 @@ def test_a_fault_is_logged_with_its_line(ros, runtime, prox):
 
 
 def test_all_robots_are_on_diagnostics(ros, runtime):
-    runtime(SOURCE, robots=["anna", "bert"], follow_simulator=False)
+    runtime(SOURCE, robots=["anna", "bert"])
     diagnostics = ros.collect(DiagnosticArray, "/diagnostics")
     ros.until(lambda: any(len(message.status) == 4 for message in diagnostics))
     names = next([one.name for one in message.status] for message in diagnostics if len(message.status) == 4)

@@ -71,7 +71,7 @@ def test_services_of_the_tables_are_there(ros, runtime):
 
 
 def test_parameters_of_the_tables_are_there_and_none_is_missing(ros, runtime):
-    node = runtime(MAZE, robots=["counter"], follow_simulator=False).node
+    node = runtime(MAZE, robots=["counter"]).node
     wanted = {name for name in names(where=r"string|integer|double|bool|read-only|`raw`|`network`") if "/" not in name}
     wanted = {name for name in wanted if "." in name or node.has_parameter(name)}
     free = {"script.constants.<NAME>", "robots.counter.script.…"}
@@ -81,7 +81,7 @@ def test_parameters_of_the_tables_are_there_and_none_is_missing(ros, runtime):
 
 
 def test_the_parameters_of_the_examples_can_be_set(ros, runtime, maze):
-    runtime(MAZE, robots=["anna"], follow_simulator=False)
+    runtime(MAZE, robots=["anna"])
     for _, _, _, node, name, value in commands("param", "set"):
         result = set_parameters(ros, {name: yaml.safe_load(value.replace("~", str(maze.parent)))}, node)
         assert result.successful, result.reason
@@ -119,7 +119,7 @@ def test_the_topics_of_the_examples_exist(ros, runtime):
 def test_the_node_starts_as_in_the_examples(ros, command, maze):
     given = [text.split(":=") for text in command[command.index("--ros-args") + 2 :: 2]]
     overrides = {name: yaml.safe_load(value) for name, value in given}
-    life = ros.live(AsebaRuntime(ros.context, RuntimeParams(follow_simulator=False), overrides=overrides))
+    life = ros.live(AsebaRuntime(ros.context, RuntimeParams(), overrides=overrides))
     assert life.robots[0].program.name in {"maze.aesl", "line_follower.aesl"}
 
 

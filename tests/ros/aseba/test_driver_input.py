@@ -10,9 +10,9 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, Range, Temperature
 from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Int8, Int16
 
-from tests.ros.aseba_tools import Status, get_variables, set_parameters
+from tests.ros.aseba_tools import Proximity, Status, get_variables, seen, set_parameters
+from thymio_sim_ros.ros.aseba import driver_input
 from thymio_sim_ros.ros.aseba.driver_input import proximity_count
-from thymio_sim_ros.ros.interface.names import PROXIMITY
 from thymio_sim_ros.sim.model.units import PROXIMITY_FULL, proximity_response, units_to_speed
 
 COUNTS = (
@@ -22,10 +22,6 @@ COUNTS = (
 )
 
 
-def seen(value):
-    return Range(radiation_type=Range.INFRARED, field_of_view=0.3, min_range=0.0215, max_range=0.14, range=value)
-
-
 class FakeRobot:
     """A node that publishes the topics of the ROS driver as the driver does."""
 
@@ -33,32 +29,29 @@ class FakeRobot:
         self.ros = ros
         self.driven = ros.collect(Twist, "/cmd_vel")
         self._publishers = {}
+        self.proximity = Proximity(ros)
 
     def say(self, topic, message):
         if topic not in self._publishers:
             self._publishers[topic] = self.ros.publisher(type(message), f"/{topic}", depth=1)
         self._publishers[topic].publish(message)
 
-    def look(self, *ranges):
-        for name, value in zip(PROXIMITY, ranges, strict=True):
-            self.say(f"proximity/{name}", seen(value))
-
 
 @pytest.fixture
 def robot(ros, runtime):
-    runtime(COUNTS, robot_topics="driver")
+    runtime(COUNTS)
     return FakeRobot(ros)
 
 
 def test_ranges_make_one_reading_together(ros, robot):
-    robot.look(-1.0, -1.0, 0.05, 0.0215, math.inf, -math.inf, -1.0)
+    robot.proximity.send(-1.0, -1.0, 0.05, 0.0215, math.inf, -math.inf, -1.0)
     ros.until(lambda: get_variables(ros, "prox_n") == [[1]])
     (counts,) = get_variables(ros, "prox.horizontal")
     assert counts == [0, 0, round(proximity_response(0.05)), PROXIMITY_FULL, 0, PROXIMITY_FULL, 0]
 
 
 def test_a_reading_that_lost_a_range_is_finished_by_the_next(ros, robot):
-    robot.look(*[-1.0] * 7)
+    robot.proximity.send(*[-1.0] * 7)
     ros.until(lambda: get_variables(ros, "prox_n") == [[1]])
     robot.say("proximity/center", seen(0.05))
     robot.say("proximity/center", seen(0.06))
@@ -112,3 +105,9 @@ def test_there_are_no_topics_of_the_simulator(ros, robot):
 def test_a_range_of_nan_means_no_obstacle():
     assert proximity_count(seen(math.nan)) == 0
     assert proximity_count(seen(0.2)) == 0
+
+
+def test_the_start_says_what_programs_do_not_get(ros, runtime, simulation):
+    assert driver_input.MISSING in runtime("var a").startup_message
+    simulation()
+    assert runtime("var a").startup_message == "Program: program"

@@ -6,17 +6,18 @@ import math
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Log
-from std_msgs.msg import Int16MultiArray, MultiArrayDimension
+from std_msgs.msg import Empty, Int16MultiArray, MultiArrayDimension
 from std_srvs.srv import Trigger
 
-from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
-from thymio_sim_ros.ros.aseba.bus import MAX_ROUNDS
+from tests.ros.aseba_tools import Status, event, get_variables, press, set_parameters
+from thymio_sim_ros.engine.devices import MAX_ROUNDS
 from thymio_sim_ros.ros.aseba.network import TOPIC
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.ros.rclpy_ext import message_reports
 
-TWO = {"robots": ["anna", "bert"], "follow_simulator": False}
+TWO = {"robots": ["anna", "bert"]}
 
 
 def program(code, *events):
@@ -29,10 +30,6 @@ HEAR = program(
     "times = times + 1\nonevent button.left\nemit ping [7, 8]",
     ("ping", 2),
 )
-
-
-def press_left(ros, robot):
-    ros.publisher(Int16MultiArray, f"/{robot}/_raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
 
 
 def logged(ros, logs, text):
@@ -89,18 +86,17 @@ def test_rejected_events_are_in_the_diagnostics(ros, runtime, monkeypatch):
         ("/anna/_aseba/emit", event("ping", 1, 2, 3)),
         ("/bert/aseba/emit/ping", Int16MultiArray(data=[1] * 4)),
         ("/bert/_aseba/emit", Int16MultiArray(data=[1])),
-        ("/anna/_raw/buttons", Int16MultiArray(data=[1])),
         (TOPIC, event("ping", 1)),
     ):
         ros.publisher(Int16MultiArray, topic).publish(message)
 
     def status():
         statuses = [one for one in received[-1].status if one.name == "aseba_runtime: messages"] if received else []
-        return statuses[0] if statuses and len(statuses[0].values) == 8 else None
+        return statuses[0] if statuses and len(statuses[0].values) == 7 else None
 
     found = ros.until(status)
     values = [(pair.key, pair.value) for pair in found.values]
-    assert values[:2] == [("rejected", "6"), ("clamped", "0")]
+    assert values[:2] == [("rejected", "5"), ("clamped", "0")]
     texts = dict(values[2:])
     assert found.level == DiagnosticStatus.WARN
     assert found.message in texts.values()
@@ -111,7 +107,6 @@ def test_rejected_events_are_in_the_diagnostics(ros, runtime, monkeypatch):
         "bert: event ping": "bert: event ping rejected: found 4 values, expected at most 2",
         "/bert/_aseba/emit": "/bert/_aseba/emit rejected: found 0 dimensions, expected 1:"
         " layout.dim[0].label must be the name of the event",
-        "/anna/_raw/buttons": "/anna/_raw/buttons rejected: 1 words found, expected 5",
         network: f"{network} rejected: found 1 labels and 1 values, expected 2 and 3 or more",
     }
 
@@ -128,7 +123,7 @@ def test_one_warning_does_not_hide_another(ros, runtime):
 
 
 def test_an_event_whose_name_is_too_long_for_a_topic_has_none(ros, runtime):
-    node = runtime("var a", robots=["anna"], follow_simulator=False)
+    node = runtime("var a", robots=["anna"])
     logs = ros.collect(Log, "/rosout")
     name = "e" * 250
     assert set_parameters(
@@ -141,25 +136,22 @@ def test_an_event_whose_name_is_too_long_for_a_topic_has_none(ros, runtime):
 def test_robots_receive_events_of_others_but_not_their_own(ros, runtime):
     runtime(HEAR, **TWO)
     reported = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
-    press_left(ros, "anna")
+    press(ros, "left", "/anna")
     ros.until(lambda: reported and list(reported[0].data) == [7, 8])
     assert get_variables(ros, "heard", "from", robot="/bert") == [[7, 8], [1]]
     assert get_variables(ros, "times", robot="/anna") == [[0]]
 
 
 def test_robots_that_answer_each_other_endlessly_do_not_starve_others(ros, runtime):
-    node = runtime(
-        program("var n = 0\nonevent ball\nn = n + 1\nemit ball\nonevent button.left\nemit ball", ("ball", 0)),
-        **TWO,
-    )
+    source = "var n = 0\nonevent ball\nn = n + 1\nemit ball\nonevent button.left\nemit ball"
+    node = runtime(program(source, ("ball", 0)), **TWO)
     anna, bert = (endpoints.device for endpoints in node.robots)
-    press_left(ros, "anna")
+    press(ros, "left", "/anna")
     ros.until(lambda: bert.variables.get("n")[0] > 0)
     assert anna.variables.get("n")[0] + bert.variables.get("n")[0] <= MAX_ROUNDS
     before = bert.variables.get("n")[0]
-    assert any(endpoints.is_busy for endpoints in node.robots)
-    for endpoints in node.robots:
-        endpoints.run()
+    assert anna.is_busy or bert.is_busy
+    node.robots.standalone.run()
     assert bert.variables.get("n")[0] > before
     assert ros.call(Trigger, "/anna/aseba/stop").success
 
@@ -168,7 +160,7 @@ def test_names_are_made_fit_for_topics_and_the_label_keeps_them(ros, runtime):
     runtime(program("onevent button.left\nemit a.b 1\nemit _ü 2", ("a.b", 1), ("_ü", 1)))
     plain = ros.collect(Int16MultiArray, "/aseba/events/a_b")
     anything = ros.collect(Int16MultiArray, "/_aseba/events")
-    ros.publisher(Int16MultiArray, "/_raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
+    press(ros, "left")
     ros.until(lambda: plain and len(anything) == 2)
     assert [message.layout.dim[0].label for message in anything] == ["a.b", "_ü"]
 
@@ -181,7 +173,7 @@ def test_events_that_share_a_name_have_the_generic_pair_alone(ros, runtime):
     logged(ros, logs, "event a.b has the same topic name a_b as another: use _aseba/events and _aseba/emit")
     anything = ros.collect(Int16MultiArray, "/_aseba/events")
     assert ros.node.count_publishers("/aseba/events/a_b") == 0
-    ros.publisher(Int16MultiArray, "/_raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
+    press(ros, "left")
     ros.until(lambda: anything)
 
 
@@ -195,24 +187,24 @@ def test_topics_of_events_come_and_go_with_the_program(ros, runtime):
 
 
 def test_local_events_are_published_where_they_are_wanted(ros, runtime):
-    runtime("var a", local_events=["prox", "button.left", "no.such"])
-    prox = ros.collect(Int16MultiArray, "/aseba/events/prox")
+    runtime("var a", local_events=["tap", "button.left", "no.such"])
+    tap = ros.collect(Int16MultiArray, "/aseba/events/tap")
     anything = ros.collect(Int16MultiArray, "/_aseba/events")
-    ros.publisher(Int16MultiArray, "/_raw/proximity").publish(Int16MultiArray(data=[0] * 7))
-    ros.until(lambda: prox and anything)
-    assert list(prox[0].data) == []
-    assert anything[0].layout.dim[0].label == "prox"
+    ros.publisher(Empty, "/tap").publish(Empty())
+    ros.until(lambda: tap and anything)
+    assert list(tap[0].data) == []
+    assert anything[0].layout.dim[0].label == "tap"
     assert ros.node.count_publishers("/aseba/events/motor") == 0
     assert set_parameters(ros, {"local_events": ["*"]}).successful
     motor = ros.collect(Int16MultiArray, "/aseba/events/motor")
-    ros.publisher(Int16MultiArray, "/_raw/motor").publish(Int16MultiArray(data=[0] * 4))
+    ros.publisher(Odometry, "/odom").publish(Odometry())
     ros.until(lambda: motor)
     assert set_parameters(ros, {"local_events": []}).successful
     ros.until(lambda: ros.node.count_publishers("/aseba/events/motor") == 0)
 
 
 def second(ros, robot, number=7, source=HEAR):
-    params = RuntimeParams(robots=[robot], follow_simulator=False, source=source, first_id=number)
+    params = RuntimeParams(robots=[robot], source=source, first_id=number)
     life = ros.live(AsebaRuntime(ros.context, params, overrides={"use_sim_time": True}))
     ros.settle()
     return life
@@ -224,10 +216,10 @@ def test_robots_of_different_runtimes_receive_events_once(ros, runtime):
     ros.until(lambda: ros.node.count_subscribers(TOPIC) == 2)
     air = ros.collect(Int16MultiArray, TOPIC)
     reported = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")
-    press_left(ros, "carl")
+    press(ros, "left", "/carl")
     carl = other.robots[0].device
     ros.until(lambda: get_variables(ros, "heard", "from", robot="/bert") == [[7, 8], [7]])
-    press_left(ros, "anna")
+    press(ros, "left", "/anna")
     ros.until(lambda: carl.variables.get("from") == (1,))
     ros.until(lambda: len(air) == 2)
     times = {robot: get_variables(ros, "times", robot=f"/{robot}")[0] for robot in ("anna", "bert", "carl")}
@@ -255,7 +247,7 @@ def test_robots_of_another_radio_network_receive_no_events(ros, runtime):
     setup = HEAR.replace("var times = 0", "var times = 0\ncall _rf.setup(2, 3)")
     other, third = second(ros, "carl", 7, setup), second(ros, "dora", 9, setup)
     ros.until(lambda: ros.node.count_subscribers(TOPIC) == 3)
-    press_left(ros, "carl")
+    press(ros, "left", "/carl")
     ros.until(lambda: third.robots[0].device.variables.get("times") == (1,))
     assert get_variables(ros, "times", robot="/anna") == [[0]]
     assert other.robots[0].device.variables.get("times") == (0,)

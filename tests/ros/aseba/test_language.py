@@ -51,7 +51,7 @@ def test_a_check_reports_warnings_symbols_and_use(ros, runtime):
 
 
 def test_a_check_knows_the_robots_names(ros, runtime):
-    runtime("var me = 1", robots=["anna", "bert"], follow_simulator=False)
+    runtime("var me = 1", robots=["anna", "bert"])
     successful, reported = check(ros, source='<network><node name="anna">var a</node></network>')
     assert successful
     assert reported["nodes"][0]["name"] == "anna"

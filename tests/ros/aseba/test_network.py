@@ -27,6 +27,7 @@ from tests.network.aseba_client import AsebaClient
 from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams
+from thymio_sim_ros.ros.interface.names import RobotNames
 
 FILE = '<network><event size="1" name="ping"/><event size="1" name="pong"/><node name="thymio-II">{}</node></network>'
 OWN = FILE.format("var own = 5\nonevent ping\nown = event.args[0]\nemit pong own\n")
@@ -121,12 +122,12 @@ def test_variables_and_pause_are_seen_on_both_sides(ros, network):
 
 
 def test_robots_have_ports_in_order_and_keep_them(ros, network):
-    node = network("", robots=["anna", "ben"], follow_simulator=False)
+    node = network("", robots=["anna", "ben"])
     first, second = network.client(node, "anna"), network.client(node, "ben")
     assert network.work(lambda: first.ask(ListNodes(0, 9), NodePresent)) == NodePresent(1, 9)
     assert network.work(lambda: second.ask(ListNodes(0, 5), NodePresent)) == NodePresent(2, 5)
     ports = node.network.thread.ports
-    node.robots.set_names(["ben"])
+    node.robots.follow({"ben": RobotNames("ben")})
     ros.until(lambda: list(node.network.thread.ports) == ["ben"])
     assert node.network.thread.ports["ben"] == ports["ben"]
     assert network.work(lambda: first.is_closed_by_server)
@@ -135,8 +136,8 @@ def test_robots_have_ports_in_order_and_keep_them(ros, network):
 
 @pytest.mark.parametrize("is_shared", [False, True])
 def test_events_without_names_reach_other_robots_on_a_shared_port_only(ros, network, is_shared):
-    node = network("", robots=["anna", "ben"], follow_simulator=False)
-    node.robots.bus.shares_numbers = is_shared
+    node = network("", robots=["anna", "ben"])
+    node.robots.standalone.devices.shares_numbers = is_shared
     first, second = network.client(node, "anna"), network.client(node, "ben")
     address, _ = target().addresses["motor.left.target"]
     network.work(lambda: load(first, "onevent ping\nemit pong 7\n", 1))

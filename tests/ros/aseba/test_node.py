@@ -48,14 +48,6 @@ def test_a_program_drives_the_wheels(ros, simulation, runtime):
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.05)
 
 
-def test_a_message_to_a_robot_that_has_gone_with_its_playground_is_dropped(ros, simulation, runtime):
-    simulation()
-    gone = runtime("onevent prox\n leds.top[0] = 32").robots[0]
-    gone.close()
-    gone.run()
-    assert not gone.is_busy
-
-
 def test_emit_reaches_a_topic_and_back(ros, simulation, runtime):
     simulation()
     runtime(AESL)

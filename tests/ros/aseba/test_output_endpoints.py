@@ -6,14 +6,23 @@ import time
 import types
 
 import pytest
+from geometry_msgs.msg import Twist
 from std_msgs.msg import Float32MultiArray, Int16MultiArray
 
 from thymio_sim_ros.ros.aseba import output_endpoints
 from thymio_sim_ros.ros.aseba.output_endpoints import FRESH_S, OutputEndpoints
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed
+from thymio_sim_ros.sim.model.units import units_to_speed
 
-KINDS = {"_motor/target": Int16MultiArray, "_led/single": Int16MultiArray, "sound/tone": Float32MultiArray}
+KINDS = {"cmd_vel": Twist, "_led/single": Int16MultiArray, "sound/tone": Float32MultiArray}
+
+
+def values(message):
+    """The numbers of a command; of a velocity, that of both wheels together in units of the motors."""
+    if isinstance(message, Twist):
+        return [round(2.0 * message.linear.x / units_to_speed(1))]
+    return list(message.data)
 
 
 class Robot:
@@ -23,9 +32,7 @@ class Robot:
         self.heard: list[list[float]] = []
         self._ros, self._node = ros, ros.make_node("robot")
         for topic in topics:
-            self._node.create_subscription(
-                KINDS[topic], topic, lambda message: self.heard.append(list(message.data)), 10
-            )
+            self._node.create_subscription(KINDS[topic], topic, lambda message: self.heard.append(values(message)), 10)
         ros.settle()
 
     def leave(self):
@@ -35,7 +42,7 @@ class Robot:
 @pytest.fixture
 def outputs(ros):
     """The outputs of a robot without a name."""
-    outputs = OutputEndpoints(ros.node, RobotNames(""), has_driver=False)
+    outputs = OutputEndpoints(ros.node, RobotNames(""))
     outputs.start_program()
     yield outputs
     outputs.close()
@@ -55,7 +62,7 @@ def test_a_late_subscriber_gets_unreceived_commands_once(ros, outputs):
     robot = Robot(ros)
     resend(ros, outputs)
     resend(ros, outputs)
-    assert sorted(robot.heard) == [[3, 4], [440.0, 0.0]]
+    assert sorted(robot.heard) == [[7], [440.0, 0.0]]
 
 
 def test_lights_that_were_set_one_by_one_are_sent_again_in_order(ros, outputs):
@@ -72,7 +79,7 @@ def test_a_subscriber_that_got_everything_gets_nothing_twice(ros, outputs):
     for command in (MotorTargets(1, 2), PlayTone(440.0, None)):
         outputs.send(command)
     resend(ros, outputs)
-    assert sorted(robot.heard) == [[1, 2], [440.0, 0.0]]
+    assert sorted(robot.heard) == [[3], [440.0, 0.0]]
 
 
 def test_a_restarted_robot_gets_the_retained_commands(ros, outputs):
@@ -85,10 +92,10 @@ def test_a_restarted_robot_gets_the_retained_commands(ros, outputs):
     resend(ros, outputs)
     again = Robot(ros)
     resend(ros, outputs)
-    assert again.heard == [[1, 2]]
+    assert again.heard == [[3]]
 
 
-@pytest.mark.parametrize(("later_s", "heard"), [(0.0, [[1, 2]]), (FRESH_S, [])])
+@pytest.mark.parametrize(("later_s", "heard"), [(0.0, [[3]]), (FRESH_S, [])])
 def test_with_another_subscriber_only_fresh_commands_are_sent_again(ros, outputs, monkeypatch, later_s, heard):
     """Discovery reports a killed robot as a subscriber for a while; a late viewer must not start a movement."""
     Robot(ros)
@@ -99,19 +106,3 @@ def test_with_another_subscriber_only_fresh_commands_are_sent_again(ros, outputs
     other = Robot(ros)
     resend(ros, outputs)
     assert other.heard == heard
-
-
-def test_a_simulator_in_the_same_process_gets_commands_without_dds(ros):
-    posted, robot = [], Robot(ros)
-    outputs = OutputEndpoints(
-        ros.node,
-        RobotNames("anna"),
-        has_driver=False,
-        post=lambda name, topic, message: posted.append((name, topic, list(message.data))),
-    )
-    outputs.start_program()
-    outputs.send(MotorTargets(1, 2))
-    resend(ros, outputs)
-    assert posted == [("anna", "_motor/target", [1, 2])]
-    assert robot.heard == []
-    outputs.close()

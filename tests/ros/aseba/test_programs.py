@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import re
 
 import pytest
-from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from tests.ros.aseba_tools import Status, get_parameter, get_variables, set_parameters, set_variables, words
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
-from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
+from thymio_sim_ros.sim.playground.reader import RobotStart
 
 SAME = "has this value already, nothing changed: the services aseba/reset and aseba/run of a robot restart its program"
-TWO = {"robots": ["anna", "bert"], "follow_simulator": False}
+TWO = {"robots": ["anna", "bert"]}
 
 NETWORK = """<network>
 <constant name="K" value="1"/>
@@ -82,7 +80,7 @@ def test_an_error_in_one_of_several_programs_names_its_node(ros, runtime):
 
 
 def test_what_does_not_fit_is_reported_as_a_warning(ros, runtime):
-    runtime(NETWORK.replace('nodeId="2"', 'nodeId="9"'), robots=["anna", "bert", "carl"], follow_simulator=False)
+    runtime(NETWORK.replace('nodeId="2"', 'nodeId="9"'), robots=["anna", "bert", "carl"])
     bert, carl = Status(ros, "/bert"), Status(ros, "/carl")
     ros.until(lambda: bert["state"] and carl["state"])
     assert [item["message"] for item in bert.data("warnings")] == [
@@ -218,7 +216,7 @@ def test_free_parameters_may_be_given_at_the_start(ros):
         "robots": ["anna", "bert"],
         "breakpoints": [1],
     }
-    ros.live(AsebaRuntime(ros.context, RuntimeParams(follow_simulator=False), overrides=given))
+    ros.live(AsebaRuntime(ros.context, RuntimeParams(), overrides=given))
     assert get_parameter(ros, "script.constants.K") == 4
     assert get_parameter(ros, "robots.bert.script.source") == "var me = K + 1"
     assert list(get_parameter(ros, "breakpoints")) == [1]
@@ -231,44 +229,30 @@ def test_a_program_that_does_not_compile_is_refused_at_the_start(ros):
         AsebaRuntime(ros.context, RuntimeParams(source="var 3"))
 
 
-def state(*robots):
-    return String(data=json.dumps({"robots": [{"name": name} for name in robots]}))
-
-
-def test_robots_that_stay_go_on_when_others_come_and_go(ros, runtime):
-    node = runtime("var me = 1", robots=["anna"])
-    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
-    node.robots[0].device.variables.set("me", (42,))
-    simulator.publish(state("anna", "bert"))
-    ros.until(lambda: len(node.robots) == 2)
+def test_robots_that_stay_go_on_when_others_come_and_go(ros, simulation, runtime):
+    sim = simulation(robot_names=["anna"])
+    node = runtime("var me = 1")
+    sim.thymio["me"] = 42
+    sim.simulator.runner.spawn(RobotStart("bert", 0.3, 0.0, 0.0))
+    sim.tick()
     assert (me(ros, "anna"), me(ros, "bert")) == ([42], [1])
     assert [endpoints.number for endpoints in node.robots] == [1, 2]
-    simulator.publish(state("bert"))
-    ros.until(lambda: len(node.robots) == 1)
+    sim.engine.remove("anna")
+    sim.tick()
     assert me(ros, "bert") == [1]
     ros.until(lambda: ros.node.count_publishers("/anna/_aseba/status") == 0)
-    simulator.publish(state("carl", "bert"))
-    ros.until(lambda: len(node.robots) == 2)
-    assert sorted(endpoints.number for endpoints in node.robots) == [1, 2]
+    sim.simulator.runner.spawn(RobotStart("carl", -0.3, 0.0, 0.0))
+    sim.tick()
+    assert sorted(endpoints.number for endpoints in node.robots) == [2, 3]
 
 
-def test_a_robot_that_is_added_later_gets_its_program(ros, runtime):
-    node = runtime("var me = 1", robots=["anna"])
+def test_a_robot_that_is_added_later_gets_its_program(ros, simulation, runtime):
+    sim = simulation(robot_names=["anna"])
+    runtime("var me = 1")
     assert set_parameters(ros, {"robots.bert.script.source": "var me = 2"}).successful
-    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
-    simulator.publish(state("anna", "bert"))
-    ros.until(lambda: len(node.robots) == 2)
-    assert me(ros, "bert") == [2]
-    simulator.publish(state("anna"))
-    ros.until(lambda: len(node.robots) == 1)
-    simulator.publish(state("anna", "bert"))
-    ros.until(lambda: len(node.robots) == 2)
-    assert me(ros, "bert") == [2]
-
-
-def test_a_state_of_the_simulator_that_cannot_be_read_changes_nothing(ros, runtime):
-    node = runtime("var me = 1", robots=["anna"])
-    simulator = ros.node.create_publisher(String, "/simulator/_state", qos.TRANSIENT_LOCAL)
-    simulator.publish(String(data="[]"))
-    simulator.publish(state("anna", "bert"))
-    ros.until(lambda: len(node.robots) == 2)
+    for _ in range(2):
+        sim.simulator.runner.spawn(RobotStart("bert", 0.3, 0.0, 0.0))
+        sim.tick()
+        assert me(ros, "bert") == [2]
+        sim.engine.remove("bert")
+        sim.tick()

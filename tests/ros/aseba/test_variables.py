@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
+from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, ListParameters
 from std_msgs.msg import Int16MultiArray
 
 from tests.ros.aseba.conftest import BEHIND_A_NETWORK, HERE, PLACES
-from tests.ros.aseba_tools import get_variables, set_parameters, set_variables, words
+from tests.ros.aseba_tools import Proximity, get_variables, set_parameters, set_variables, words
+from thymio_sim_ros.sim.model.units import PROXIMITY_FULL, units_to_speed
 
 SOURCE = "var count = 3\nvar list[4] = [1, 2, 3, 4]\nonevent prox\ncount = count + 1"
 
@@ -61,9 +65,9 @@ def test_variables_are_written_each_with_its_result(ros, runtime):
 @in_this_process
 def test_a_written_target_moves_the_robot(ros, runtime):
     runtime(SOURCE)
-    targets = ros.collect(Int16MultiArray, "/_motor/target")
+    driven = ros.collect(Twist, "/cmd_vel")
     set_variables(ros, {"motor.left.target": integer(120)})
-    ros.until(lambda: targets and list(targets[-1].data) == [120, 0])
+    ros.until(lambda: driven and math.isclose(driven[-1].linear.x, units_to_speed(60), rel_tol=1e-6))
 
 
 def test_variables_are_listed_by_prefix_and_depth(ros, runtime):
@@ -101,15 +105,15 @@ def test_a_watched_variable_has_a_retained_topic(ros, runtime):
     counts = ros.collect(Int16MultiArray, "/aseba/variables/count", transient_local=True)
     ranges = ros.collect(Int16MultiArray, "/aseba/variables/prox_horizontal", transient_local=True)
     ros.until(lambda: counts and ranges)
-    ros.publisher(Int16MultiArray, "/_raw/proximity").publish(Int16MultiArray(data=[7, 0, 0, 0, 0, 0, 0]))
-    ros.until(lambda: list(counts[-1].data) == [4] and ranges[-1].data[0] == 7)
+    Proximity(ros).send(0.0, *[-1.0] * 6)
+    ros.until(lambda: list(counts[-1].data) == [4] and ranges[-1].data[0] == PROXIMITY_FULL)
     assert [list(message.data) for message in counts] == [[3], [4]]
     ros.until(lambda: ros.node.count_publishers("/aseba/variables/list") == 0)
 
 
 @in_this_process
 def test_a_robot_may_be_watched_alone(ros, runtime):
-    runtime(SOURCE, robots=["anna", "bert"], follow_simulator=False, watch=["count"])
+    runtime(SOURCE, robots=["anna", "bert"], watch=["count"])
     assert set_parameters(ros, {"robots.bert.watch": ["list"]}).successful
     lists = ros.collect(Int16MultiArray, "/bert/aseba/variables/list", transient_local=True)
     ros.until(lambda: lists and list(lists[-1].data) == [1, 2, 3, 4])

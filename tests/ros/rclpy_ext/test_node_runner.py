@@ -36,14 +36,13 @@ def top(state):
     return round(32 * state[-1].data[0]) if state else 0
 
 
-def test_a_simulator_that_is_started_again_finds_the_program_running(ros, simulation, runtime):
-    first = simulation(playground="borderless")
+def test_a_simulator_that_is_started_again_finds_the_program_of_another_process_running(ros, simulation, runtime):
     runtime(COUNTS)
-    first.until(lambda: first.world.robots["thymio"].pose.x_m > 0.05)
-    ros.end(first.simulator)
-    second = simulation(playground="borderless")
-    assert second.world.now_ns == 0
-    second.until(lambda: second.world.robots["thymio"].pose.x_m > 0.05)
+    for _ in range(2):
+        sim = simulation(playground="borderless", cmd_vel_timeout=0.0)
+        assert sim.world.now_ns == 0
+        sim.until(lambda sim=sim: sim.world.robots["thymio"].pose.x_m > 0.05)
+        ros.end(sim.simulator)
 
 
 def test_a_program_starts_again_with_its_node(ros, simulation, runtime):

@@ -33,7 +33,7 @@ MAKERS = {
         SimulatorParams(playground="two_robots", start_paused=True, twist_covariance_diagonal=[1e-5, 2e-7] + [0.0] * 4),
     ),
     "aseba_runtime": lambda context: AsebaRuntime(
-        context, RuntimeParams(source=PROGRAM, robots=["anna", "bert"], watch=["count"], follow_simulator=False)
+        context, RuntimeParams(source=PROGRAM, robots=["anna", "bert"], watch=["count"])
     ),
     "foxglove_bridge": lambda context: FoxgloveBridge(context=context, defaults=FoxgloveParams(port=0)),
     "web_ui": lambda context: WebPage(context, WebParams(port=0)),

@@ -30,7 +30,20 @@ def test_ticks_are_executed_together_if_asked_for() -> None:
     assert scheduler(3).wait_ns(WALL_NS, 0) - scheduler(1).wait_ns(WALL_NS, 0) == 2 * TICK_NS
 
 
+def test_no_tick_is_deferred_while_events_have_receivers() -> None:
+    batched = scheduler(3)
+    batched.is_prompt = True
+    assert batched.wait_ns(WALL_NS, 0) == scheduler(1).wait_ns(WALL_NS, 0)
+
+
 def test_a_command_is_not_delayed_by_the_batch() -> None:
     batched = scheduler(3)
     batched.require_next_tick(0)
     assert batched.wait_ns(WALL_NS, 0) == scheduler(1).wait_ns(WALL_NS, 0)
+
+
+def test_ticks_that_would_take_too_long_are_counted_as_dropped() -> None:
+    late = scheduler(1)
+    owed = late.pop_owed(WALL_NS + 5 * TICK_NS, 0)
+    late.drop(owed - 2)
+    assert late.dropped_ticks == owed - 2 > 0

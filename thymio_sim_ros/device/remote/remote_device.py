@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 
 from thymio_sim_ros.device.behavior_host import built_in, is_internal
+from thymio_sim_ros.device.due_time import DueTime
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.notices import Notices
@@ -26,6 +27,9 @@ MAX_EVENTS = 256
 
 class RemoteLocalEvents:
     """A remote robot raises its local events itself, and only its program receives them."""
+
+    has_occurred = False
+    """Whether `pop` would return events."""
 
     def __init__(self, notices: Notices) -> None:
         self._notices = notices
@@ -56,6 +60,8 @@ class RemoteDevice:
         self.variables = RemoteVariables(session)
         self.run_control = RemoteRunControl(session)
         self.local_events = RemoteLocalEvents(self.notices)
+        self.due = DueTime()
+        """Always now: whatever waits to be sent is sent whenever the owner runs."""
         self.on_run: Callable[[], None] = lambda: None
         """Called where a simulated robot would run: whatever waits to be sent is sent then."""
         self._session, self._number = session, number
@@ -77,7 +83,7 @@ class RemoteDevice:
         return False
 
     @property
-    def is_due(self) -> bool:
+    def has_emitted(self) -> bool:
         """Whether events wait for the owner."""
         return bool(self._events)
 
@@ -150,11 +156,22 @@ class RemoteHost:
         self.device = device
         self.program = load_program("", "none", device.layout)
         self._remembered = self.program
+        self.behaviour = ""
+        """Name of the built-in program that was started last; "" after another program."""
+        self.breakpoints: tuple[int, ...] = ()
+        """The lines at which the user asked that the user program pauses, from 1."""
+
+    @property
+    def user_program(self) -> ThymioProgram:
+        """The program that `restart` loads."""
+        return self.program
 
     def load(self, program: ThymioProgram) -> None:
         """Load a user program and start it. Raises ValueError for a program of another layout."""
-        self.program = program
+        self.program, self.behaviour = program, ""
         self.device.load(program)
+        if self.breakpoints:
+            self.device.run_control.set_breakpoints(self.breakpoints)
 
     def adopt(self, words: Sequence[int]) -> None:
         """Make the bytecode that another client has loaded the program; it may be the one that is known."""
@@ -162,7 +179,13 @@ class RemoteHost:
             is_known = self._remembered.program.words == tuple(words)
             foreign = foreign_program(words, self.device.layout, self.program.events)
             self.program = self._remembered if is_known else foreign
+            self.breakpoints = ()
             self.device.adopt(self.program)
+
+    def set_breakpoints(self, lines: Sequence[int]) -> None:
+        """Replace the breakpoints at lines of the program, also for its next starts."""
+        self.breakpoints = tuple(lines)
+        self.device.run_control.set_breakpoints(lines)
 
     def remember(self, program: ThymioProgram) -> None:
         """Remember the text of a program whose bytecode another client loads next."""
@@ -174,6 +197,7 @@ class RemoteHost:
         Raises FileNotFoundError if there is none of this name, ProgramError if it uses what the robot does not have.
         """
         self.load(built_in(name, self.device.layout))
+        self.behaviour = name
 
     def restart(self) -> None:
         """Load the program again."""

@@ -59,6 +59,8 @@ class RemoteRunControl:
         self._session = session
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
+        self.breakpoints = Breakpoints()
+        """The breakpoints at lines."""
         self._line_step: _LineStep | None = None
         self._program: RemoteProgram | None = None
         """The program that runs again when a robot that was switched off is switched on."""
@@ -168,7 +170,8 @@ class RemoteRunControl:
             number = self._session.node.number
             self._session.command(ClearAllBreakpoints)
             self._session.client.send(*(SetBreakpoint(COMPUTER, number, places[line]) for line in found))
-        return Breakpoints(tuple(found), moved)
+        self.breakpoints = Breakpoints(tuple(found), moved)
+        return self.breakpoints
 
     def on_state(self, state: ExecutionState) -> None:
         """Process a state that the node has reported: at a breakpoint, after a step, or for another client."""

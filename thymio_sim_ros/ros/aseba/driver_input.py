@@ -2,8 +2,8 @@
 
 Source: docs/spec/ros-interface.md section 3.
 
-Values that the driver does not publish stay zero: ambient light, communication intensities, raw buttons. Single ranges
-are assembled to one reading when all have arrived, or when one arrives a second time.
+Values that the driver does not publish stay zero (`MISSING`). Single ranges are assembled to one reading when all have
+arrived, or when one arrives a second time.
 """
 
 from __future__ import annotations
@@ -25,10 +25,16 @@ from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.robot_constants import WHEEL_TRACK_M
 
-__all__ = ["Feed", "proximity_count", "subscribe", "twist_of"]
+__all__ = ["MISSING", "Feed", "proximity_count", "subscribe", "twist_of"]
 
 Feed = Callable[[str, Sequence[int]], None]
 """Receives the integer reading of a sensor."""
+
+MISSING = (
+    "the ROS driver does not publish ambient light, intensities of infrared communication, raw buttons and the address "
+    "of the remote control: these stay 0"
+)
+"""What programs do not get, for the user."""
 
 FULL_SOUND = 255
 COMM_SENSORS = 7

@@ -41,6 +41,11 @@ class EventEndpoints:
         self._publishers: dict[str, Any] = {}
         self._subscriptions: list[Any] = []
 
+    @property
+    def has_subscribers(self) -> bool:
+        """Whether another node receives events."""
+        return any(publisher.get_subscription_count() for publisher in (self._any, *self._publishers.values()))
+
     def open(self, program: ThymioProgram, local_events: Collection[str]) -> None:
         """Create the topics for the events of a program and for these local events."""
         self._close_program()

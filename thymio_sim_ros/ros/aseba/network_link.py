@@ -7,7 +7,7 @@ executor. A mailbox takes what clients send, and calls in the other thread take 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from rclpy.node import Node
@@ -15,6 +15,14 @@ from rclpy.node import Node
 from aseba_vm.protocol import Message
 from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.engine.devices import SentMessages
+from thymio_sim_ros.engine.inputs import (
+    ClientConnected,
+    ClientDisconnected,
+    MessagesReceived,
+    ProgramInput,
+    Remembered,
+)
 from thymio_sim_ros.network.hub import Network
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.network.thread import NetworkThread
@@ -62,12 +70,13 @@ class NetworkLink:
         )
         self.thread = NetworkThread(settings, tokens=tokens, warn=log.warning, info=log.info)
         robots.on_change = self.update
+        robots.on_sent = self._deliver
         self.update()
 
     def update(self) -> None:
         """Add networks of new robots, and remove those of robots that are gone."""
         for robot in [robot for robot in self._networks if robot not in list(self._robots)]:
-            robot.send_to_network, robot.on_program = None, lambda program: None
+            robot.on_program = lambda program: None
             self.thread.call(self.thread.hub.remove, self._networks.pop(robot))
         for robot in self._robots:
             if robot not in self._networks:
@@ -96,18 +105,27 @@ class NetworkLink:
 
     def _handle(self, post: _Post) -> None:
         """Execute what a client has sent. Replies keep their order with what the node sends by itself."""
-        robot, network = post.robot, self._networks.get(post.robot)
-        if network is None:  # the robot is gone
+        robot = post.robot
+        if robot not in self._networks:  # it is gone
             return
         if post.event == CONNECT:
-            robot.network_node.connect(post.client)
-            robot.send_to_network = lambda messages: self.thread.call(network.deliver, messages)
+            happened: ProgramInput = ClientConnected(robot.robot, post.client)
         elif post.event == DISCONNECT:
-            robot.network_node.disconnect(post.client)
+            happened = ClientDisconnected(robot.robot, post.client)
         elif post.program is not None:
-            robot.remember(post.program)
+            happened = Remembered(robot.robot, replace(post.program, layout=robot.device.layout))
         else:
-            robot.handle_messages(post.client, post.messages, partial(self.thread.call, network.deliver))
+            happened = MessagesReceived(robot.robot, post.client, tuple(post.messages))
+        self._robots.owner.apply(happened)
+        self._deliver(self._robots.owner.pop_sent())
+        robot.publish()
+
+    def _deliver(self, sent: Sequence[SentMessages]) -> None:
+        """Send messages of the robots to the clients of their networks, in order."""
+        networks = {robot.robot: network for robot, network in self._networks.items()}
+        for messages in sent:
+            if messages.robot in networks:
+                self.thread.call(networks[messages.robot].deliver, messages.messages, messages.client)
 
 
 class _Robot:

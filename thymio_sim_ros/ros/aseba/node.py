@@ -1,8 +1,8 @@
 """The Aseba runtime as a ROS node: creates its parts, connects them and runs their loop.
 
-It feeds readings to devices, publishes their commands and exchanges their events. It uses topics only and works with
-every robot that has them (docs/spec/ros-interface.md section 6, docs/aseba_ros.md). Devices follow the clock of the
-node. Programs are parameters; a text that does not compile is rejected with its position, and the current program
+In the process of a simulator its engine runs the programs, and this node is their interface; alone, it runs them on
+robots of other processes by their topics (docs/spec/ros-interface.md section 6, docs/aseba_ros.md). Programs are
+parameters; a text that does not compile is rejected with its position, and the current program
 continues. A robot without a program is switched on with its menu.
 """
 
@@ -11,11 +11,10 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping, Sequence
-from math import inf
 from types import MappingProxyType
-from typing import Any
+from typing import Any, cast
 
-from rclpy.clock import Clock, ClockChange, JumpThreshold, TimeJump
+from rclpy.clock import Clock, ClockChange, JumpThreshold, ROSClock, TimeJump
 from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
@@ -23,14 +22,15 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
+from rclpy.time import Time
 from std_msgs.msg import String
 
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.device.options import OptionError
 from thymio_sim_ros.files.loading import shipped_behaviours
 from thymio_sim_ros.network.settings import NetworkSettings
+from thymio_sim_ros.ros.aseba import driver_input
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
-from thymio_sim_ros.ros.aseba.bus import SLICE_S
 from thymio_sim_ros.ros.aseba.check_service import CheckService
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.network_link import NetworkLink
@@ -38,21 +38,23 @@ from thymio_sim_ros.ros.aseba.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.aseba.parameters import BEHAVIOUR, RuntimeParams, WrongValueError
 from thymio_sim_ros.ros.aseba.robot_set import ROBOT_ERRORS, RobotSet
 from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
-from thymio_sim_ros.ros.aseba.simulator_follower import SimulatorFollower
-from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
 from thymio_sim_ros.ros.aseba.variable_timer import VariableTimer
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, deliver, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
-from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
+from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.ros.web.tokens import given_tokens
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
 DIAGNOSTICS_S = 1.0
 """Period of diagnostics, and of checking that the simulator is still there."""
+
+PERIOD_S = 0.01
+"""Shortest wall time between two runs of programs that are busy: a tick."""
 
 SUBSCRIBERS_S = 0.25
 """Period of polling for new subscribers of commands."""
@@ -73,13 +75,14 @@ class AsebaRuntime:
         *,
         use_sim_time: bool | None = None,
         overrides: Mapping[str, Any] = NO_OVERRIDES,
-        link: SimulatorLink | None = None,
+        simulator: Simulator | None = None,
         tokens: Tokens | None = None,
         is_closed: bool = False,
     ) -> None:
-        """`overrides`: parameter values by name, like those of a command line; `link`: to a simulator whose endpoints
-        do not match those of `context`; `tokens`: those that clients of the network servers need, None: those of the
-        environment or of parameters; `is_closed`: only this process reaches its parameters, by `control`.
+        """`overrides`: parameter values by name, like those of a command line; `simulator`: in the same process, whose
+        engine runs the programs and whose thread runs this node; `tokens`: those that clients of the network servers
+        need, None: those of the environment or of parameters; `is_closed`: only this process reaches its parameters,
+        by `control`.
 
         Raises StartError for a parameter or a program that cannot be used.
         """
@@ -98,44 +101,33 @@ class AsebaRuntime:
         """Has the services of the parameters."""
         if isinstance(self.control, LocalNode):
             self._parameter_services = ParameterService(self.control)
+        self._ran_s = 0.0
         try:
-            self._start(defaults or RuntimeParams(), link, tokens)
+            self._start(defaults or RuntimeParams(), simulator, tokens)
         except (OptionError, WrongValueError, *ROBOT_ERRORS) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
-        self.peers = () if link is None else (link.inputs,)
 
     @property
     def startup_message(self) -> str:
-        """The programs, for the user; the robots are unknown until the simulator publishes its state."""
+        """The programs, for the user, and what they do not get on robots of other processes."""
         programs = dict.fromkeys(endpoints.program.name for endpoints in self.robots if endpoints.program.name)
-        return f"Program: {', '.join(programs) or 'none'}"
+        is_outside = self.robots.standalone is not None and not self.values.params.robot
+        return f"Program: {', '.join(programs) or 'none'}" + (f"; {driver_input.MISSING}" if is_outside else "")
 
     def run_once(self, executor: Executor) -> None:
-        """Handle messages, then run ready robots for one slice of wall time.
-
-        If endless programs used up the previous slice, other threads of the process get the interpreter for one slice
-        first.
-        """
-        bus = self.robots.bus
-        with bus.slice():
-            busy = [endpoints for endpoints in self.robots if endpoints.is_busy]
-            if busy and bus.has_ready_robots:
-                self._spin_only(executor)
-            wait_s = min((endpoints.resumes_s for endpoints in busy), default=inf) - time.monotonic()
-            if wait_s > 0.0 and not bus.has_ready_robots:
-                executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
-                return
-            deliver(executor)
-            now_s = time.monotonic()
-            bus.run_until_idle(*[endpoints for endpoints in busy if endpoints.is_busy and endpoints.resumes_s <= now_s])
-
-    @staticmethod
-    def _spin_only(executor: Executor) -> None:
-        """Handle messages for one slice without running robots."""
-        end_s = time.monotonic() + SLICE_S
-        while (wait_s := end_s - time.monotonic()) > 0.0:
-            executor.spin_once(timeout_sec=wait_s)
+        """Handle messages until a program has work, then run it; at most once in `PERIOD_S` if programs are busy."""
+        owner = self.robots.standalone
+        if owner is None:  # the simulator runs the programs, and this node
+            executor.spin_once(timeout_sec=SPIN_SLICE_S)
+            return
+        wait_s = max(owner.wait_s, self._ran_s + PERIOD_S - time.monotonic())
+        if wait_s > 0.0:
+            executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
+            return
+        deliver(executor)
+        self._ran_s = time.monotonic()
+        owner.run()
 
     def stop(self) -> None:
         """Stop the network servers, then the wheels and programs of all robots."""
@@ -150,26 +142,26 @@ class AsebaRuntime:
         self.robots.close()
         self.node.destroy_node()
 
-    def _start(self, defaults: RuntimeParams, link: SimulatorLink | None, tokens: Tokens | None) -> None:
+    def _start(self, defaults: RuntimeParams, simulator: Simulator | None, tokens: Tokens | None) -> None:
         node = self.node
         self.values = RuntimeValues(node, defaults)
         params = self.values.params
         self._diagnostics = RuntimeDiagnostics(node)
-        self.robots = RobotSet(node, self.values, self._diagnostics, link)
-        self.robots.bus.reaches_all = params.emit_reaches == "network"
-        self.robots.bus.shares_numbers = params.network.aseba_shared
+        runner = None if simulator is None else simulator.runner
+        self.robots = RobotSet(node, self.values, self._diagnostics, runner)
+        self.robots.emitter.reaches_all = params.emit_reaches == "network"
+        self.robots.emitter.shares_numbers = params.network.aseba_shared
         self._publish_behaviours()
         self._check = CheckService(node, layout=lambda: self.values.params.layout, robots=lambda: self.robots.names)
-        self._follower = SimulatorFollower(node, params, self.robots, link, self._diagnostics.messages)
-        self.robots.set_names(params.robots)
+        if simulator is None:
+            self.robots.follow({name: RobotNames(name) for name in params.robots})
+        else:
+            self._follow(simulator)
         self.network: NetworkLink | None = None
         """The servers by which other programs reach the robots, if any is on."""
         if not (settings := params.network.settings).is_off:
             tokens = _tokens(node, settings) if tokens is None else tokens
             self.network = NetworkLink(node, self.robots, settings, first_id=params.first_id, tokens=tokens)
-        if link is not None:
-            follow_clock(node, link.inputs)
-        self._follower.start()
         wall = Clock(clock_type=ClockType.STEADY_TIME)
         self._variable_timer = VariableTimer(node, wall, self.robots, params.watch_rate)
         self._callbacks = ParameterCallbacks(node, self.values, self.robots, self._variable_timer)
@@ -178,10 +170,27 @@ class AsebaRuntime:
             post_callback=self._on_jump,
         )
         node.create_timer(DIAGNOSTICS_S, lambda: self._diagnostics.publish_all(self.robots), clock=wall)
-        node.create_timer(DIAGNOSTICS_S, self._follower.check_publisher, clock=wall)
         node.create_timer(SUBSCRIBERS_S, self.robots.poll_subscribers, clock=wall)
         if self.network is not None:
             node.create_timer(SUBSCRIBERS_S, self.network.drain, clock=wall)
+
+    def _follow(self, simulator: Simulator) -> None:
+        """Serve the robots of a simulator, now and whenever they change, and have its time."""
+        runner, robots = simulator.runner, self.robots
+        clock = cast(ROSClock, self.node.get_clock())
+
+        def follow(is_new: bool) -> None:
+            try:
+                robots.follow(simulator.endpoints.robots.names, is_new=is_new)
+            except ROBOT_ERRORS as error:
+                self.node.get_logger().error(f"robots {', '.join(runner.world.robots)}: {error}")
+
+        def publish() -> None:
+            clock.set_ros_time_override(Time(nanoseconds=runner.world.now_ns))
+            robots.publish()
+
+        robots.follow(simulator.endpoints.robots.names, is_new=True)
+        runner.on_robots, runner.on_tick, runner.on_reset = follow, publish, robots.refresh
 
     def _is_set_again(self, parameter: str) -> bool:
         """Whether a parameter acts even if its value is the same: the file may differ, or a tool's program runs."""

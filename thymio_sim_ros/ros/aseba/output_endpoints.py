@@ -9,16 +9,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.aseba import driver_input
-from thymio_sim_ros.ros.aseba.simulator_link import Post
 from thymio_sim_ros.ros.interface import command_topics, driver_topics, plugin_topics, qos
-from thymio_sim_ros.ros.interface.command_row import CommandRow
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.sim.commands import Command, SetLed, ShowOnLeds
@@ -32,28 +29,12 @@ was one before: discovery reports a killed robot as a subscriber for a while."""
 
 @dataclass(frozen=True, slots=True)
 class _CommandPublisher:
-    """The publisher of a command topic with its encoder and its count of subscriptions.
-
-    `post` passes messages to a simulator in the same process, which is one more receiver.
-    """
+    """The publisher of a command topic with its encoder and its count of subscriptions."""
 
     encode: Callable[[Any], Any]
     publisher: Any
-    count_remote: Callable[[], int]
+    count: Callable[[], int]
     is_retained: bool
-    post: Callable[[Any], None] | None
-
-    def count(self) -> int:
-        """Return the number of receivers."""
-        return self.count_remote() + (self.post is not None)
-
-    def publish(self, message: Any) -> None:
-        """Send a message to all receivers."""
-        if self.post is not None:
-            self.post(message)
-            if not self.count_remote():
-                return
-        self.publisher.publish(message)
 
 
 @dataclass(slots=True)
@@ -68,39 +49,28 @@ class _SentCommand:
 class OutputEndpoints:
     """Publishers of the commands of one robot."""
 
-    def __init__(
-        self,
-        node: Node,
-        names: RobotNames,
-        *,
-        has_driver: bool,
-        post: Post | None = None,
-        rows: Sequence[CommandRow] | None = None,
-    ) -> None:
-        """`has_driver`: drive the wheels by `cmd_vel`, as the ROS driver expects; `post`: to a simulator in the same
-        process whose endpoints do not match those of `node`; `rows`: the commands, None for all.
-        """
+    def __init__(self, node: Node, names: RobotNames) -> None:
+        """The topics are those of the ROS driver; the wheels are driven by `cmd_vel`."""
         self._node = node
         self._publishers: dict[str, _CommandPublisher] = {}
         self._sent: dict[tuple[str, Hashable], _SentCommand] = {}
         """By topic and part of the topic (such as one LED), in the order of sending."""
         self._fresh_until_s = 0.0
-        for row in (*command_topics.ROWS, *plugin_topics.rows()) if rows is None else rows:
+        for row in (*command_topics.ROWS, *plugin_topics.rows()):
             if row.encode is None:
                 continue
-            if has_driver and row.topic == "_motor/target":
+            if row.topic == "_motor/target":
                 topic = "cmd_vel"
                 publisher = node.create_publisher(Twist, names.topic(topic), qos.COMMAND)
                 encode: Callable[[Any], Any] = driver_input.twist_of
             else:
-                topic = driver_topics.driver_name(row.topic) if has_driver else row.topic
+                topic = driver_topics.driver_name(row.topic)
                 publisher, encode = node.create_publisher(row.type, names.topic(topic), row.profile), row.encode
             self._publishers[row.topic] = _CommandPublisher(
                 encode,
                 publisher,
                 raw_publisher.counter(publisher),
                 row.is_retained,
-                None if post is None else partial(post, names.name, topic),
             )
         self._counts = self._count()
 
@@ -116,7 +86,7 @@ class OutputEndpoints:
             return
         publisher = self._publishers[topic]
         sent = _SentCommand(publisher.encode(command), publisher.count())
-        publisher.publish(sent.message)
+        publisher.publisher.publish(sent.message)
         key = (topic, _part(command))
         self._sent.pop(key, None)
         if publisher.is_retained or not sent.receivers:
@@ -154,7 +124,7 @@ class OutputEndpoints:
         if self._counts == before:
             for (topic, part), sent in [(key, sent) for key, sent in self._sent.items() if sent.is_due]:
                 publisher = self._publishers[topic]
-                publisher.publish(sent.message)
+                publisher.publisher.publish(sent.message)
                 sent.receivers, sent.is_due = self._counts[topic], False
                 if not publisher.is_retained:
                     del self._sent[topic, part]

@@ -74,7 +74,7 @@ class ParameterCallbacks:
             return
         old, self._values.by_name = self._values.by_name, accepted.values
         self._values.params = params.updated(self._values.params, parameters)
-        self._robots.bus.reaches_all = self._values.params.emit_reaches == "network"
+        self._robots.emitter.reaches_all = self._values.params.emit_reaches == "network"
         if "watch_rate" in accepted.changes:
             self._variable_timer.set_rate(self._values.params.watch_rate)
         self.has_started = self._robots.apply(old, accepted)

@@ -126,12 +126,9 @@ class RuntimeParams:
 
     robots: list[str] = param(
         [""],
-        "Namespaces of the robots until the simulator is found; '' is a single robot without one",
+        "Namespaces of the robots, without a simulator in the process; '' is a single robot without one",
         name=ROBOT_NAMES,
         fixed=True,
-    )
-    follow_simulator: bool = param(
-        True, "Whether to follow the robots of simulator/_state once it is published", fixed=True
     )
     path: str = param("", "Program: name of a built-in behavior or an .aesl file", name="script.path")
     source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
@@ -152,12 +149,6 @@ class RuntimeParams:
     )
     language: str = param("en", "Language of the help in _aseba/target; English if not translated")
     first_id: int = param(1, "Number of the first robot on the Aseba network", low=1, high=32000, fixed=True)
-    robot_topics: str = param(
-        "raw",
-        "Source of readings: raw (_raw/... of the simulator) or driver (topics of the ROS driver)",
-        fixed=True,
-        choices=("raw", "driver"),
-    )
     robot: str = param(
         "",
         "Address of a real robot, in place of a simulator: tcp:host:port, or ser:device (ser is the first Thymio)",

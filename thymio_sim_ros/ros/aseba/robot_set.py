@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, overload
 
 from rclpy.node import Node
@@ -13,19 +14,27 @@ from thymio_sim_ros.device.behavior_host import MENU
 from thymio_sim_ros.device.firmware.sd_card import SdCardError
 from thymio_sim_ros.device.firmware.settings import SettingsError
 from thymio_sim_ros.device.layout import THYMIO, described
+from thymio_sim_ros.device.network_events import EmittedEvent
 from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId
+from thymio_sim_ros.engine.devices import SentMessages
+from thymio_sim_ros.engine.inputs import DevicesAdded
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.files.loading import check_behaviour
 from thymio_sim_ros.network.robot_target import Target, TargetError, parse_target
 from thymio_sim_ros.ros.aseba import script_parameters
-from thymio_sim_ros.ros.aseba.bus import Bus
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
+from thymio_sim_ros.ros.aseba.emitter import Emitter
+from thymio_sim_ros.ros.aseba.engine_owner import EngineOwner
+from thymio_sim_ros.ros.aseba.outside_robot import OutsideRobot
+from thymio_sim_ros.ros.aseba.program_owner import ProgramOwner
 from thymio_sim_ros.ros.aseba.real_robot import RealRobot
 from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
-from thymio_sim_ros.ros.aseba.simulator_link import SimulatorLink
+from thymio_sim_ros.ros.aseba.standalone_owner import StandaloneOwner
 from thymio_sim_ros.ros.interface.names import RobotNames
+from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
+from thymio_sim_ros.sim.commands import Command
 
 __all__ = ["PROGRAM_ERRORS", "ROBOT_ERRORS", "ParameterChange", "RobotSet"]
 
@@ -49,28 +58,45 @@ class RobotSet(Sequence[DeviceEndpoints]):
     """One device per robot, in the order of the simulator. Invariant: a robot that stays keeps device and number."""
 
     def __init__(
-        self, node: Node, values: RuntimeValues, diagnostics: RuntimeDiagnostics, link: SimulatorLink | None = None
+        self, node: Node, values: RuntimeValues, diagnostics: RuntimeDiagnostics, runner: WorldRunner | None = None
     ) -> None:
-        """Raises OptionError for unknown options, ResourceError for an unknown built-in behavior, TargetError for a
-        wrong address of a real robot.
+        """`runner`: of the simulator in the same process, whose engine runs the programs.
+
+        Raises OptionError for unknown options, ResourceError for an unknown built-in behavior, TargetError for a wrong
+        address of a real robot.
         """
-        self._node, self._values = node, values
-        self._options = values.params.options
-        self._behaviour = check_behaviour(values.params.behaviour, values.params.layout)
+        self._node, self._values, self._runner = node, values, runner
+        params = values.params
+        self._options = params.options
+        self._behaviour = check_behaviour(params.behaviour, params.layout)
         """The built-in behavior that robots are switched on with; empty: their program, or the menu."""
-        self._diagnostics, self._link = diagnostics, link
+        self._diagnostics = diagnostics
         self._robots: list[DeviceEndpoints] = []
-        self._is_fed = False
-        self._target = parse_target(values.params.robot) if values.params.robot else None
+        self._target = parse_target(params.robot) if params.robot else None
         """The address of a real robot."""
         self._real: RealRobot | None = None
         if self._target is not None:
             values.set_layout(described(THYMIO_II))
-            if len(values.params.robots) != 1:
-                raise TargetError(f"robot {self._target}: found {len(values.params.robots)} robot_names, expected 1")
-        self.bus = Bus(node, self, diagnostics.messages)
+            if len(params.robots) != 1:
+                raise TargetError(f"robot {self._target}: found {len(params.robots)} robot_names, expected 1")
+        self._outside: dict[str, OutsideRobot] = {}
+        """The topics of robots outside of this process."""
+        self.owner: ProgramOwner
+        """Runs the programs."""
+        if runner is None:
+            self.standalone: StandaloneOwner | None = StandaloneOwner(
+                lambda: node.get_clock().now().nanoseconds, send=self._send, publish=self.publish
+            )
+            self.owner = self.standalone
+        else:
+            self.standalone = None
+            self.owner = EngineOwner(runner, self.publish)
+        self.emitter = Emitter(node, self.owner, self, diagnostics.messages)
+        self._published_runs = 0
         self.on_change: Callable[[], None] = lambda: None
         """Called when robots have come or gone."""
+        self.on_sent: Callable[[Sequence[SentMessages]], None] = lambda sent: None
+        """Called with messages of the robots for the clients of their networks."""
 
     @overload
     def __getitem__(self, index: int) -> DeviceEndpoints: ...
@@ -95,31 +121,43 @@ class RobotSet(Sequence[DeviceEndpoints]):
         """Names and numbers of the robots, for the assignment of programs."""
         return [RobotId(endpoints.names.name, endpoints.number) for endpoints in self._robots]
 
-    def feed(self, is_fed: bool) -> None:
-        """Feed readings to all robots, also to later ones, by `DeviceEndpoints.feed` instead of their subscriptions."""
-        self._is_fed = is_fed
-        for endpoints in self._robots:
-            endpoints.is_fed = is_fed
-
-    def set_names(self, names: Sequence[str]) -> None:
-        """Create one device for each of these namespaces; existing devices continue with their numbers.
+    def follow(self, names: Mapping[str, RobotNames], *, is_new: bool = False) -> None:
+        """Serve these robots; those that stay keep their numbers, and their devices unless the world is new.
 
         Raises one of `ROBOT_ERRORS`.
         """
         kept = []
         for endpoints in self._robots:
-            if endpoints.names.name in names:
+            if names.get(endpoints.robot) == endpoints.names:
                 kept.append(endpoints)
             else:
-                endpoints.close()
+                self._remove(endpoints)
         self._robots = kept
-        known = self.names
-        new = [name for name in names if name not in known]
-        for name in new:
-            self._robots.append(self._new_robot(name, self._free_number(names.index(name)), alone=len(names) == 1))
-        self._robots.sort(key=lambda endpoints: names.index(endpoints.names.name))
-        self._assign_programs(new)
+        known = {endpoints.robot for endpoints in kept}
+        order = list(names)
+        for robot, ros_names in names.items():
+            if robot not in known:
+                self._robots.append(self._new_robot(robot, ros_names, self._free_number(order.index(robot))))
+        self._robots.sort(key=lambda endpoints: order.index(endpoints.robot))
+        self._assign_programs(new=names.keys() if is_new else names.keys() - known)
         self.on_change()
+
+    def publish(self) -> None:
+        """Publish what the programs did in their last run."""
+        owner = self.owner
+        events: dict[str, list[EmittedEvent]] = {}
+        ran: Set[str] = frozenset()
+        if owner.runs != self._published_runs:
+            self._published_runs, ran = owner.runs, owner.ran
+            for robot, event in owner.emitted:
+                events.setdefault(robot, []).append(event)
+        for endpoints in self._robots:
+            if endpoints.robot in ran or endpoints.device.local_events.has_occurred:
+                emitted = events.get(endpoints.robot, ())
+                endpoints.publish(emitted)
+                self.emitter.forward(endpoints, emitted)
+        if sent := owner.pop_sent():
+            self.on_sent(sent)
 
     def apply(self, old: Mapping[str, Any], change: ParameterChange) -> bool:
         """Apply accepted parameters to all robots: debug options, programs, built-in behavior.
@@ -137,14 +175,23 @@ class RobotSet(Sequence[DeviceEndpoints]):
         return has_started
 
     def restart(self) -> None:
-        """Restart all robots, after a jump back in time."""
+        """Restart the programs of robots outside of this process, after a jump back in time."""
+        if self.standalone is not None:
+            self.standalone.restart()
+
+    def refresh(self) -> None:
+        """Publish what all programs show, after a reset of the world."""
+        self.publish()
         for endpoints in self._robots:
-            endpoints.restart()
+            endpoints.publish()
 
     def poll_subscribers(self) -> None:
-        """Publish earlier commands again for new subscribers."""
-        for endpoints in self._robots:
-            endpoints.poll_subscribers()
+        """Publish earlier commands again for new subscribers; defer no ticks while events have receivers."""
+        if self._runner is not None:
+            is_prompt = self._runner.engine.has_clients or any(one.has_event_subscribers for one in self._robots)
+            self._runner.scheduler.is_prompt = is_prompt
+        for outside in self._outside.values():
+            outside.outputs.resend()
 
     def publish_variables(self) -> None:
         """Publish variables that changed."""
@@ -161,9 +208,21 @@ class RobotSet(Sequence[DeviceEndpoints]):
     def close(self) -> None:
         """Stop all robots and destroy their topics and services."""
         for endpoints in self._robots:
-            endpoints.close()
+            self._remove(endpoints)
         if self._real is not None:
             self._real.close()
+
+    def _remove(self, endpoints: DeviceEndpoints) -> None:
+        endpoints.close()
+        outside = self._outside.pop(endpoints.robot, None)
+        if outside is not None:
+            outside.close()
+        if self.standalone is not None:
+            self.standalone.devices.remove(endpoints.robot)
+
+    def _send(self, robot: str, command: Command) -> None:
+        if robot in self._outside:
+            self._outside[robot].outputs.send(command)
 
     def _free_number(self, place: int) -> int:
         """Return the number by place in the order of robots, or the first one above all others if it is taken."""
@@ -171,41 +230,38 @@ class RobotSet(Sequence[DeviceEndpoints]):
         wanted = self._values.params.first_id + place
         return wanted if wanted not in taken else max(taken) + 1
 
-    def _new_robot(self, name: str, number: int, *, alone: bool) -> DeviceEndpoints:
-        if name:
-            self._values.declare_robot(name)
-        if self._target is not None:
-            return self._new_real_robot(RobotNames(name), number, self._target)
-        return DeviceEndpoints(
-            self._node,
-            RobotNames(name),
-            number=number,
-            bus=self.bus,
-            diagnostics=self._diagnostics,
-            options=self._options.for_robot(name, alone=alone),
-            debug_options=self._values.debug_options(name),
-            has_driver=self._values.params.robot_topics == "driver",
-            is_fed=self._is_fed,
-            link=self._link,
-        )
-
-    def _new_real_robot(self, names: RobotNames, number: int, target: Target) -> DeviceEndpoints:
-        timeout_s, messages = self._values.params.cmd_vel_timeout, self._diagnostics.messages
-        real = RealRobot(self._node, names, target, number=number, timeout_s=timeout_s, messages=messages)
+    def _new_robot(self, robot: str, names: RobotNames, number: int) -> DeviceEndpoints:
+        if names.name:
+            self._values.declare_robot(names.name)
         endpoints = DeviceEndpoints(
             self._node,
             names,
+            self.owner,
+            robot,
             number=number,
-            bus=self.bus,
+            emit=self.emitter.emit,
             diagnostics=self._diagnostics,
-            remote=real.robot,
+            layout=lambda: self._values.params.layout,
             debug_options=self._values.debug_options(names.name),
-            is_fed=True,
+            is_simulated=self._target is None,
         )
-        real.on_change = endpoints.run
+        if self.standalone is not None and self._target is not None:
+            self._connect(endpoints, self.standalone, self._target)
+        elif self.standalone is not None:
+            feed = partial(self.standalone.feed, robot)
+            self._outside[robot] = OutsideRobot(self._node, names, feed)
+        return endpoints
+
+    def _connect(self, endpoints: DeviceEndpoints, owner: StandaloneOwner, target: Target) -> None:
+        """Reach the robot of these endpoints by a link."""
+        timeout_s, messages = self._values.params.cmd_vel_timeout, self._diagnostics.messages
+        real = RealRobot(
+            self._node, endpoints.names, target, number=endpoints.number, timeout_s=timeout_s, messages=messages
+        )
+        owner.devices.add(endpoints.robot, real.robot.host, real.robot.gateway)
+        real.on_change = owner.run
         real.on_connected = lambda: self._load_real_robot(real, endpoints)
         self._real = real
-        return endpoints
 
     def _load_real_robot(self, real: RealRobot, endpoints: DeviceEndpoints) -> None:
         """Load the program into a robot that has connected, for the layout that it describes."""
@@ -217,13 +273,22 @@ class RobotSet(Sequence[DeviceEndpoints]):
             share = Assignment(None, (f"not loaded: {error}",))
         self._start_program(endpoints, share)
 
-    def _assign_programs(self, new: Sequence[str]) -> None:
+    def _assign_programs(self, new: Collection[str]) -> None:
         """Start new robots, and those whose program changes because the file is assigned differently."""
         shares = script_parameters.shares(self._values.by_name, self.members, self._values.params.layout)
+        starts = {}
         for endpoints in self._robots:
             share = shares[endpoints.names.name]
-            if endpoints.names.name in new or _program(share) != _program(endpoints.share):
+            if endpoints.robot in new:
+                share, behaviour = self._started(endpoints, share)
+                starts[endpoints.robot] = endpoints.begin(share, behaviour)
+            elif _program(share) != _program(endpoints.share):
                 self._start_program(endpoints, share)
+        if starts and self._real is None:
+            self.owner.apply(DevicesAdded(starts, self._options, self._values.params.network.aseba_shared))
+        for endpoints in self._robots:
+            if endpoints.robot in new:
+                endpoints.publish()
 
     def _apply_program(
         self, endpoints: DeviceEndpoints, old: Mapping[str, Any], change: ParameterChange, *, is_switched: bool
@@ -244,14 +309,17 @@ class RobotSet(Sequence[DeviceEndpoints]):
 
     def _start_program(self, endpoints: DeviceEndpoints, share: Assignment | None) -> None:
         """Start a robot with its program or with a built-in behavior."""
+        endpoints.load(*self._started(endpoints, share))
+
+    def _started(self, endpoints: DeviceEndpoints, share: Assignment | None) -> tuple[Assignment | None, str]:
+        """Return the program of a robot and the built-in behavior that it is switched on with, if any."""
+        if endpoints.robot in self._outside:
+            self._outside[endpoints.robot].outputs.start_program()
         for note in share.notes if share is not None else ():
             self._node.get_logger().warning(f"{endpoints.names.name or 'robot'}: {note}")
         if share is None and self._values.params.layout != THYMIO:  # the reference playground has no menu
             share = Assignment(None)
-        if share is None or self._behaviour:
-            endpoints.start(self._behaviour or MENU, share)
-        else:
-            endpoints.load(share.program, share.notes)
+        return share, self._behaviour or ("" if share is not None else MENU)
 
 
 def _program(share: Assignment | None) -> object:

@@ -18,11 +18,11 @@ from thymio_sim_ros.device.programs.status import FAULT, RUNNING, DeviceStatus
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import RobotNames
 
-__all__ = ["Loaded", "StatusEndpoints", "describe_position"]
+__all__ = ["LoadedProgram", "StatusEndpoints", "describe_position"]
 
 
 @dataclass(frozen=True, slots=True)
-class Loaded:
+class LoadedProgram:
     """A loaded program: topic words of its events, notes for the user, breakpoints."""
 
     program: ThymioProgram
@@ -45,7 +45,7 @@ class StatusEndpoints:
         self._status = node.create_publisher(DiagnosticStatus, names.topic("_aseba/status"), qos.TRANSIENT_LOCAL)
         self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.TRANSIENT_LOCAL)
 
-    def set_program(self, loaded: Loaded, spoken: str) -> None:
+    def set_program(self, loaded: LoadedProgram, spoken: str) -> None:
         """Publish the target of a changed program; help texts are in the language `spoken`. The status follows."""
         self._last = None
         self._constant = _constant(loaded)
@@ -97,7 +97,7 @@ def describe_position(status: DeviceStatus) -> str:
     return f"{status.state} at line {status.line} in {status.event}"
 
 
-def _constant(loaded: Loaded) -> list[KeyValue]:
+def _constant(loaded: LoadedProgram) -> list[KeyValue]:
     """Return the values that do not change while a program runs."""
     program, points = loaded.program, loaded.breakpoints
     warnings = [

@@ -37,16 +37,23 @@ _ELEMENT = re.compile(r"(?P<name>.+)\[(?P<index>\d{1,5})\]")
 
 
 class VariableEndpoints:
-    """Reads and writes the variables of a device; `changed` is called after a write."""
+    """Reads and writes the variables of a device."""
 
     def __init__(
-        self, node: Node, names: RobotNames, device: RobotDevice, changed: Callable[[], None], *, language: str
+        self,
+        node: Node,
+        names: RobotNames,
+        device: Callable[[], RobotDevice],
+        write: Callable[[str, Sequence[int]], None],
+        *,
+        language: str,
     ) -> None:
+        """`device` returns the device of the robot; `write` writes a whole variable."""
         self.language = language
         self._node = node
         self._names = names
         self._device = device
-        self._changed = changed
+        self._write_variable = write
         self._watched: dict[str, Any] = {}
         self._published: dict[str, tuple[int, ...]] = {}
         self._places: list[tuple[str, int, int]] = []
@@ -63,7 +70,7 @@ class VariableEndpoints:
 
     def set_program(self, watch: Sequence[str]) -> None:
         """Set up the variables of a new program, and topics for the watched ones that exist."""
-        places = self._device.variables.addresses()
+        places = self._device().variables.addresses()
         self._places = sorted(((name, *place) for name, place in places.items()), key=lambda item: item[1])
         self._layout = convert_readings.layout([(name, size) for name, _, size in self._places])
         self._last_table = []
@@ -80,7 +87,7 @@ class VariableEndpoints:
     def publish_changes(self) -> None:
         """Publish variables that changed since the last call."""
         for name, publisher in self._watched.items():
-            words = self._device.variables.get(name)
+            words = self._device().variables.get(name)
             if self._published.get(name) != words:
                 self._published[name] = words
                 publisher.publish(Int16MultiArray(data=list(words)))
@@ -98,7 +105,7 @@ class VariableEndpoints:
         return full_name(self._node, self._names.topic(f"aseba/variables/{word}"))
 
     def _publish_table(self) -> None:
-        words = self._device.variables.words()
+        words = self._device().variables.words()
         now_s = time.monotonic()
         if words != self._last_table or now_s - self._last_table_s >= AT_LEAST_EVERY_S:
             self._last_table, self._last_table_s = words, now_s
@@ -111,7 +118,7 @@ class VariableEndpoints:
     def _value(self, name: str) -> ParameterValue:
         whole, index = _element(name)
         try:
-            words = self._device.variables.get(whole)
+            words = self._device().variables.get(whole)
             found = words if index is None else (words[index],)
         except (KeyError, IndexError):
             return ParameterValue()
@@ -119,7 +126,6 @@ class VariableEndpoints:
 
     def _on_set(self, request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
         response.results = [self._set(item.name, item.value) for item in request.parameters]
-        self._changed()
         return response
 
     def _set(self, name: str, value: ParameterValue) -> SetParametersResult:
@@ -134,15 +140,15 @@ class VariableEndpoints:
     def _write(self, name: str, words: list[int]) -> None:
         whole, index = _element(name)
         if index is None:
-            self._device.variables.set(whole, words)
+            self._write_variable(whole, words)
             return
-        all_words = list(self._device.variables.get(whole))
+        all_words = list(self._device().variables.get(whole))
         if index >= len(all_words):
             raise IndexError(f"{whole}: found element {index}, expected 0 to {len(all_words) - 1}")
         if len(words) != 1:
             raise ValueError(f"{name}: found {len(words)} integers, expected 1")
         all_words[index] = words[0]
-        self._device.variables.set(whole, all_words)
+        self._write_variable(whole, all_words)
 
     def _on_list(self, request: ListParameters.Request, response: ListParameters.Response) -> ListParameters.Response:
         names = [name for name, _, _ in self._places if _is_wanted(name, list(request.prefixes), request.depth)]
@@ -157,7 +163,7 @@ class VariableEndpoints:
         return response
 
     def _descriptor(self, name: str) -> ParameterDescriptor:
-        place = self._device.variables.addresses().get(name)
+        place = self._device().variables.addresses().get(name)
         if place is None:
             return ParameterDescriptor(name=name)
         return ParameterDescriptor(

@@ -46,7 +46,7 @@ SIMILAR = 0.8
 MAX_NAMES = 3
 """Largest number of names that a warning proposes."""
 
-_OURS = ("simulator", "aseba_runtime", "_aseba_runtime", "foxglove_bridge", "_foxglove_subscriber")
+_OURS = ("simulator", "aseba_runtime", "foxglove_bridge", "_foxglove_subscriber")
 """Nodes of this package with many endpoints, whose names come from the graph or fit: they are skipped, since queries
 cost time."""
 _OF_EVERY_NODE = frozenset({

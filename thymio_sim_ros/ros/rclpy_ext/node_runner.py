@@ -111,7 +111,8 @@ class HasAccessUrls(Protocol):
 def announce(nodes: Iterable[AnnouncedNode]) -> Iterator[RunnableNode]:
     """Yield the nodes; log each startup message, and print URLs with tokens to standard output."""
     for node in nodes:
-        node.node.get_logger().info(node.startup_message)
+        for part in (node, *getattr(node, "attached", ())):
+            part.node.get_logger().info(part.startup_message)
         if isinstance(node, HasAccessUrls) and node.access_urls:
             with suppress(OSError):  # standard output is closed
                 print(node.access_urls, flush=True)
@@ -142,6 +143,11 @@ def _no_op() -> None:
     """Task that marks the end of the queue."""
 
 
+def nodes_of(runnable: RunnableNode) -> tuple[Node, ...]:
+    """The ROS nodes that the executor of a node spins."""
+    return (runnable.node, *(runnable.peers if isinstance(runnable, HasPeers) else ()))
+
+
 def run_node(runnable: RunnableNode, context: Context, stop: Callable[[], bool]) -> None:
     """Spin a node on its own executor until `stop()` is true or the context is shut down.
 
@@ -149,7 +155,7 @@ def run_node(runnable: RunnableNode, context: Context, stop: Callable[[], bool])
     a lesson. After `MAX_CONSECUTIVE_ERRORS` failed iterations in a row the exception is raised.
     """
     executor = make_executor(context)
-    nodes = (runnable.node, *(runnable.peers if isinstance(runnable, HasPeers) else ()))
+    nodes = nodes_of(runnable)
     for node in nodes:
         executor.add_node(node)
     errors = 0

@@ -10,7 +10,6 @@ from rclpy.node import Node
 
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames
-from thymio_sim_ros.ros.interface.raw_topic import RawTopic
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.simulator.clock_publisher import ClockPublisher
@@ -51,7 +50,6 @@ class SimulatorEndpoints:
         self.world = WorldEndpoints(node, control, publish_map=params.publish_map, map_frame=params.map_frame)
         self.demand = SubscriberDemand(params.periods_ns)
         self.robots = RobotEndpointSet(make, params.naming)
-        self._raw = RawTopic(self.world.raw, self.demand)
         options = replace(params.transform_options, is_localized=is_localized)
         self._transforms = Transforms(node, self.demand, options)
         self._polled_ns = self._poll_period_ns = 0
@@ -66,7 +64,6 @@ class SimulatorEndpoints:
         self._polled_ns = time.monotonic_ns()
         self._poll_period_ns = max(POLL_PERIOD_NS, 100 * POLL_COST_NS * self.robots.topics)
         self.robots.poll()
-        self._raw.poll()
         self._transforms.poll()
         self.clock.poll()
 
@@ -88,10 +85,8 @@ class SimulatorEndpoints:
         for robot, sensor, reading in select_rows(result.readings, self.demand.sensors):
             endpoints = self.robots[robot]
             endpoints.publish(sensor, reading)
-            self._raw.add(endpoints.names.name, sensor, reading)
             if sensor == POSE_SENSOR:
                 self._transforms.add_reading(endpoints.names, reading, world.robots[robot].wheels.angles_rad)
-        self._raw.flush()
         self._transforms.flush()
 
     def publish_poses(self, world: World) -> None:

@@ -30,12 +30,11 @@ from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
-from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError, announce, run_main
+from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
 from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
-from thymio_sim_ros.ros.simulator.local_commands import LocalCommands
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams, SimulatorParams
 from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_engine
@@ -56,7 +55,7 @@ class Simulator:
     """The simulator node.
 
     `runner` owns the engine, `endpoints` what is published, `params` the current parameters. Invariant: only `run_once`
-    and callbacks of `node` use them. `local_commands` takes commands from other threads.
+    and callbacks of `node` use them.
     """
 
     def __init__(
@@ -101,9 +100,10 @@ class Simulator:
             self.node.destroy_node()
             raise StartError(str(error)) from error
         self._last_heartbeat_ns = 0
+        self.attached: Sequence[AnnouncedNode] = ()
+        """Nodes that the thread of this one runs as well, since they use the engine."""
         self._messages = MessageReports(self.node)
         self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot, is_localized=is_localized)
-        self.local_commands = LocalCommands(self.node, self.endpoints.robots.receive)
         extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
         self._robot_options = replace(values.endpoint_options, extra=extra)
         if logged is None:
@@ -142,10 +142,14 @@ class Simulator:
         where = describe_domain(os.environ, self.node.context.get_domain_id())
         return f"Playground {self.runner.prepared.name}, robots in {robots or 'none'}; {where}"
 
+    @property
+    def peers(self) -> Sequence[Node]:
+        """The ROS nodes that the executor of this one spins as well."""
+        return [attached.node for attached in self.attached]
+
     def run_once(self, executor: Executor) -> None:
         """Execute the ticks that are due, then handle messages until the next tick with a visible result."""
         now_ns = time.monotonic_ns()
-        self.local_commands.deliver()
         self.endpoints.poll_if_due(now_ns)
         self.runner.run_due_ticks(now_ns)
         if now_ns - self._last_heartbeat_ns >= HEARTBEAT_NS:
@@ -154,12 +158,16 @@ class Simulator:
         self.runner.spin(executor)
 
     def stop(self) -> None:
-        """Close the run log."""
+        """Stop the attached nodes, and close the run log."""
+        for attached in self.attached:
+            attached.stop()
         self._recording.close()
 
     def close(self) -> None:
         """Close the log and destroy the node."""
         self.stop()
+        for attached in self.attached:
+            attached.close()
         self._loader.close()
         if self._interfaces is not None:
             self._interfaces.close()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
 
 from thymio_sim_ros.ros.interface.names import Naming, RobotNames
 from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints, first_words
@@ -17,7 +16,6 @@ class RobotEndpointSet:
     def __init__(self, make: Callable[[str, RobotNames], RobotEndpoints], naming: Naming) -> None:
         self._make, self._naming = make, naming
         self._endpoints: dict[str, RobotEndpoints] = {}
-        self._by_ros_name: dict[str, RobotEndpoints] = {}
 
     def __getitem__(self, robot: str) -> RobotEndpoints:
         return self._endpoints[robot]
@@ -36,12 +34,6 @@ class RobotEndpointSet:
     def names(self) -> dict[str, RobotNames]:
         """ROS names by name in the world, in the order of the world."""
         return {robot: endpoints.names for robot, endpoints in self._endpoints.items()}
-
-    def receive(self, ros_name: str, topic: str, message: Any) -> None:
-        """Handle a message for a robot that did not arrive by DDS; dropped if the robot has been removed."""
-        endpoints = self._by_ros_name.get(ros_name)
-        if endpoints is not None:
-            endpoints.receive(topic, message)
 
     def check_name(self, robot: str) -> None:
         """Raise ValueError if the name is the first word of topics of a robot without a ROS name."""
@@ -72,4 +64,3 @@ class RobotEndpointSet:
             else:
                 endpoints.close()
         self._endpoints = {robot: kept.get(robot) or self._make(robot, name) for robot, name in names.items()}
-        self._by_ros_name = {endpoints.names.name: endpoints for endpoints in self._endpoints.values()}

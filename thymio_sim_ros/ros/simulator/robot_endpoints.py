@@ -172,11 +172,10 @@ class RobotEndpoints:
             self._description.publish(String(data=urdf(names)))
         known = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
         inputs = [one for one in known if one.topic not in options.left_out]
-        self._handlers = {one.topic: self._handler(one) for one in inputs}
         self._subscriptions: list[tuple[Any, Any]] = [
             (
                 chosen := self._control if one.is_of_operator else node,
-                chosen.create_subscription(one.type, names.topic(one.topic), self._handlers[one.topic], one.profile),
+                chosen.create_subscription(one.type, names.topic(one.topic), self._handler(one), one.profile),
             )
             for one in inputs
         ]
@@ -213,10 +212,6 @@ class RobotEndpoints:
                 target.template = Template.checked(row.patch, message, reading, content)
             target.is_stale = row.profile == qos.TRANSIENT_LOCAL
             target.publisher.publish(message)
-
-    def receive(self, topic: str, message: Any) -> None:
-        """Handle a message for one of the subscribed topics that did not arrive by DDS."""
-        self._handlers[topic](message)
 
     @property
     def topics(self) -> int:

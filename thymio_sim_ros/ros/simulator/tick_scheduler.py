@@ -32,6 +32,8 @@ class TickScheduler:
 
         With `batch_ticks` above 1, so many ticks are deferred also if a subscriber would see their results.
         """
+        self.is_prompt = False
+        """Whether no tick is deferred, since events of programs have receivers at any time."""
         self._batch_ticks = batch_ticks
         self._demand, self._clock = demand, clock
         self._prompt_until_ns = 0
@@ -86,9 +88,13 @@ class TickScheduler:
             self._late_ticks += max(0, ticks - expected)
         return ticks
 
+    def drop(self, ticks: int) -> None:
+        """Take back ticks of `pop_owed` that are not executed, since they would take too long."""
+        self._pacer.drop(ticks)
+
     def _wanted_ticks(self, now_ns: int) -> int:
         """Return the number of ticks until the next one with a result for a subscriber or a command."""
-        if now_ns < self._prompt_until_ns:
+        if self.is_prompt or now_ns < self._prompt_until_ns:
             return 1
         if self._batch_ticks > 1:
             return min(self._batch_ticks, self._max_deferred_ticks)

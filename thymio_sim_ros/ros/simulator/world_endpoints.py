@@ -35,7 +35,7 @@ OBJECTS_GAP_NS = 50_000_000
 OVERVIEW_GAP_NS = 400_000_000
 """Shortest wall time between two overviews."""
 
-_WORDS = ("~/_state", "~/_raw", "~/_overview", "~/_playgrounds", "~/_sensors", "_markers", "_markers/objects")
+_WORDS = ("~/_state", "~/_overview", "~/_playgrounds", "~/_sensors", "_markers", "_markers/objects")
 """Topics that are always published here; the clock and the diagnostics have publishers of their own."""
 
 _SHOWING = ("~/_overview", "_markers", "_markers/objects", "map")
@@ -56,8 +56,6 @@ class WorldState:
     now_ns: int
     robots: Mapping[str, RobotNames]
     movables: tuple[str, ...] = ()
-    raw: str = ""
-    """Topic with the integer readings of all robots."""
     fallen: frozenset[str] = frozenset()
     """Names (in the world) of the robots that fell off an edge."""
     faults: tuple[str, ...] = ()
@@ -94,7 +92,7 @@ class SceneMessages:
 
 
 class WorldEndpoints:
-    """Publishers for the world as a whole: state, playgrounds, markers, map, raw readings."""
+    """Publishers for the world as a whole: state, playgrounds, markers, map."""
 
     def __init__(
         self, node: Node, control: Node | LocalNode, *, publish_map: bool = False, map_frame: str = MAP_FRAME
@@ -114,14 +112,9 @@ class WorldEndpoints:
         self._last_objects_ns = self._last_overview_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 
-    @property
-    def raw(self) -> Any:
-        """The publisher of the integer readings of all robots."""
-        return self._publishers["~/_raw"]
-
     def publish_state(self, state: WorldState) -> None:
         """Publish the retained state as JSON."""
-        if self._is_closed:  # the robots of the state are for runtimes, the rest describes the world
+        if self._is_closed:  # who the robots are may be known, the rest describes the world
             state = replace(state, playground="", title="", notes=(), movables=())
         self._publishers["~/_state"].publish(String(data=state.as_json()))
 

@@ -33,6 +33,9 @@ from thymio_sim_ros.sim.world import World
 
 __all__ = ["WorldRunner"]
 
+SLICE_NS = 50_000_000
+"""Wall time after which messages have their turn, although ticks are owed: those are dropped."""
+
 MAX_NOTES = 20
 """Number of notes, and of faults of other nodes, in the state; the log has all of them."""
 
@@ -69,6 +72,12 @@ class WorldRunner:
         self._is_spinning = False
         """Whether callbacks may execute deferred ticks: not within a tick, nor without a thread that runs the node."""
         self._published_fallen: frozenset[str] = frozenset()
+        self.on_tick: Callable[[], None] = lambda: None
+        """Called after each tick, when its readings are published."""
+        self.on_robots: Callable[[bool], None] = lambda is_new: None
+        """Called when robots have come or gone, or for another engine (True)."""
+        self.on_reset: Callable[[], None] = lambda: None
+        """Called after a reset."""
 
     @property
     def world(self) -> World:
@@ -87,6 +96,7 @@ class WorldRunner:
         self._logged = None
         self.prepared, self.engine = prepared, engine
         self.start()
+        self.on_robots(True)
         # Parts of the world before refer to each other; the collector, which does not count their megabytes, is late.
         gc.collect()
 
@@ -137,6 +147,8 @@ class WorldRunner:
         """Reset world, time and noise to the start."""
         self.engine.reset()
         self._publish_start()
+        self.on_robots(False)
+        self.on_reset()
 
     def spawn(self, start: RobotStart) -> None:
         """Add a robot on a ground.
@@ -164,6 +176,7 @@ class WorldRunner:
         """Create or destroy topics and frames if robots were added or removed."""
         if self._endpoints.update_robots(self.world.robots):
             self.publish_state()
+            self.on_robots(False)
 
     def state(self) -> WorldState:
         """Return the state for `~/_state` and the diagnostics."""
@@ -178,7 +191,6 @@ class WorldRunner:
             now_ns=self.world.now_ns,
             movables=self.world.movables,
             robots=self._endpoints.robots.names,
-            raw=self._endpoints.world.raw.topic_name,
             fallen=self._fallen(),
             faults=(*self._messages.faults, *map(str, self._connections.unconnected))[:MAX_NOTES],
         )
@@ -189,14 +201,19 @@ class WorldRunner:
         self._published_fallen = state.fallen
         self._endpoints.world.publish_state(state)
 
-    def _advance(self, ticks: int) -> None:
+    def _advance(self, ticks: int, until_ns: int | None = None) -> None:
+        """Execute ticks; those that do not begin before `until_ns` of wall time are dropped."""
         endpoints = self._endpoints
         self.update_robots()
-        for _ in range(ticks):
+        for done in range(ticks):
+            if until_ns is not None and done and time.monotonic_ns() >= until_ns:
+                self.scheduler.drop(ticks - done)
+                break
             if self._logged is not None:
                 self._logged.repeat_inputs(self.engine)
             result = self.engine.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
+            self.on_tick()
             if self.paused:
                 endpoints.clock.publish(result.now_ns, last=True)
         if not self.paused:
@@ -212,9 +229,10 @@ class WorldRunner:
         return frozenset(name for name, robot in self.world.robots.items() if robot.is_fallen)
 
     def _run_owed(self) -> None:
-        ticks = self.scheduler.pop_owed(time.monotonic_ns(), self.world.now_ns)
+        wall_ns = time.monotonic_ns()
+        ticks = self.scheduler.pop_owed(wall_ns, self.world.now_ns)
         if ticks:
-            self._advance(ticks)
+            self._advance(ticks, wall_ns + SLICE_NS)
 
     def _run_guarded(self, act: Callable[[], None]) -> bool:
         """Call `act`; on an internal error log it, pause and return False (docs/architecture.md, "Errors")."""

@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
-from std_msgs.msg import Int16MultiArray, String
+from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros.ros.interface import qos
@@ -33,15 +33,9 @@ TOPICS: Mapping[str, WorldTopic] = {
     "~/_state": WorldTopic(
         String,
         "1, change",
-        "JSON: playground, paused, factors, seed, ns, robots and which of them fell, movable objects, the "
-        "topic `~/_raw`, what is wrong with endpoints and messages of other nodes",
+        "JSON: playground, paused, factors, seed, ns, robots and which of them fell, movable objects, what is wrong "
+        "with endpoints and messages of other nodes",
         qos.TRANSIENT_LOCAL,
-    ),
-    "~/_raw": WorldTopic(
-        Int16MultiArray,
-        "≤ 100",
-        "integer readings of all robots: one dimension `robot/sensor` per reading",
-        qos.EVENTS,
     ),
     "~/_overview": WorldTopic(
         String,

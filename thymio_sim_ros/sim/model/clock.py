@@ -128,6 +128,11 @@ class Pacer:
         self._measure(monotonic_ns)
         return self._grant(ticks)
 
+    def drop(self, ticks: int) -> None:
+        """Take back ticks that were owed and are not done."""
+        self.dropped_ticks += ticks
+        self._window_ticks -= ticks
+
     def wait_ns(self, monotonic_ns: int, ticks: int = 1) -> int:
         """The wall time in ns until this number of ticks is due; 0 if they are owed already."""
         if self._next_due_ns is None or not self._factor:

@@ -26,7 +26,7 @@ from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections, wrong_qos
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
-from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
+from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor, nodes_of
 from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
@@ -137,7 +137,8 @@ class Ros:
 
     def live(self, life: Any) -> Any:
         """Add a node of this package (`RunnableNode`) to the test's executor; it is closed when the test ends."""
-        self._executor.add_node(life.node)
+        for node in nodes_of(life):
+            self._executor.add_node(node)
         self._lives.append(life)
         return life
 
@@ -262,7 +263,8 @@ class Ros:
     def end(self, life: Any) -> None:
         """Close a node added by `live` before the test ends."""
         self._lives.remove(life)
-        self._forget(life.node)
+        for node in nodes_of(life):
+            self._forget(node)
         life.close()
 
     def _forget(self, node: Node) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
-from thymio_sim_ros.device.programs.program_assignment import RobotId
+from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.files.loading import robot_ids
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
@@ -93,15 +93,7 @@ class Simulation:
         return next(iter(self))
 
     def run_program(self, runtime: AsebaRuntime) -> None:
-        """Add an Aseba runtime node: its machines run in every tick, and their events are recorded.
-
-        Waits until the node knows the robots of the simulator.
-        """
-        if runtime.values.params.follow_simulator:
-            wanted = [names.name for names in self.simulator.endpoints.robots.names.values()]
-            self.ros.until(
-                lambda: [ports.names.name for ports in runtime.robots] == wanted, what="the runtime knows the robots"
-            )
+        """Add an Aseba runtime node, whose programs the engine runs, and record their events."""
         self._runtimes.append(runtime)
         self._subscribe_to_events()
 
@@ -117,7 +109,7 @@ class Simulation:
         self.step(seconds)
 
     def tick(self) -> None:
-        """Advance by one tick of 10 ms, handle all pending messages, and continue long handlers of programs."""
+        """Advance by one tick of 10 ms, and handle all pending messages."""
         __tracebackhide__ = True
         if self.ros.programs.running:
             self.ros.programs.take_turns(self.world.now_ns + TICK_NS)
@@ -126,10 +118,6 @@ class Simulation:
         self._subscribe_to_events()
         for _ in range(HOPS):
             self.ros.deliver()
-        for runtime in self._runtimes:
-            for ports in runtime.robots:
-                if ports.is_busy:
-                    ports.run()
         for name, thymio in self.robots.items():
             robot = self.world.robots.get(name)
             if robot is not None:
@@ -175,14 +163,14 @@ class Simulation:
         ports = self.machine(robot)
         if ports is None:
             raise LookupError(_NO_MACHINE.format(robot))
-        ports.load(programs_of(program, {robot: self._id_of(robot)}, self._folder)[robot])
+        ports.load(Assignment(programs_of(program, {robot: self._id_of(robot)}, self._folder)[robot]))
 
     def set_variable(self, robot: str, variable: str, words: Sequence[int]) -> None:
         """Write a whole variable of the program of a robot. Raises LookupError if it has no machine."""
         ports = self.machine(robot)
         if ports is None:
             raise LookupError(_NO_MACHINE.format(robot))
-        ports.device.variables.set(variable, words)
+        self.engine.set_variable(robot, variable, words)
 
     def _id_of(self, robot: str) -> RobotId:
         names = list(self.simulator.endpoints.robots.names)
