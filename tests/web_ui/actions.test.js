@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Actions, LARGEST_PLAYGROUND, LARGEST_PROGRAM } from "../../web_ui/input/actions.js";
+import { LOAD_SERVICE } from "../../web_ui/input/check_service.js";
 import { Store } from "../../web_ui/state/store.js";
 
 /** @typedef {import("../../web_ui/state/index.js").Message} Message */
@@ -82,19 +83,20 @@ test("of several robots, only the selected one is stopped", async () => {
 
 test("a program goes to the selected robot, to all, or to the only one", async () => {
   const { actions, asked, store } = prepared();
-  /** @param {() => Promise<any>} act  @returns {Promise<string[]>} */
-  const namesAfter = async (act) => {
+  /** The texts of the only request. @param {() => Promise<any>} act */
+  const asks = async (act) => {
     await act();
-    return asked.splice(0).flatMap(([, given]) => given.map((/** @type {any} */ { name }) => name.replace("/aseba_runtime.", "")));
+    const [[, service, { parameters }], ...others] = asked.splice(0);
+    assert.deepEqual([service, others], [LOAD_SERVICE, []]);
+    return parameters.map((/** @type {any} */ { name, value }) => `${name}=${value.string_value}`).join(" ");
   };
-  assert.deepEqual(await namesAfter(() => actions.load("x.aesl", "x")), ["script.name", "script.source"]);
+  assert.equal(await asks(() => actions.load("x.aesl", "x")), "source=x name=x.aesl language=de");
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
-  assert.deepEqual(await namesAfter(() => actions.load("y.aesl", "y")), ["robots.a.script.name", "robots.a.script.source"]);
-  assert.deepEqual(await namesAfter(() => actions.loadExample("explorer")), ["robots.a.script.path"]);
+  assert.equal(await asks(() => actions.load("y.aesl", "y")), "source=y name=y.aesl language=de robot=a");
+  assert.equal(await asks(() => actions.loadExample("explorer")), "behaviour=explorer language=de robot=a");
   store.dispatch({ type: "address", all: true });
-  const released = ["robots.a.script.path", "robots.a.script.source", "robots.b.script.path", "robots.b.script.source"];
-  assert.deepEqual(await namesAfter(() => actions.load("z.aesl", "z")), [...released, "script.name", "script.source"]);
-  assert.deepEqual(await namesAfter(() => actions.loadExample("explorer")), [...released, "behaviour", "behaviour"]);
+  assert.equal(await asks(() => actions.load("z.aesl", "z")), "source=z name=z.aesl language=de");
+  assert.equal(await asks(() => actions.loadExample("explorer")), "behaviour=explorer language=de");
 });
 
 test("stop ends every program first, and then sets every speed to zero", async () => {
@@ -131,15 +133,12 @@ test("a rejected call is reported", async () => {
 test("a program file is sent to the runtime with its name", async () => {
   const { actions, asked, store } = prepared();
   await actions.loadFile(new File(["onevent prox\n"], "line.aesl"));
-  assert.deepEqual(asked, [
-    [
-      "set",
-      [
-        { name: "/aseba_runtime.script.name", value: "line.aesl" },
-        { name: "/aseba_runtime.script.source", value: "onevent prox\n" },
-      ],
-    ],
-  ]);
+  const [[, service, { parameters }]] = asked;
+  assert.equal(service, LOAD_SERVICE);
+  assert.deepEqual(
+    parameters.map((/** @type {any} */ { value }) => value.string_value),
+    ["onevent prox\n", "line.aesl", "de"],
+  );
   assert.equal(store.state.uploads.program?.phase, "accepted");
 });
 
@@ -205,45 +204,11 @@ test("a simulator that cannot move objects is reported", async () => {
   assert.equal(store.state.notices.length, 1);
 });
 
-test("a behavior is a parameter of the runtime", async () => {
-  const { actions, asked } = prepared();
-  await actions.loadExample("menu");
-  assert.deepEqual(asked, [["set", [{ name: "/aseba_runtime.behaviour", value: "menu" }]]]);
-});
-
-test("loading the same again restarts programs, because setting the same value has no effect", async () => {
+test("the world starts again with a playground that it has", async () => {
   const { actions, asked, store } = prepared();
-  connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
-  store.dispatch({ type: "address", all: true });
   store.dispatch({ type: "parameters", parameters: [{ name: "/simulator.playground", value: "base" }] });
   await actions.loadPlayground("base");
-  assert.deepEqual(asked.splice(0).map(([, name]) => name).slice(1), ["/simulator/reset"]);
-  await actions.loadProgram("a.aesl", "onevent prox");
-  assert.equal(asked.splice(0).length, 1);
-  await actions.loadProgram("a.aesl", "onevent prox");
-  const [, ...then] = asked.splice(0);
-  assert.deepEqual(
-    then.map(([, what]) => what),
-    [
-      [{ name: "/aseba_runtime.behaviour", value: "" }],
-      "/a/aseba/reset",
-      "/b/aseba/reset",
-      "/a/aseba/run",
-      "/b/aseba/run",
-    ],
-  );
-  await actions.loadExample("menu");
-  assert.deepEqual(
-    asked.splice(0).map(([, given]) => given.at(-1)),
-    [
-      { name: "/aseba_runtime.behaviour", value: "" },
-      { name: "/aseba_runtime.behaviour", value: "menu" },
-    ],
-  );
-  connect(store, ["/a/_ground_truth/odom"], []);
-  await actions.loadExample("menu");
-  await actions.loadExample("menu");
-  assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/a/aseba/run"]);
+  assert.deepEqual(asked.map(([, name]) => name).slice(1), ["/simulator/reset"]);
 });
 
 test("a rejected program is explained in the language of the page", async () => {
@@ -251,13 +216,12 @@ test("a rejected program is explained in the language of the page", async () => 
   const value = { result: { successful: false, reason: JSON.stringify({ errors }) } };
   const { actions, asked, store } = prepared({ value });
   const client = /** @type {any} */ (actions.client);
-  client.setParameters = async () => ({ ok: false, message: "a.aesl: line 1, column 9: no event is called 'zzzzz'" });
   await actions.loadProgram("a.aesl", "onevent zzzzz");
   assert.deepEqual(store.state.uploads.program?.fault, { text: "kein Ereignis heißt 'zzzzz'", line: 1, column: 9 });
-  assert.deepEqual(asked[0][2].parameters[1], { name: "language", value: { type: 4, string_value: "de" } });
+  assert.deepEqual(asked[0][2].parameters[2], { name: "language", value: { type: 4, string_value: "de" } });
   client.call = async () => ({ ok: false, message: "gone" });
   await actions.loadProgram("a.aesl", "onevent zzzzz");
-  assert.equal(store.state.uploads.program?.fault?.text, "no event is called 'zzzzz'");
+  assert.equal(store.state.uploads.program?.fault?.text, "gone");
 });
 
 test("a touch lasts long enough to be polled by the robot", () => {

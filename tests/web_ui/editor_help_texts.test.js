@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { firstFault } from "../../web_ui/input/check_service.js";
+import { readLoaded } from "../../web_ui/input/check_service.js";
 import { HelpTexts } from "../../web_ui/editor/help_texts.js";
 import { RuntimeClient } from "../../web_ui/input/runtime_client.js";
 
@@ -47,8 +47,12 @@ test("without translated help the target's help is kept", async () => {
 test("the first error is reported, but not a failed check", () => {
   /** @param {string} kind */
   const answer = (kind) => ({
-    result: { reason: JSON.stringify({ errors: [{ line: 2, column: 3, length: 1, message: "falsch", kind, node: "" }] }) },
+    result: {
+      successful: false,
+      reason: JSON.stringify({ errors: [{ line: 2, column: 3, length: 1, message: "falsch", kind, node: "" }] }),
+    },
   });
-  assert.deepEqual(firstFault(answer("unknown-variable")), { text: "falsch", line: 2, column: 3 });
-  assert.equal(firstFault(answer("request")), null);
+  assert.deepEqual(readLoaded(answer("unknown-variable")).fault, { text: "falsch", line: 2, column: 3 });
+  assert.equal(readLoaded(answer("request")).fault, null);
+  assert.equal(readLoaded(answer("request")).message, "falsch");
 });

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { meetOtherTabs, openPages } from "../../web_ui/browser/other_tabs.js";
 import { newAesl } from "../../web_ui/editor/aesl.js";
 import { marks } from "../../web_ui/editor/marks.js";
-import { firstFault, notesOf, readVerdict } from "../../web_ui/input/check_service.js";
+import { LOAD_SERVICE, readLoaded, readVerdict } from "../../web_ui/input/check_service.js";
 import { EditorSession, eventKey } from "../../web_ui/editor/editor_session.js";
 import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
@@ -562,24 +562,24 @@ test("a setting that cannot be stored still takes effect", () => {
   assert.equal(storage.getItem("editor.fontSize"), null);
 });
 
-test("a program for all replaces the programs of single robots", async () => {
+test("a program is loaded by one request, for one robot or for all, in the language of the page", async () => {
   /** @type {any[]} */ const asked = [];
-  const client = { setParameters: async (/** @type {any} */ given) => (asked.push(given), { ok: true, message: "" }) };
+  const value = { result: { successful: true, reason: "" } };
+  const client = { call: async (/** @type {any[]} */ ...given) => (asked.push(given), { ok: true, message: "", value }) };
   const runtime = new RuntimeClient(/** @type {any} */ (client));
-  await runtime.load(null, "a.aesl", "x", ["anna", "paul"]);
-  await runtime.load("anna", "b.aesl", "y", ["anna", "paul"]);
+  const loaded = { ok: true, message: "", fault: null, notes: [] };
+  assert.deepEqual(await runtime.load(null, "a.aesl", "x", "de"), loaded);
+  await runtime.load("anna", "b.aesl", "y", "fr");
+  await runtime.loadBuiltIn("anna", "explorer", "it");
   assert.deepEqual(
-    asked.map((given) => given.map((/** @type {any} */ each) => `${each.name}=${each.value}`)),
+    asked.map(([service, { parameters }]) => [
+      service,
+      ...parameters.map((/** @type {any} */ { name, value }) => `${name}=${value.string_value}`),
+    ]),
     [
-      [
-        "/aseba_runtime.robots.anna.script.path=",
-        "/aseba_runtime.robots.anna.script.source=",
-        "/aseba_runtime.robots.paul.script.path=",
-        "/aseba_runtime.robots.paul.script.source=",
-        "/aseba_runtime.script.name=a.aesl",
-        "/aseba_runtime.script.source=x",
-      ],
-      ["/aseba_runtime.robots.anna.script.name=b.aesl", "/aseba_runtime.robots.anna.script.source=y"],
+      [LOAD_SERVICE, "source=x", "name=a.aesl", "language=de"],
+      [LOAD_SERVICE, "source=y", "name=b.aesl", "language=fr", "robot=anna"],
+      [LOAD_SERVICE, "behaviour=explorer", "language=it", "robot=anna"],
     ],
   );
 });
@@ -601,7 +601,8 @@ test("a hint is converted to a sentence and a change of the text", () => {
   const [mark] = marks("😀ab\n123456", { errors: [REFUSED], warnings: [] });
   assert.equal(mark.hint, "'do' belongs here");
   assert.deepEqual(mark.repair, { from: 4, to: 4, insert: " do" });
-  const answer = { result: { reason: JSON.stringify({ errors: [REFUSED], notes: [{ message: "guessed" }] }) } };
-  assert.equal(firstFault(answer)?.text, "expected 'do' ('do' belongs here)");
-  assert.deepEqual(notesOf(answer), ["guessed"]);
+  const reason = JSON.stringify({ errors: [REFUSED], notes: [{ message: "guessed" }] });
+  const { message, notes } = readLoaded({ result: { successful: false, reason } });
+  assert.equal(message, "expected 'do' ('do' belongs here)");
+  assert.deepEqual(notes, ["guessed"]);
 });

@@ -203,7 +203,7 @@ export class Actions {
 
   /** Start a built-in behavior on the addressed robots. @param {string} name */
   async loadExample(name) {
-    const answer = await this.runtime.loadBuiltIn(this.owner, name, this.#robots);
+    const answer = await this.runtime.loadBuiltIn(this.owner, name, this.language());
     this.#report(PARAMETERS.behavior, answer);
     return answer;
   }
@@ -213,10 +213,10 @@ export class Actions {
    *
    * @param {string} name
    * @param {string} text
-   * @returns {Promise<import("./runtime_client.js").Answer>}
+   * @returns {Promise<import("./runtime_client.js").Loaded>}
    */
   load(name, text) {
-    return this.runtime.load(this.owner, name, text, this.#robots);
+    return this.runtime.load(this.owner, name, text, this.language());
   }
 
   /** Send what a pupil has written to the class, which collects it (docs/classroom.md). @param {string} text */
@@ -229,8 +229,7 @@ export class Actions {
   /** Load a program file, and note in the state what became of it. @param {string} name @param {string} text */
   async loadProgram(name, text) {
     this.store.dispatch({ type: "upload", what: "program", name, text });
-    const { ok, message } = await this.load(name, text);
-    const fault = ok ? null : await this.runtime.fault(text, this.language());
+    const { ok, message, fault } = await this.load(name, text);
     this.store.dispatch({ type: "uploaded", what: "program", message: ok ? null : message, fault });
   }
 
@@ -284,10 +283,6 @@ export class Actions {
       if (isTooLarge) return refuse(tooLarge);
       await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));
     } else refuse(this.t("file.unknown", { name }));
-  }
-
-  get #robots() {
-    return Object.keys(this.store.state.robots);
   }
 
   /** @param {string} text */

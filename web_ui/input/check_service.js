@@ -1,4 +1,4 @@
-// Requests to the check service, and its answers.
+// Requests to the services that check and load programs, and their answers.
 
 /** @typedef {{ line: number, column: number, end_line: number, end_column: number, text: string }} Edit */
 /** @typedef {{ kind: string, message: string, edit: Edit | null }} Hint  the probable intention */
@@ -16,6 +16,7 @@
 /** @typedef {{ text: string, line: number | null, column: number | null }} Fault */
 
 export const CHECK_SERVICE = "/aseba_runtime/check";
+export const LOAD_SERVICE = "/aseba_runtime/load";
 const STRING = 4; // rcl_interfaces/msg/ParameterType
 const BOOL = 1;
 const STRING_ARRAY = 9;
@@ -54,8 +55,25 @@ export function targetRequest(language) {
   };
 }
 
+/** A request whose parameters are texts. @param {Record<string, string>} texts */
+export function textRequest(texts) {
+  const parameters = Object.entries(texts).map(([name, text]) => ({
+    name,
+    value: { type: STRING, string_value: text },
+  }));
+  return { parameters };
+}
+
+/** What became of a program that was to be loaded. @param {any} answer @returns {import("./runtime_client.js").Loaded} */
+export function readLoaded(answer) {
+  const { successful, reason } = answer.result;
+  const fault = firstFault(answer);
+  const refusal = successful || reason === "" ? "" : (readVerdict(answer).errors[0]?.message ?? "");
+  return { ok: successful, message: fault?.text ?? refusal, fault, notes: notesOf(answer) };
+}
+
 /** The first error of a whole file, translated; null if there is none. @param {any} answer @returns {Fault | null} */
-export function firstFault(answer) {
+function firstFault(answer) {
   const found = readVerdict(answer).errors.find(({ kind }) => kind !== NO_ANSWER);
   if (found === undefined) return null;
   const text = found.hint ? `${found.message} (${found.hint.message})` : found.message;
@@ -63,8 +81,8 @@ export function firstFault(answer) {
 }
 
 /** Notes about how the nodes of a file were interpreted, as sentences. @param {any} answer @returns {string[]} */
-export function notesOf(answer) {
-  const { notes = [] } = JSON.parse(answer.result.reason);
+function notesOf(answer) {
+  const { notes = [] } = parsed(answer);
   return notes.map((/** @type {{ message: string }} */ { message }) => message);
 }
 
@@ -75,6 +93,11 @@ export function mistakesIn(verdict) {
 
 /** @param {any} answer @returns {Verdict} */
 export function readVerdict(answer) {
-  const { errors = [], warnings = [], nodes = [] } = JSON.parse(answer.result.reason);
+  const { errors = [], warnings = [], nodes = [] } = parsed(answer);
   return { errors, warnings, use: nodes[0]?.use ?? null, variables: nodes[0]?.variables ?? [] };
+}
+
+/** @param {any} answer */
+function parsed(answer) {
+  return JSON.parse(answer.result.reason || "{}");
 }

@@ -3,14 +3,11 @@
 import { download } from "../browser/download.js";
 import { kindOf, sentenceOf } from "../browser/foreign_files.js";
 import { textOf } from "../browser/text_file.js";
-import { readAesl } from "../editor/aesl.js";
 import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "../editor/toolbox_file.js";
 import { LARGEST_PROGRAM } from "../input/actions.js";
-import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
 import { importerOf } from "./language_choice.js";
 
-const THYMIO = "thymio-II";
 /** Kinds of files that become programs of blocks, whatever their name is, and a name with their ending. */
 const BLOCKS = ["scratch", "blocks"];
 const IMPORTED = "blocks.sb3";
@@ -216,17 +213,14 @@ export class ProgramCommands {
   async load() {
     const { tab } = this.workspace;
     const { name, text: source } = this.workspace.current;
-    const { ok, message } = await this.actions.load(name, source);
+    const { ok, message, fault, notes } = await this.actions.load(name, source);
     if (!ok) {
-      await this.#reportRejection(name, source, message);
+      this.#reportRejection(message, fault);
       return false;
     }
     this.workspace.loaded(tab, source);
     this.report(this.t("editor.loaded", { name }), "good");
-    if (readAesl(source).nodes.some((node) => node.name !== THYMIO)) {
-      const notes = await this.runtime.notes(source, this.language);
-      if (notes.length > 0) this.report(`${this.t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
-    }
+    if (notes.length > 0) this.report(`${this.t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
     if (this.workspace.tab === tab) await this.view()?.loaded();
     this.redraw();
     return true;
@@ -239,11 +233,11 @@ export class ProgramCommands {
     this.report(this.t("editor.put", { name: this.workspace.current.name }), "good");
   }
 
-  /** @param {string} name @param {string} source @param {string} message  of the runtime */
-  async #reportRejection(name, source, message) {
-    const { text, line } = (await this.runtime.fault(source, this.language)) ?? locate(message, name);
+  /** @param {string} message  of the runtime @param {import("../input/check_service.js").Fault | null} fault */
+  #reportRejection(message, fault) {
+    const line = fault?.line ?? null;
     const place = line === null ? null : this.workspace.codeLine(line);
-    this.report(place === null ? text : this.t("check.error", { line: place, message: text }), "error");
+    this.report(place === null ? message : this.t("check.error", { line: place, message }), "error");
   }
 
   /** Run the program from its beginning; it is loaded if the robots have another one. */

@@ -67,7 +67,12 @@ def test_services_of_the_tables_are_there(ros, runtime):
     runtime(MAZE)
     wanted = [f"/{name}" for name in names(where=r"Trigger|srv/") if name.startswith(("aseba/", "_aseba/"))]
     assert len(wanted) == 10
-    ros.until(lambda: {*wanted, "/aseba_runtime/check"} <= {name for name, _ in ros.node.get_service_names_and_types()})
+    ros.until(
+        lambda: (
+            {*wanted, "/aseba_runtime/check", "/aseba_runtime/load"}
+            <= {name for name, _ in ros.node.get_service_names_and_types()}
+        )
+    )
 
 
 def test_parameters_of_the_tables_are_there_and_none_is_missing(ros, runtime):

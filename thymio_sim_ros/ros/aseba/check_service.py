@@ -7,7 +7,7 @@ service has a standard type and works in every tool and through every bridge.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -20,7 +20,7 @@ from rclpy.parameter import Parameter
 from thymio_sim_ros.device.editor.language_service import Question, check, describe_target, refusal
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["CheckService"]
+__all__ = ["CheckService", "RequestError", "refused", "values_of"]
 
 _TYPES = {
     "source": (Parameter.Type.STRING,),
@@ -32,7 +32,7 @@ _TYPES = {
 }
 
 
-class _RequestError(ThymioSimError, ValueError):
+class RequestError(ThymioSimError, ValueError):
     """An invalid request; the message says why."""
 
 
@@ -51,23 +51,33 @@ class CheckService:
         self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response
     ) -> SetParametersAtomically.Response:
         try:
-            given = _values(request.parameters)
-            question = Question(
-                source=given["source"],
-                layout=self._layout(),
-                language=given.get("language", "en"),
-                events=_pairs("events", given.get("events", ())),
-                constants=_pairs("constants", given.get("constants", ())),
-                robots=tuple(name for name in self._robots() if name),
-            )
-        except _RequestError as error:
-            response.result = SetParametersResult(successful=False, reason=json.dumps(refusal(str(error))))
-            return response
+            given = values_of(request.parameters, _TYPES)
+            if "source" not in given:
+                raise RequestError("found no parameter 'source', expected the text of a program")
+            response.result = self.check(given)
+        except RequestError as error:
+            response.result = refused(str(error))
+        return response
+
+    def check(self, given: Mapping[str, Any]) -> SetParametersResult:
+        """Return whether a text compiles, with the answer in JSON. Raises RequestError for wrong values."""
+        question = Question(
+            source=given["source"],
+            layout=self._layout(),
+            language=given.get("language", "en"),
+            events=_pairs("events", given.get("events", ())),
+            constants=_pairs("constants", given.get("constants", ())),
+            robots=tuple(name for name in self._robots() if name),
+        )
         successful, answer = _answer(question)
         if given.get("target"):
             answer = json.dumps(json.loads(answer) | {"target": describe_target(self._layout(), question.language)})
-        response.result = SetParametersResult(successful=successful, reason=answer)
-        return response
+        return SetParametersResult(successful=successful, reason=answer)
+
+
+def refused(reason: str) -> SetParametersResult:
+    """The answer to a request that cannot be executed."""
+    return SetParametersResult(successful=False, reason=json.dumps(refusal(reason)))
 
 
 @lru_cache(maxsize=16)
@@ -77,23 +87,22 @@ def _answer(question: Question) -> tuple[bool, str]:
     return not answer["errors"], json.dumps(answer)
 
 
-def _values(parameters: Sequence[ParameterMsg]) -> dict[str, Any]:
+def values_of(parameters: Sequence[ParameterMsg], types: Mapping[str, tuple[Parameter.Type, ...]]) -> dict[str, Any]:
+    """Return the values of a request by name. Raises RequestError for names or types that are not in `types`."""
     values: dict[str, Any] = {}
     for message in parameters:
         try:
             parameter = Parameter.from_parameter_msg(message)
         except ValueError as error:
             kind = message.value.type
-            raise _RequestError(f"{message.name}: found a value of unknown type {kind}") from error
-        if parameter.name not in _TYPES:
-            raise _RequestError(f"found parameter '{parameter.name}', expected one of {', '.join(_TYPES)}")
+            raise RequestError(f"{message.name}: found a value of unknown type {kind}") from error
+        if parameter.name not in types:
+            raise RequestError(f"found parameter '{parameter.name}', expected one of {', '.join(types)}")
         is_empty_list = parameter.value is not None and parameter.type_.name.endswith("ARRAY") and not parameter.value
-        expected = _TYPES[parameter.name]
+        expected = types[parameter.name]
         if parameter.type_ not in expected and not (is_empty_list and Parameter.Type.STRING_ARRAY in expected):
-            raise _RequestError(f"{parameter.name}: found {parameter.type_.name}, expected {expected[0].name}")
+            raise RequestError(f"{parameter.name}: found {parameter.type_.name}, expected {expected[0].name}")
         values[parameter.name] = parameter.value
-    if "source" not in values:
-        raise _RequestError("found no parameter 'source', expected the text of a program")
     return values
 
 
@@ -105,5 +114,5 @@ def _pairs(name: str, items: Iterable[str]) -> tuple[tuple[str, int], ...]:
         try:
             pairs.append((word.strip(), int(number)))
         except ValueError as error:
-            raise _RequestError(f"{name}: found '{item}', expected a name and a number, as 'ping 1'") from error
+            raise RequestError(f"{name}: found '{item}', expected a name and a number, as 'ping 1'") from error
     return tuple(pairs)

@@ -33,6 +33,7 @@ from thymio_sim_ros.ros.aseba import driver_input
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba.check_service import CheckService
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
+from thymio_sim_ros.ros.aseba.load_service import LoadService
 from thymio_sim_ros.ros.aseba.network_link import NetworkLink
 from thymio_sim_ros.ros.aseba.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.aseba.parameters import BEHAVIOUR, RuntimeParams, WrongValueError
@@ -165,6 +166,7 @@ class AsebaRuntime:
         wall = Clock(clock_type=ClockType.STEADY_TIME)
         self._variable_timer = VariableTimer(node, wall, self.robots, params.watch_rate)
         self._callbacks = ParameterCallbacks(node, self.values, self.robots, self._variable_timer)
+        self._load = LoadService(node, self._check, self._callbacks.load, robots=lambda: self.robots.names)
         self._jumps = node.get_clock().create_jump_callback(
             JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False),
             post_callback=self._on_jump,
@@ -193,7 +195,12 @@ class AsebaRuntime:
         runner.on_robots, runner.on_tick, runner.on_reset = follow, publish, robots.refresh
 
     def _is_set_again(self, parameter: str) -> bool:
-        """Whether a parameter acts even if its value is the same: the file may differ, or a tool's program runs."""
+        """Whether a parameter acts even if its value is the same.
+
+        It is so if its program is loaded anew, the file may differ, or a tool's program runs.
+        """
+        if getattr(self, "_callbacks", None) is not None and self._callbacks.started_again:
+            return True
         is_replaced = any(endpoints.program.is_foreign for endpoints in getattr(self, "robots", ()))
         return parameter.endswith("script.path") or (is_replaced and parameter.endswith("script.source"))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
@@ -34,9 +35,20 @@ class ParameterCallbacks:
         """The parameters that were checked last, until they are applied."""
         self.has_started = False
         """Whether the last change started a program, also one of the same name."""
+        self.started_again: frozenset[str] = frozenset()
+        """The robots that start by the change that is being made, also if it has the present values."""
         node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, values.last_set_text))
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
+
+    def load(self, values: Mapping[str, Any], robots: Collection[str]) -> SetParametersResult:
+        """Set parameters that choose the programs of these robots, and start them, all or none."""
+        self.started_again = frozenset(robots)
+        parameters = [Parameter(name, value=value) for name, value in values.items()]
+        try:
+            return self._node.set_parameters_atomically(parameters)
+        finally:
+            self.started_again = frozenset()
 
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
         if self._values.is_declaring:
@@ -55,7 +67,7 @@ class ParameterCallbacks:
         except (WrongValueError, *PROGRAM_ERRORS) as error:
             self._accepted = None
             return SetParametersResult(successful=False, reason=str(error))
-        self._accepted = ParameterChange(values, named, shares)
+        self._accepted = ParameterChange(values, named, shares, self.started_again)
         return SetParametersResult(successful=True)
 
     def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Assignment | None]:

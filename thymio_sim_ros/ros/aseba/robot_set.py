@@ -47,11 +47,15 @@ ROBOT_ERRORS = (SdCardError, SettingsError, TargetError, *PROGRAM_ERRORS)
 
 @dataclass(frozen=True, slots=True)
 class ParameterChange:
-    """Checked parameters: all values, the changes, and the program of each robot if a script changes."""
+    """Checked parameters: all values, the changes, and the program of each robot if a script changes.
+
+    The robots `started_again` start also if nothing changes for them.
+    """
 
     values: dict[str, Any]
     changes: dict[str, Any]
     shares: dict[str, Assignment | None]
+    started_again: frozenset[str] = frozenset()
 
 
 class RobotSet(Sequence[DeviceEndpoints]):
@@ -298,14 +302,16 @@ class RobotSet(Sequence[DeviceEndpoints]):
         share = change.shares.get(name, endpoints.share)
         is_other = script_parameters.script_of(old, name) != script_parameters.script_of(change.values, name)
         is_replaced = name in change.shares and endpoints.program.is_foreign  # a tool has loaded another program since
-        if is_other or is_replaced or _program(share) != _program(endpoints.share):
+        is_again = name in change.started_again
+        is_of_program = is_again and "behaviour" not in change.changes
+        if is_other or is_replaced or is_of_program or _program(share) != _program(endpoints.share):
             if "behaviour" not in change.changes:
                 self._behaviour = ""
             self._start_program(endpoints, share or Assignment(None))
             return True
-        if is_switched:
+        if is_switched or is_again:
             self._start_program(endpoints, share)
-        return is_switched
+        return is_switched or is_again
 
     def _start_program(self, endpoints: DeviceEndpoints, share: Assignment | None) -> None:
         """Start a robot with its program or with a built-in behavior."""
