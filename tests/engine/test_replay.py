@@ -12,6 +12,7 @@ from aseba_vm import protocol
 from tests.sim.builders import FLOOR, ROBOT, box, make, shipped
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.device.programs.status import PAUSED
+from thymio_sim_ros.engine.compressed_text import CompressedText
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.inputs import (
     BreakpointsSet,
@@ -374,3 +375,50 @@ def test_a_log_in_disorder_is_refused(tmp_path: Path, change: object, text: str)
     path.write_text("".join(f"{line}\n" for line in change(path.read_text().splitlines())))
     with pytest.raises(RunLogError, match=text):
         replay(path)
+
+
+def test_a_robot_with_a_device_that_was_added_is_gone_after_a_reset(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    engine = Engine(shipped("base"), load_program("var n\nonevent prox\nn++", "n"), seed=2)
+    log.begin("base", engine)
+    engine.run(0.5)
+    engine.spawn(RobotStart("late", 0.2, 0.2, 0.0))
+    engine.apply(DevicesAdded({"late": DeviceStart(2, load_program("var m = 1", "m"))}))
+    engine.run(0.5)
+    engine.reset()
+    assert engine.devices.keys() == engine.world.robots.keys() == {"thymio"}
+    engine.run(1.0)
+    log.close()
+    found = replay(path)
+    assert (found.runs, found.differs, found.is_complete) == (2, None, True)
+
+
+def test_two_logs_of_one_engine_are_the_same_run(tmp_path: Path) -> None:
+    engine = Engine(shipped("base"), load_program("motor.left.target = 100", "drive"))
+    first, second = tmp_path / "first.jsonl", tmp_path / "second.jsonl"
+    logs = [log_to(first), log_to(second)]
+    for log in logs:
+        log.begin("base", engine)
+    engine.run(0.5)
+    logs[0].close()
+    engine.run(1.0)
+    logs[1].close()
+    assert [(replay(path).ticks, replay(path).differs) for path in (first, second)] == [(50, None), (150, None)]
+
+
+@pytest.mark.parametrize("lost", [0, 30])
+def test_a_compressed_log_is_replayed_as_far_as_it_goes(tmp_path: Path, lost: int) -> None:
+    text = CompressedText(1_000_000)
+    log = RunLog(text)
+    engine = Engine(shipped("line"), read_program("line_follower"), seed=3)
+    log.begin("line", engine)
+    engine.run(30.0)
+    path = tmp_path / "run.jsonl.gz"
+    path.write_bytes(text.content()[: len(text.content()) - lost])
+    found = replay(path)
+    assert found.differs is None
+    assert (found.ticks == 3000) == (not lost)
+    log.close()
+    path.write_bytes(text.content())
+    assert replay(path).is_complete

@@ -93,8 +93,8 @@ class Engine:
         starts = _device_starts(list(self.world.robots), programs, behaviour)
         self.start = RunStart(playground, self.world.options, starts, options, shares_numbers)
         """What the run started with, since the last reset."""
-        self.recorder: Recorder | None = None
-        """Gets the inputs from now on, and digests of the state."""
+        self.recorders: list[Recorder] = []
+        """Get the inputs from now on, and digests of the state."""
         self._devices = Devices(self._choose_fed)
         self.devices: dict[str, AsebaDevice] = {}
         """The device of each robot that has one."""
@@ -184,8 +184,8 @@ class Engine:
             if isinstance(result.readings, ReadingTable):
                 self._feed(result.readings, result.now_ns)
             self._run_devices()
-        if self.recorder is not None and self.tick % DIGEST_TICKS == 0:
-            self.recorder.record_digest(self.tick, self.digest())
+        if self.recorders and self.tick % DIGEST_TICKS == 0:
+            self._record_digest()
         return result
 
     def run(self, seconds: float) -> None:
@@ -232,8 +232,9 @@ class Engine:
                 if self._devices.apply(happened):
                     self._choose_fed()
                     self._run_devices()
-        if self.recorder is not None and not _is_question(happened):
-            self.recorder.record(tick, happened)
+        if not _is_question(happened):
+            for recorder in self.recorders:
+                recorder.record(tick, happened)
 
     def post(self, robot: str, command: Command) -> None:
         """Post a command for a robot or an object; it takes effect in the next tick. Raises as `World.post` does."""
@@ -278,11 +279,10 @@ class Engine:
         """Reset world, noise and programs to the start."""
         self.apply(Reset())
 
-    def end(self) -> None:
-        """Give the last state to the recorder, which gets nothing more."""
-        recorder, self.recorder = self.recorder, None
-        if recorder is not None:
-            recorder.record_digest(self.tick, self.digest())
+    def release(self, recorder: Recorder) -> None:
+        """Give the last state to a recorder, which gets nothing more."""
+        self.recorders.remove(recorder)
+        recorder.record_digest(self.tick, self.digest())
 
     def digest(self) -> str:
         """Digest of the visible state, exact to the bit: poses, lights and variables, as 16 hexadecimal digits."""
@@ -319,10 +319,13 @@ class Engine:
         self._run_devices()
 
     def _reset(self) -> None:
-        if self.recorder is not None:
-            self.recorder.record_digest(self.tick, self.digest())
-        self.start = replace(self.start, devices=self._devices.starts())
+        if self.recorders:
+            self._record_digest()
         self.world.reset()
+        for name in self.devices.keys() - self.world.robots.keys():
+            del self.devices[name]
+            self._devices.remove(name)
+        self.start = replace(self.start, devices=self._devices.starts())
         for host in self.hosts.values():
             host.restart()
         self._begin()
@@ -333,6 +336,11 @@ class Engine:
             device.advance(self.now_ns)
         self._run_devices()
         self._choose_fed()
+
+    def _record_digest(self) -> None:
+        digest = self.digest()
+        for recorder in self.recorders:
+            recorder.record_digest(self.tick, digest)
 
     def _run_devices(self) -> None:
         for name, command in self._devices.run(self.now_ns):

@@ -26,13 +26,14 @@ with the CRC-32 of the result (`repr` of readings and contacts) of each tick sin
 
 from __future__ import annotations
 
+import gzip
 import json
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, BinaryIO, Protocol, cast
 
 import thymio_sim_ros
 from aseba_vm import AeslError
@@ -56,6 +57,7 @@ from thymio_sim_ros.sim.playground.reader import PlaygroundError
 __all__ = [
     "LogEnded",
     "LogEntry",
+    "LogFile",
     "RunLog",
     "RunLogError",
     "StateSeen",
@@ -127,29 +129,47 @@ LogEntry = WorldStarted | WorldReset | StateSeen | TicksChecked | LogEnded | tup
 """Content of a line; an input has the tick after which it came."""
 
 
+_GZIP = b"\x1f\x8b"
+"""First bytes of a file that is compressed with gzip."""
+
+
 def digest(result: object) -> str:
     """Digest of the result of a tick in a log of version 1: 8 hexadecimal digits."""
     return f"{zlib.crc32(repr(result).encode()):0{_DIGITS}x}"
 
 
+class LogFile(Protocol):
+    """A file for text."""
+
+    def write(self, text: str, /) -> int:
+        """Append text."""
+
+    def flush(self) -> None:
+        """Write what is buffered."""
+
+    def close(self) -> None:
+        """Write what is buffered, and close the file."""
+
+
 class RunLog:
-    """Writes a log; the recorder of one engine at a time. Invariant: the file always ends with a whole line.
+    """Writes a log; a recorder of one engine at a time. Invariant: the file always ends with a whole line.
 
     If the file can no longer be written, `on_error` is called once and the log ends; without it OSError is raised, with
     the name of the file.
     """
 
-    def __init__(self, file: TextIO, *, on_error: Callable[[OSError], None] | None = None) -> None:
-        self._file: TextIO | None = file
+    def __init__(self, file: LogFile, *, on_error: Callable[[OSError], None] | None = None) -> None:
+        self._file: LogFile | None = file
         self._on_error = on_error
         self._engine: Engine | None = None
         self._write({"format": FORMAT, "version": VERSION, "made_by": thymio_sim_ros.__version__})
 
     def begin(self, name: str, engine: Engine) -> None:
-        """Start to record an engine that has not run; `name` is that of its playground. The one before ends."""
+        """Start to record an engine at its start; `name` is that of its playground. The one before ends."""
         self._end()
         self._write({"world": write_start(name, engine.start)})
-        engine.recorder, self._engine = self, engine
+        engine.recorders.append(self)
+        self._engine = engine
 
     def record(self, tick: int, happened: Input) -> None:
         """Record an input after `tick` ticks; with a reset, what the devices start with from then on."""
@@ -178,7 +198,7 @@ class RunLog:
     def _end(self) -> None:
         engine, self._engine = self._engine, None
         if engine is not None:
-            engine.end()
+            engine.release(self)
 
     def _write(self, line: Mapping[str, Any]) -> None:
         if self._file is not None:
@@ -186,7 +206,7 @@ class RunLog:
                 self._file.write(_json(line) + "\n")
 
     @contextmanager
-    def _guarded(self, file: TextIO) -> Iterator[None]:
+    def _guarded(self, file: LogFile) -> Iterator[None]:
         """Context in which an OSError ends the log; data buffered by the file is dropped."""
         try:
             yield
@@ -207,8 +227,8 @@ def _json(line: Mapping[str, Any]) -> str:
 def read(path: Path) -> Iterator[tuple[int, LogEntry]]:
     """Yield number and content of the lines of a log after the first. Raises OSError or RunLogError."""
     number = 0
-    with path.open("rb") as file:
-        for number, text in enumerate(file, start=1):
+    with _opened(path) as file:
+        for number, text in enumerate(_lines(file), start=1):
             if number > 1 and not text.endswith(b"\n"):
                 return  # cut off within a line, or within a character
             try:
@@ -225,8 +245,21 @@ def read(path: Path) -> Iterator[tuple[int, LogEntry]]:
 
 def made_by(path: Path) -> str:
     """Version of the program that wrote a log. The log must be valid for `read`."""
-    with path.open("rb") as file:  # text would be decoded ahead, to where the log may be cut off
+    with _opened(path) as file:  # text would be decoded ahead, to where the log may be cut off
         return str(json.loads(file.readline()).get("made_by"))
+
+
+def _opened(path: Path) -> BinaryIO:
+    """Open a log, which may be compressed with gzip."""
+    with path.open("rb") as file:
+        is_compressed = file.read(len(_GZIP)) == _GZIP
+    return cast(BinaryIO, gzip.open(path)) if is_compressed else path.open("rb")
+
+
+def _lines(file: BinaryIO) -> Iterator[bytes]:
+    """The lines of a log, up to where a compressed one is cut off or damaged."""
+    with suppress(EOFError, zlib.error, gzip.BadGzipFile):
+        yield from file
 
 
 def _check_head(data: object) -> None:

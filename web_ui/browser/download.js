@@ -1,8 +1,8 @@
-// Saves a text as a file on the user's computer.
+// Saves a file on the user's computer.
 
-/** @param {string} name @param {string} text @param {string} type  MIME type */
-export function download(name, text, type) {
-  const address = URL.createObjectURL(new Blob([text], { type }));
+/** @param {string} name @param {string | Uint8Array<ArrayBuffer>} content @param {string} type  MIME type */
+export function download(name, content, type) {
+  const address = URL.createObjectURL(new Blob([content], { type }));
   const link = document.createElement("a");
   link.href = address;
   link.download = name;

@@ -1,5 +1,7 @@
-// The "?" of the header: what explains the page.
+// The "?" of the header: what explains the page, and the file that explains to others what happened.
 
+import { download } from "../browser/download.js";
+import { RUN_LOG } from "../input/actions.js";
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
@@ -8,8 +10,12 @@ import { menu } from "../ui/menu.js";
 const DOCUMENTATION = "./docs/index.html";
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
-export function helpMenuPanel({ text, tour, welcome }) {
+export function helpMenuPanel({ actions, store, text, tour, welcome }) {
   const t = text("page");
+  const saveRun = async () => {
+    const log = await actions.runLog();
+    if (log !== null) download("run.jsonl.gz", log, "application/gzip");
+  };
   const button = h(
     "button",
     { type: "button", class: "btn icon", id: "help-open", title: t("help"), "aria-label": t("help") },
@@ -29,6 +35,16 @@ export function helpMenuPanel({ text, tour, welcome }) {
         attributes: { "data-help": "docs", title: t("help.offline") },
         act: () => void window.open(DOCUMENTATION, "_blank", "noopener"),
       },
+      ...(!store.state.readOnly && store.state.services.includes(RUN_LOG)
+        ? [
+            {
+              label: t("help.run"),
+              icon: "save",
+              attributes: { "data-help": "run", title: t("help.run.text") },
+              act: () => void saveRun(),
+            },
+          ]
+        : []),
     ]),
   });
   return { slot: "header", element };

@@ -31,6 +31,9 @@ const SHORTEST_PRESS_MS = 120;
 const OCCUPIED = /: occupied by '(.*)'$/s;
 
 /** File kinds by file name extension. */
+/** The service that has the log of the run. */
+export const RUN_LOG = "/simulator/get_run_log";
+
 const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
 
 /** What `kindOf` says of files that are loaded as a program, and as a playground. */
@@ -256,6 +259,13 @@ export class Actions {
     const answer = await this.client.call("/simulator/get_playground");
     this.#report("/simulator/get_playground", answer);
     return answer.ok ? answer.message : null;
+  }
+
+  /** The log of the run since its last reset, a gzip file; null if the simulator does not give it. */
+  async runLog() {
+    const answer = await this.client.call(RUN_LOG);
+    this.#report(RUN_LOG, answer);
+    return answer.ok ? Uint8Array.from(atob(answer.message), (letter) => letter.charCodeAt(0)) : null;
   }
 
   /**

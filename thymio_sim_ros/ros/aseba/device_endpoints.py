@@ -215,7 +215,7 @@ class DeviceEndpoints:
         self._status.set_program(LoadedProgram(program, self._events.words, notes, points), debug_options.language)
 
     def _set_breakpoints(self, lines: tuple[int, ...]) -> None:
-        if lines != self.host.breakpoints:
+        if lines != self.host.breakpoints and not self._owner.is_replaying:
             self._owner.apply(BreakpointsSet(self.robot, lines))
 
     def _write_variable(self, name: str, words: Sequence[int]) -> None:

@@ -36,6 +36,11 @@ class EngineOwner:
         return self._runner.world.robots.keys()
 
     @property
+    def is_replaying(self) -> bool:
+        """Whether a log says which programs run."""
+        return self._runner.is_replaying
+
+    @property
     def runs(self) -> int:
         """How often the devices of the present engine have run."""
         return self._runner.engine.runs

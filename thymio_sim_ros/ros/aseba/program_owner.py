@@ -32,6 +32,10 @@ class ProgramOwner(Protocol):
         """The robots that are in the world."""
 
     @property
+    def is_replaying(self) -> bool:
+        """Whether a log says which programs run."""
+
+    @property
     def runs(self) -> int:
         """How often the devices have run."""
 

@@ -128,8 +128,11 @@ class RobotSet(Sequence[DeviceEndpoints]):
     def follow(self, names: Mapping[str, RobotNames], *, is_new: bool = False) -> None:
         """Serve these robots; those that stay keep their numbers, and their devices unless the world is new.
 
+        In a replay, these are the robots that have devices in the log.
         Raises one of `ROBOT_ERRORS`.
         """
+        if self.owner.is_replaying:
+            names = {robot: ros_names for robot, ros_names in names.items() if robot in self.owner.hosts}
         kept = []
         for endpoints in self._robots:
             if names.get(endpoints.robot) == endpoints.names:
@@ -279,6 +282,10 @@ class RobotSet(Sequence[DeviceEndpoints]):
 
     def _assign_programs(self, new: Collection[str]) -> None:
         """Start new robots, and those whose program changes because the file is assigned differently."""
+        if self.owner.is_replaying:
+            for endpoints in self._robots:
+                endpoints.publish()
+            return
         shares = script_parameters.shares(self._values.by_name, self.members, self._values.params.layout)
         starts = {}
         for endpoints in self._robots:

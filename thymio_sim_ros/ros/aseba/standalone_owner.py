@@ -44,6 +44,11 @@ class StandaloneOwner:
         return self.devices.hosts.keys()
 
     @property
+    def is_replaying(self) -> bool:
+        """Whether a log says which programs run: never."""
+        return False
+
+    @property
     def runs(self) -> int:
         """How often the devices have run."""
         return self.devices.runs

@@ -80,6 +80,11 @@ class WorldRunner:
         """Called after a reset."""
 
     @property
+    def is_replaying(self) -> bool:
+        """Whether the inputs come from a log."""
+        return self._logged is not None
+
+    @property
     def world(self) -> World:
         """The world of the engine, to read."""
         return self.engine.world
@@ -146,9 +151,14 @@ class WorldRunner:
     def reset(self) -> None:
         """Reset world, time and noise to the start."""
         self.engine.reset()
+        self._recording.keep(self.prepared.name, self.engine)
         self._publish_start()
         self.on_robots(False)
         self.on_reset()
+
+    def run_log(self) -> bytes | None:
+        """Return the log of the run since its start or last reset, compressed; None if it became too large."""
+        return self._recording.run()
 
     def spawn(self, start: RobotStart) -> None:
         """Add a robot on a ground.

@@ -6,6 +6,7 @@ with values and return a reason for each. A topic moves what a viewer drags.
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -21,6 +22,7 @@ from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
+from thymio_sim_ros.ros.simulator.recording import MAX_KEPT_BYTES
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.model import fields
@@ -50,6 +52,9 @@ SERVICES: Mapping[str, Service] = {
         GetParameters, "poses of robots, objects and doors: names → [x, y, yaw]; NOT_SET for unknown names"
     ),
     "~/get_playground": Service(Trigger, "`message` is the playground as JSON, with its images"),
+    "~/get_run_log": Service(
+        Trigger, "`message` is the log of the run since its last reset, gzip in base64, for `thymio-sim replay`"
+    ),
 }
 """All services of the simulator for the world as a whole."""
 
@@ -89,6 +94,7 @@ class WorldServices:
             "~/set_poses": self._each(self._set_pose),
             "~/get_poses": self._get_poses,
             "~/get_playground": self._get_playground,
+            "~/get_run_log": self._get_run_log,
         }
         self._services = [
             node.create_service(service.type, name, at_current_tick(runner, handlers[name]))
@@ -165,6 +171,13 @@ class WorldServices:
                 value.type = ParameterType.PARAMETER_DOUBLE_ARRAY
                 value.double_array_value = [pose.x_m, pose.y_m, pose.yaw_rad]
             response.values.append(value)
+        return response
+
+    def _get_run_log(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        log = self._runner.run_log()
+        response.success = log is not None
+        too_large = f"the run is larger than {MAX_KEPT_BYTES / 1e6:g} MB; a reset begins a new one, or start with --log"
+        response.message = too_large if log is None else base64.b64encode(log).decode("ascii")
         return response
 
     def _get_playground(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
