@@ -27,6 +27,7 @@ class CompressedText(io.TextIOBase):
             raise OSError(errno.EFBIG, f"larger than {self._limit / 1e6:g} MB")
         return len(text)
 
-    def content(self) -> bytes:
-        """Return what has been written so far, as a gzip file."""
-        return bytes(self._content) + self._compressor.copy().flush()
+    def content(self, end: str = "") -> bytes:
+        """Return what has been written so far, and `end` after it, as a gzip file."""
+        compressor = self._compressor.copy()
+        return bytes(self._content) + compressor.compress(end.encode()) + compressor.flush()

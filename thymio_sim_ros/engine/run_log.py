@@ -129,6 +129,9 @@ LogEntry = WorldStarted | WorldReset | StateSeen | TicksChecked | LogEnded | tup
 """Content of a line; an input has the tick after which it came."""
 
 
+_END = {"end": True}
+"""The last line of a complete log."""
+
 _GZIP = b"\x1f\x8b"
 """First bytes of a file that is compressed with gzip."""
 
@@ -181,15 +184,21 @@ class RunLog:
 
     def record_digest(self, tick: int, digest: str) -> None:
         """Record the digest of the state after `tick` ticks."""
-        self._write({"tick": tick, "state": digest})
+        self._write(_state(tick, digest))
         if self._file is not None:
             with self._guarded(self._file):
                 self._file.flush()
 
+    def ending(self) -> str:
+        """Return the lines that would complete the log at this moment; the log continues."""
+        engine = self._engine
+        states = [] if engine is None else [_state(engine.tick, engine.digest())]
+        return "".join(_json(line) + "\n" for line in (*states, _END))
+
     def close(self) -> None:
         """Write the last lines and close the file."""
         self._end()
-        self._write({"end": True})
+        self._write(_END)
         file, self._file = self._file, None
         if file is not None:
             with self._guarded(file):
@@ -217,6 +226,10 @@ class RunLog:
             if self._on_error is None:
                 raise OSError(error.errno, error.strerror, getattr(file, "name", None)) from error
             self._on_error(error)
+
+
+def _state(tick: int, digest: str) -> dict[str, Any]:
+    return {"tick": tick, "state": digest}
 
 
 def _json(line: Mapping[str, Any]) -> str:

@@ -36,8 +36,17 @@ def test_a_live_run_with_programs_and_commands_is_repeated_bit_for_bit(ros, simu
     sim["blue"]["motor.right.target"] = 50
     sim.step(1.0)
     found = replay(saved(ros, tmp_path))
-    assert (found.runs, found.differs) == (1, None)
-    assert found.ticks == 200  # up to the last whole second
+    assert (found.runs, found.differs, found.is_complete) == (1, None, True)
+    assert found.ticks == 250
+
+
+def test_a_run_goes_on_after_it_was_saved(ros, simulation, runtime, tmp_path):
+    sim = simulation()
+    runtime(path="explorer")
+    for seconds in (1.23, 2.46):
+        sim.step(1.23)
+        found = replay(saved(ros, tmp_path))
+        assert (found.seconds, found.differs, found.is_complete) == (seconds, None, True)
 
 
 def test_the_log_begins_with_the_last_reset_or_world(ros, simulation, tmp_path):

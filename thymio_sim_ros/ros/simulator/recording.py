@@ -48,8 +48,10 @@ class Recording:
         self._kept.begin(name, engine)
 
     def run(self) -> bytes | None:
-        """Return the log of the present run, compressed with gzip; None if it became too large."""
-        return None if self._content is None else self._content.content()
+        """Return the log of the present run up to now, compressed with gzip; None if it became too large."""
+        if self._kept is None or self._content is None:
+            return None
+        return self._content.content(self._kept.ending())
 
     def close(self) -> None:
         """Complete and close the file. May be called twice."""
