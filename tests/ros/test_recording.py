@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Range
 from std_msgs.msg import Int16MultiArray
 
-from thymio_sim_ros.ros.aseba.driver_input import proximity_count
+from thymio_sim_ros.ros.aseba.outside.driver_input import proximity_count
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.interface.names import PROXIMITY
 

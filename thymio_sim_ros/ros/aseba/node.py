@@ -29,12 +29,12 @@ from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.device.options import OptionError
 from thymio_sim_ros.files.loading import shipped_behaviours
 from thymio_sim_ros.network.settings import NetworkSettings
-from thymio_sim_ros.ros.aseba import driver_input
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba.check_service import CheckService
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.load_service import LoadService
 from thymio_sim_ros.ros.aseba.network_link import NetworkLink
+from thymio_sim_ros.ros.aseba.outside import driver_input
 from thymio_sim_ros.ros.aseba.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.aseba.parameters import BEHAVIOUR, RuntimeParams, WrongValueError
 from thymio_sim_ros.ros.aseba.robot_set import ROBOT_ERRORS, RobotSet

@@ -27,11 +27,11 @@ from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.emitter import Emitter
 from thymio_sim_ros.ros.aseba.engine_owner import EngineOwner
-from thymio_sim_ros.ros.aseba.outside_robot import OutsideRobot
+from thymio_sim_ros.ros.aseba.outside.outside_robot import OutsideRobot
+from thymio_sim_ros.ros.aseba.outside.real_robot import RealRobot
+from thymio_sim_ros.ros.aseba.outside.standalone_owner import StandaloneOwner
 from thymio_sim_ros.ros.aseba.program_owner import ProgramOwner
-from thymio_sim_ros.ros.aseba.real_robot import RealRobot
 from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
-from thymio_sim_ros.ros.aseba.standalone_owner import StandaloneOwner
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.commands import Command

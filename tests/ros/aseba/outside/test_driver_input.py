@@ -11,8 +11,8 @@ from sensor_msgs.msg import Imu, Range, Temperature
 from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Int8, Int16
 
 from tests.ros.aseba_tools import Proximity, Status, get_variables, seen, set_parameters
-from thymio_sim_ros.ros.aseba import driver_input
-from thymio_sim_ros.ros.aseba.driver_input import proximity_count
+from thymio_sim_ros.ros.aseba.outside import driver_input
+from thymio_sim_ros.ros.aseba.outside.driver_input import proximity_count
 from thymio_sim_ros.sim.model.units import PROXIMITY_FULL, proximity_response, units_to_speed
 
 COUNTS = (

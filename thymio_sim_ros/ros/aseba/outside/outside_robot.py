@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rclpy.node import Node
 
-from thymio_sim_ros.ros.aseba import driver_input
-from thymio_sim_ros.ros.aseba.driver_input import Feed
-from thymio_sim_ros.ros.aseba.output_endpoints import OutputEndpoints
+from thymio_sim_ros.ros.aseba.outside import driver_input
+from thymio_sim_ros.ros.aseba.outside.driver_input import Feed
+from thymio_sim_ros.ros.aseba.outside.output_endpoints import OutputEndpoints
 from thymio_sim_ros.ros.interface.names import RobotNames
 
 __all__ = ["OutsideRobot"]

@@ -9,8 +9,8 @@ import pytest
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float32MultiArray, Int16MultiArray
 
-from thymio_sim_ros.ros.aseba import output_endpoints
-from thymio_sim_ros.ros.aseba.output_endpoints import FRESH_S, OutputEndpoints
+from thymio_sim_ros.ros.aseba.outside import output_endpoints
+from thymio_sim_ros.ros.aseba.outside.output_endpoints import FRESH_S, OutputEndpoints
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed
 from thymio_sim_ros.sim.model.units import units_to_speed

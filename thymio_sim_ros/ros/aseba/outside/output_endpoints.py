@@ -14,7 +14,7 @@ from typing import Any
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
-from thymio_sim_ros.ros.aseba import driver_input
+from thymio_sim_ros.ros.aseba.outside import driver_input
 from thymio_sim_ros.ros.interface import command_topics, driver_topics, plugin_topics, qos
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
