@@ -26,7 +26,7 @@ QUICK = {"only": "4 MB of nested", "seconds": 0.3}
 PARAMETER, SERVICE = "/simulator.playground", "/simulator/get_poses"
 NO_NAMES = b"\0\1\0\0" + bytes(4)
 ANSWER_S = 120.0
-MOST_CALL_S, MOST_CTRL_C_S = 0.5, 5.0
+MOST_CALL_S, MOST_CTRL_C_S = 5.0, 5.0
 PLAIN = '<rect width="100" height="100" fill="#888"/>'
 
 

@@ -96,7 +96,10 @@ class Peer:
         self.calls = 0
 
     def next(self, timeout_s: float) -> bytes:
-        """Return the contents of the next frame. Raises TimeoutError, or ConnectionError if the connection ended."""
+        """Return the contents of the next frame; a ping is answered, and its contents are returned as well.
+
+        Raises TimeoutError, or ConnectionError if the connection ended.
+        """
         deadline = time.monotonic() + timeout_s
         while (found := frame_at(self._data, 0)) is None:
             left_s = deadline - time.monotonic()
@@ -108,7 +111,9 @@ class Peer:
                 raise ConnectionError("the server closed the connection")
             self._data += more
         begin, end = found
-        body, self._data = self._data[begin:end], self._data[end:]
+        kind, body, self._data = self._data[0], self._data[begin:end], self._data[end:]
+        if kind == PING:
+            self.socket.sendall(frame(PONG, body))
         if body.startswith(b"{"):
             self._note(json.loads(body))
         return body

@@ -304,7 +304,18 @@ class InC(Turning):
         print("begun", flush=True)
         threading.Lock().acquire() and time.sleep(1e6)
 
-KINDS = {"python": InPython, "c": InC, "": Turning}
+class UntilInterrupted(Turning):
+    interrupted = threading.Event()
+
+    def run_once(self, executor):
+        ALL_RUN.wait()
+        print("begun", flush=True)
+        self.interrupted.wait()
+
+    def interrupt(self):
+        self.interrupted.set()
+
+KINDS = {"python": InPython, "c": InC, "long": UntilInterrupted, "": Turning}
 
 def build(context):
     for number, kind in enumerate(sys.argv[1].split(",")):
@@ -317,7 +328,7 @@ def build(context):
 node_runner.LEAVE_S = 10.0
 def ready():
     ALL_RUN.set()
-    if not {"python", "c"} & set(sys.argv[1].split(",")):  # a stuck node says so itself, once it is stuck
+    if not {"python", "c", "long"} & set(sys.argv[1].split(",")):  # a stuck node says so itself, once it is stuck
         print("begun", flush=True)
 
 sys.exit(node_runner.run_main(build, [], on_ready=ready))
@@ -365,5 +376,7 @@ def test_an_interrupt_while_a_node_is_built_ends_those_that_run(ros_domain):
 
 
 @pytest.mark.process
-def test_without_a_stuck_thread_all_ends_in_order(ros_domain):
-    assert ended_by_interrupt(",") == (0, ["well_1 ended", "well_0 ended"], "")
+@pytest.mark.parametrize("kinds", [",", ",long"])
+def test_without_a_stuck_thread_all_ends_in_order(ros_domain, kinds):
+    names = [f"{kind or 'well'}_{number} ended" for number, kind in enumerate(kinds.split(","))]
+    assert ended_by_interrupt(kinds) == (0, names[::-1], "")

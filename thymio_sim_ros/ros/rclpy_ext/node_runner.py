@@ -100,6 +100,14 @@ class AnnouncedNode(RunnableNode, Protocol):
 
 
 @runtime_checkable
+class Interruptible(Protocol):
+    """A node with callbacks that can take longer than `STOP_S`."""
+
+    def interrupt(self) -> None:
+        """Make the present `run_once` return soon. Called on another thread, before `stop`."""
+
+
+@runtime_checkable
 class HasAccessUrls(Protocol):
     """A node with URLs that contain an access token."""
 
@@ -220,6 +228,9 @@ class NodeRunner:
             if self._stop.is_set():
                 return
             self._stop.set()
+            for runnable, _ in self._running:
+                if isinstance(runnable, Interruptible):
+                    runnable.interrupt()
             deadline = time.monotonic() + STOP_S
             for _, thread in self._running:
                 thread.join(max(0.0, deadline - time.monotonic()))

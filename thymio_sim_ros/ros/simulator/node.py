@@ -32,7 +32,6 @@ from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
-from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
 from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
@@ -87,12 +86,9 @@ class Simulator:
             values = self.params.values
             params.warn_of_unknown(self.node, "ros.md")
             qos.check_overrides(self.node)
-            self._loader = DeferredLoad(
-                self.node, "playground", lambda value: PreparedPlayground.load(value, self.params.values)
-            )
             logged = last_run(Path(values.replay)) if values.replay else None
             if logged is None:
-                prepared = self._loader.load(values.playground)
+                prepared = PreparedPlayground.load(values.playground, values)
             else:
                 prepared = PreparedPlayground.of(logged.name, logged.start.playground, values)
             self._recording = Recording(self.node, values.log)
@@ -127,7 +123,7 @@ class Simulator:
             self.runner.step(logged.tick_at(values.replay_from))
         self._services = WorldServices(self.control, self.runner, self.endpoints.robots, self._messages)
         self._diagnostics = Diagnostics(self.node, self._messages, self._connections, self.endpoints.clock.conflict)
-        self.parameter_callbacks = ParameterCallbacks(self.node, self.params, self._loader, self.runner)
+        self.parameter_callbacks = ParameterCallbacks(self.node, self.params, self.runner)
         self._interfaces: services.SimInterfaces | None = None
         if isinstance(self.control, LocalNode):
             self._parameter_services = ParameterService(self.control)
@@ -157,6 +153,10 @@ class Simulator:
         self.endpoints.world.publish_overview_if_due(self.runner.world, now_ns)
         self.runner.spin(executor)
 
+    def interrupt(self) -> None:
+        """Give up a playground that is being loaded."""
+        self.runner.is_ending = True
+
     def stop(self) -> None:
         """Stop the attached nodes, and close the run log."""
         for attached in self.attached:
@@ -168,7 +168,6 @@ class Simulator:
         self.stop()
         for attached in self.attached:
             attached.close()
-        self._loader.close()
         if self._interfaces is not None:
             self._interfaces.close()
         self.node.destroy_node()

@@ -10,7 +10,6 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.ros.rclpy_ext.parameters import by_name, changes, refusal, updated
-from thymio_sim_ros.ros.simulator.deferred_load import DeferredLoad
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_engine
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
@@ -35,10 +34,8 @@ class ParameterCallbacks:
     changes nothing.
     """
 
-    def __init__(
-        self, node: Node, params: CurrentParams, loader: DeferredLoad[PreparedPlayground], runner: WorldRunner
-    ) -> None:
-        self._node, self._params, self._loader, self._runner = node, params, loader, runner
+    def __init__(self, node: Node, params: CurrentParams, runner: WorldRunner) -> None:
+        self._node, self._params, self._runner = node, params, runner
         self._accepted: tuple[PreparedPlayground, Engine] | None = None
         """The playground that was checked last, if it differs from the current one."""
         self.has_loaded = False
@@ -73,7 +70,7 @@ class ParameterCallbacks:
         if playground is None:
             return SetParametersResult(successful=True)
         try:
-            self._accepted = self._new_engine(playground, parameters)
+            self._accepted = self._runner.run_beside(lambda: self._new_engine(playground, parameters))
         except LOAD_ERRORS as error:
             return _rejected(str(error))
         except Exception as error:  # internal error while reading a file: the node continues
@@ -85,10 +82,11 @@ class ParameterCallbacks:
 
     def _new_engine(self, value: str, parameters: list[Parameter]) -> tuple[PreparedPlayground, Engine] | None:
         """Return a playground and its engine, or None if it is the current one. Raises one of `LOAD_ERRORS`."""
-        prepared = self._loader.load(value)
-        if value == self._params.values.playground and prepared.playground == self._runner.world.playground:
+        present = self._params.values
+        prepared = PreparedPlayground.load(value, present)
+        if value == present.playground and prepared.playground == self._runner.world.playground:
             return None
-        chosen = updated(self._params.values, parameters)
+        chosen = updated(present, parameters)
         return prepared, new_engine(prepared.playground, chosen, prepared.ground)
 
     def _apply(self, parameters: list[Parameter]) -> None:

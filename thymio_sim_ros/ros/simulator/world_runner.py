@@ -7,9 +7,13 @@ in it takes effect in the next tick, as if no tick had been deferred.
 from __future__ import annotations
 
 import gc
+import threading
 import time
 import traceback
 from collections.abc import Callable
+from concurrent.futures import Future
+from concurrent.futures import wait as wait_for
+from typing import TypeVar
 
 from rclpy.executors import Executor
 from rclpy.node import Node
@@ -32,6 +36,8 @@ from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["WorldRunner"]
+
+T = TypeVar("T")
 
 SLICE_NS = 50_000_000
 """Wall time after which messages have their turn, although ticks are owed: those are dropped."""
@@ -70,7 +76,11 @@ class WorldRunner:
             batch_ticks=params.values.batch_ticks,
         )
         self._is_spinning = False
-        """Whether callbacks may execute deferred ticks: not within a tick, nor without a thread that runs the node."""
+        """Whether a callback was called by `spin`: not within a tick, and there is a thread that runs the node."""
+        self._is_waiting = False
+        """Whether it was called before the next tick is due, and may execute deferred ticks."""
+        self.is_ending = False
+        """Whether the node is about to stop: `run_beside` waits no longer."""
         self._published_fallen: frozenset[str] = frozenset()
         self.on_tick: Callable[[], None] = lambda: None
         """Called after each tick, when its readings are published."""
@@ -112,16 +122,32 @@ class WorldRunner:
 
     def spin(self, executor: Executor) -> None:
         """Handle messages until the next tick is due, or those that have arrived if it is due already."""
-        if self.paused:
-            executor.spin_once(timeout_sec=SPIN_SLICE_S)
-            return
-        wait_s = self.scheduler.wait_ns(time.monotonic_ns(), self.world.now_ns) / SECOND_NS
-        if wait_s > 0.0:
-            self._is_spinning = True
-            executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
-            self._is_spinning = False
-        else:
-            deliver(executor)
+        wait_s = self._wait_s()
+        self._is_spinning, self._is_waiting = True, wait_s > 0.0
+        try:
+            if self._is_waiting:
+                executor.spin_once(timeout_sec=wait_s)
+            else:
+                deliver(executor)
+        finally:
+            self._is_spinning = self._is_waiting = False
+
+    def run_beside(self, slow: Callable[[], T]) -> T:
+        """Call a slow function and return its result or raise its exception, while the world goes on; messages wait.
+
+        The function runs on another thread, and must not change what the node uses. Raises InterruptedError if the node
+        stops meanwhile.
+        """
+        if not self._is_spinning:
+            return slow()
+        result: Future[T] = Future()
+        # A daemon thread: Ctrl-C does not wait until a playground is loaded.
+        threading.Thread(target=_fulfil, args=(result, slow), name="load", daemon=True).start()
+        while not wait_for([result], self._wait_s()).done:
+            if self.is_ending:
+                raise InterruptedError("the simulator ends")
+            self.run_due_ticks(time.monotonic_ns())
+        return result.result()
 
     def advance(self, ticks: int) -> None:
         """Step the world by ticks of 10 ms, also while paused, and publish their results."""
@@ -130,7 +156,7 @@ class WorldRunner:
 
     def catch_up(self) -> None:
         """Execute the deferred ticks: a request or a command has arrived, which must see the present world."""
-        if self._is_spinning and not self.paused:
+        if self._is_waiting and not self.paused:
             self._run_guarded(self._run_owed)
         self.scheduler.require_next_tick(self.world.now_ns)
 
@@ -238,6 +264,12 @@ class WorldRunner:
         """Return the names (in the world) of the robots that fell off an edge."""
         return frozenset(name for name, robot in self.world.robots.items() if robot.is_fallen)
 
+    def _wait_s(self) -> float:
+        """Time until the next tick is due, in s, at most `SPIN_SLICE_S`."""
+        if self.paused:
+            return SPIN_SLICE_S
+        return min(self.scheduler.wait_ns(time.monotonic_ns(), self.world.now_ns) / SECOND_NS, SPIN_SLICE_S)
+
     def _run_owed(self) -> None:
         wall_ns = time.monotonic_ns()
         ticks = self.scheduler.pop_owed(wall_ns, self.world.now_ns)
@@ -264,3 +296,10 @@ class WorldRunner:
         self._endpoints.world.publish_objects(self.world, last=True)
         self.publish_state()
         self._endpoints.clock.publish(0, last=True)
+
+
+def _fulfil(result: Future[T], function: Callable[[], T]) -> None:
+    try:
+        result.set_result(function())
+    except BaseException as error:
+        result.set_exception(error)
