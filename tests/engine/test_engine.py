@@ -13,10 +13,12 @@ from aseba_vm.jit.tiering import INTERPRETER
 from tests.aseba_vm.engines import TRANSLATORS
 from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.firmware.settings import SettingsError
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.engine.devices import BUDGET, MAX_ROUNDS
 from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.engine.inputs import DevicesAdded, DeviceStart
 from thymio_sim_ros.files.loading import load_playground, read_program
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
 from thymio_sim_ros.sim.playground import reader as playgrounds
@@ -394,3 +396,14 @@ def test_a_program_without_an_end_gets_its_budget_whatever_runs_it(path, tmp_pat
     assert all(0 < sum(spent) <= len(spent) * (MAX_ROUNDS * BUDGET + longest_call) for spent, _, _ in wanted[:1])
     for translator in TRANSLATORS:
         assert runaway(path, translator, tmp_path / translator) == wanted
+
+
+def test_devices_that_cannot_be_created_leave_the_options_as_they_were(tmp_path: Path) -> None:
+    engine = Engine(load_playground("two_robots")[1])
+    before = engine.start
+    folder = tmp_path / "red"
+    folder.mkdir()
+    (folder / "settings.json").write_text("no JSON", encoding="utf-8")
+    with pytest.raises(SettingsError):
+        engine.apply(DevicesAdded({"red": DeviceStart(1, None)}, DeviceOptions(settings=tmp_path)))
+    assert (engine.start, engine.devices) == (before, {})

@@ -309,8 +309,8 @@ class Engine:
         self._devices.begin(added.devices)
 
     def _add_devices(self, added: DevicesAdded) -> None:
-        self.start = replace(self.start, options=added.options, shares_numbers=added.shares_numbers)
         self._create_devices(added)
+        self.start = replace(self.start, options=added.options, shares_numbers=added.shares_numbers)
         for name in added.devices:
             self.devices[name].advance(self.now_ns)
         self._robot_changes = -1
