@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import graphlib
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -200,6 +201,40 @@ def test_only_the_commands_and_the_fixtures_import_ros() -> None:
 def test_no_module_imports_itself_by_a_detour() -> None:
     graph = {module: {name for name in _imports(module) if name in SOURCES} - {OURS} for module in SOURCES}
     graphlib.TopologicalSorter(graph).prepare()
+
+
+PICTURE = re.compile(r"^(commands +cli\n.*?)```", re.MULTILINE | re.DOTALL)
+"""The rooms in docs/architecture.md: the name of a row, at least two blanks, its rooms."""
+
+
+def _room(module: str) -> str | None:
+    """The room of a module as the picture names it; None for the modules that are in no room."""
+    if _below(module, "aseba_vm"):
+        return "aseba_vm"
+    parts = module.split(".")[1:]
+    if parts[:1] == ["ros"]:
+        return "/".join(parts[:2]) if len(parts) > 2 or _is_package(module) else None
+    return parts[0] if len(parts) > 1 or parts == ["pytest_plugin"] or (parts and _is_package(module)) else None
+
+
+def _is_package(module: str) -> bool:
+    return SOURCES[module].name == "__init__.py"
+
+
+def test_the_picture_of_the_rooms_is_true() -> None:
+    found = PICTURE.search((ROOT / "docs" / "architecture.md").read_text(encoding="utf-8"))
+    assert found is not None
+    rows = [re.split(" {2,}", line)[1:] for line in found[1].splitlines()]
+    row_of = {room: number for number, rooms in enumerate(rows) for room in rooms}
+    assert row_of.keys() == {room for module in SOURCES if (room := _room(module)) is not None} - {"launch", "ros"}
+    upward = {
+        f"{room} imports {other} ({where})"
+        for module in SOURCES
+        if (room := _room(module)) in row_of
+        for name, where in _imports(module).items()
+        if name in SOURCES and (other := _room(name)) in row_of and row_of[other] < row_of[room]
+    }
+    assert upward == set()
 
 
 @pytest.mark.process
