@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import random
+import signal
 import statistics
 import tempfile
 import time
@@ -25,15 +26,18 @@ from rclpy.signals import SignalHandlerOptions
 from benchmarks.lib.processes import child
 from benchmarks.lib.report import Goal, Report, Table
 from benchmarks.lib.scenes import grid
-from benchmarks.ros_load import GAP_M, NODE, QUIET, START_S, spin_until_interrupted
 from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 
 QUICK = {"commands": 5}
+GAP_M = 0.4
+START_S = 120.0
 SPEEDS_M_S = (0.05, 0.1)
 CHANGED_M_S = 0.01
 PAUSE_S = (0.06, 0.12)
 LOST_S = 5.0
 ECHO = "an echo, no simulator"
+QUIET = ["--ros-args", "--log-level", "warn"]
+NODE = "import sys; from thymio_sim_ros.ros.simulator.node import main; sys.exit(main())"
 ECHOING = "import sys; from benchmarks.ros_latency import echo; echo()"
 EVERY_TICK = "every tick"
 RATES = {ECHO: 0.0, EVERY_TICK: -1.0, "20 Hz": 20.0}
@@ -42,7 +46,7 @@ ALLOWED_MS = 12.0
 
 
 def echo() -> None:
-    """Answer each command with odometry of its speed."""
+    """Answer each command with odometry of its speed, until SIGINT."""
     context = Context()
     rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
     node = Node("echo", context=context, enable_rosout=False, start_parameter_services=False)
@@ -54,7 +58,12 @@ def echo() -> None:
         publisher.publish(answer)
 
     node.create_subscription(Twist, "/cmd_vel", take, 1)
-    spin_until_interrupted(node, context)
+    ended: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _frame: ended.append(number))
+    executor = make_executor(context)
+    executor.add_node(node)
+    while not ended:
+        executor.spin_once(timeout_sec=0.1)
 
 
 class Asker:

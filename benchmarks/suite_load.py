@@ -17,9 +17,9 @@ import time
 
 from websockets.asyncio.client import ClientConnection, connect
 
-from benchmarks.lib.bridge_client import SUBPROTOCOLS
 from benchmarks.lib.processes import cpu_s, suite
 from benchmarks.lib.report import Goal, Report, Table
+from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS
 from thymio_sim_ros.studio_layout import render
 
 QUICK = {"seconds": 1.0, "rounds": 1, "settle": 1.0}

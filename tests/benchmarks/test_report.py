@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks import simulator_runner
 from benchmarks.lib import page, report, rounds
 from benchmarks.lib.report import Goal, Report, Table
 
@@ -14,6 +15,29 @@ REPORT = Report(
     [Table(["what", "ms"], [["fast", 0.1236], ["slow", 1234.5], ["failed", math.inf], ["unknown", None]], "Times")],
     [Goal("fast", 0.1, 0.1236, "ms"), Goal("ratio", 2.0, 2.5, "×", is_least=True)],
 )
+
+OTHER_CHECKOUT = {
+    "__init__.py": "",
+    "engine/engine.py": """
+from types import SimpleNamespace
+
+class Engine:
+    world = SimpleNamespace(robots=["thymio"])
+
+    def __init__(self, _playground):
+        pass
+
+    def post(self, *_command):
+        pass
+
+    def run(self, seconds):
+        print("another engine runs", seconds)
+""",
+    "files/loading.py": "load_playground = lambda _path: (None, None)\nread_program = None\n",
+    "sim/commands.py": "MotorTargets = lambda *_speeds: None\n",
+    "sim/playground/reader.py": "Playground = RobotStart = loads = None\n",
+}
+"""Modules of `thymio_sim_ros` that the benchmark `simulator_runner` imports, with an engine that prints."""
 
 
 @pytest.mark.parametrize(
@@ -62,18 +86,20 @@ def test_measures_run_in_turn_and_the_first_round_does_not_count() -> None:
 
 
 @pytest.mark.process
-def test_a_worker_measures_with_the_packages_of_another_checkout(tmp_path: Path) -> None:
-    (tmp_path / "aseba_vm").mkdir()
-    (tmp_path / "aseba_vm" / "__init__.py").write_text("compile = lambda *_: print('compiled elsewhere')\n")
-    (tmp_path / "aseba_vm" / "targets.py").write_text("THYMIO_II = None\n")
-    worker = rounds.Worker(tmp_path, "aseba_compile:compiler")
-    assert 0.0 <= worker() < 1000.0
+def test_a_worker_measures_with_the_packages_of_another_checkout(tmp_path: Path, capfd) -> None:
+    for name, text in OTHER_CHECKOUT.items():
+        path = tmp_path / "thymio_sim_ros" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    worker = rounds.Worker(tmp_path, "simulator_runner:runner_of", simulator_runner.IDLE, 7.0)
+    assert worker() > 0.0
     worker.close()
+    assert capfd.readouterr().err == "another engine runs 7.0\n"
 
 
 @pytest.mark.process
 def test_a_worker_that_fails_is_an_error(tmp_path: Path) -> None:
-    worker = rounds.Worker(tmp_path, "aseba_compile:nothing")
+    worker = rounds.Worker(tmp_path, "simulator_runner:nothing")
     with pytest.raises(RuntimeError, match="a worker failed"):
         worker()
     worker.close()

@@ -1,9 +1,8 @@
 """Costs of native functions and events in instructions (`aseba_vm.machine.costs`).
 
 The unit is an instruction of the interpreter, without translation: 0.25 µs of a core where this was measured. A budget
-of 5000 instructions is then at most a few milliseconds of processor time, whatever the program calls.
-`benchmarks/aseba_costs.py` measures native functions and prints the results beside this table. Functions that read or
-write sounds are also charged for each byte.
+of 5000 instructions is then at most a few milliseconds of processor time, whatever the program calls. Functions that
+read or write sounds are also charged for each byte.
 """
 
 from __future__ import annotations

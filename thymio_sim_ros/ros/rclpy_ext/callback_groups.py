@@ -1,7 +1,7 @@
 """Callback groups that forget what is destroyed.
 
 A group of rclpy keeps a weak reference to each subscription, client, timer and event handler that was ever created in
-it. In a suite whose clients come and go these were 4,000 in a minute, 100 bytes each (`python -m benchmarks soak`).
+it. In a suite whose clients come and go these were 4,000 in a minute, 100 bytes each.
 """
 
 from __future__ import annotations
