@@ -56,6 +56,8 @@ class Obstacles(Record):
     """Height above the floor, m; NOWHERE_M if it is missing."""
     kind: Ints
     """DISC, BOX or POLYGON."""
+    is_fixed: Ints
+    """Whether it never moves."""
     first_plane: Ints
     """The half planes of a polygon are `first_plane` to `last_plane`, the end not included."""
     last_plane: Ints
@@ -89,14 +91,15 @@ class ObstacleTable:
             loose: obstacles that can move, by number; None for a missing one.
             robots: number of robots.
         """
-        self.first_loose, self.first_robot = len(fixed), len(fixed) + len(loose)
+        self.first_loose, first_robot = len(fixed), len(fixed) + len(loose)
         hull, hull_planes = polygon_in_frame(robot_constants.hull())
         assert hull_planes is not None  # it is no box
         sides = [len(getattr(obstacle, "vertices", ())) for obstacle in (*fixed, *loose)]
         self.planes = Planes(memory, len(hull_planes) + sum(sides))
-        self.obstacles = obstacles = Obstacles(memory, self.first_robot + robots)
+        self.obstacles = obstacles = Obstacles(memory, first_robot + robots)
         self._planes_used = 0
-        hulls = slice(self.first_robot, None)
+        obstacles.is_fixed[: self.first_loose] = 1
+        hulls = slice(first_robot, None)
         obstacles.half_x[hulls], obstacles.half_y[hulls] = hull[4:]
         obstacles.kind[hulls] = POLYGON
         obstacles.first_plane[hulls], obstacles.last_plane[hulls] = self._add_planes(hull_planes)

@@ -12,7 +12,7 @@ from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.model.robot_state import RobotState
 from thymio_sim_ros.sim.raycast import rays
 from thymio_sim_ros.sim.raycast.obstacle_table import ObstacleTable
-from thymio_sim_ros.sim.raycast.rays import Mounts, Rays
+from thymio_sim_ros.sim.raycast.rays import Candidates, Limits, Mounts, Rays
 from thymio_sim_ros.sim.raycast.scalar import Obstacle
 
 __all__ = ["Fan", "Raycaster"]
@@ -86,11 +86,12 @@ class Raycaster:
         mounts.last_ray[:] = mounts.first_ray + rays_per_sensor
         directions.x[:], directions.y[:] = fan.directions.reshape(2, -1)
         distances = memory.array((self._count, sensors, rays_per_sensor), "float64")
-        first = memory.array(self._count + 1, "int32")
-        near = memory.array(self._count * len(table.obstacles.x), "int32")
+        limits = Limits(memory, 1)
+        limits.range[0], limits.reach[0], limits.height[0] = fan.range_m, fan.reach_m, fan.height_m
+        candidates = Candidates(memory, self._count)
+        near = memory.array(self._count * table.obstacles.count, "int32")
         call = memory.bind(
-            rays.cast, self._robots, table.obstacles, table.planes, mounts, directions, table.first_loose,
-            table.first_robot, self._count, fan.range_m, fan.reach_m, fan.height_m, int((mounts.cosine > 0.0).all()),
-            first, near, distances,
+            rays.cast, self._robots, table.obstacles, table.planes, mounts, directions, limits, candidates, near,
+            distances,
         )  # fmt: skip
         return call, distances

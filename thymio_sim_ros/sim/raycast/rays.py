@@ -24,7 +24,7 @@ from thymio_sim_ros.sim.raycast.obstacle_table import (
     Planes,
 )
 
-__all__ = ["Mounts", "Rays", "cast"]
+__all__ = ["Candidates", "Limits", "Mounts", "Rays", "cast"]
 
 _FAR = math.inf
 _TINY = 1e-300
@@ -58,6 +58,25 @@ class Rays(Record):
 
     x: Floats
     y: Floats
+
+
+class Limits(Record):
+    """Range and height of the rays; one element."""
+
+    range: Floats
+    """Length of the rays, m."""
+    reach: Floats
+    """Distance of the farthest end of a ray from the robot's origin, at most, m."""
+    height: Floats
+    """Height of the rays above the floor, m; lower obstacles are not detected."""
+
+
+class Candidates(Record):
+    """The obstacles that each robot may detect: a part of the list `near`, which has rows of `Obstacles`."""
+
+    first: Ints
+    """The part of a robot is `first` to `last`, the end not included."""
+    last: Ints
 
 
 @kernel
@@ -121,10 +140,10 @@ def _is_facing(x: float, y: float, ax: float, ay: float, cosine: float, sine: fl
 
 
 @kernel
-def _place_hulls(robots: RobotState, obstacles: Obstacles, first_robot: int, count: int) -> None:
-    """Write the frames of the robots' hulls."""
+def _place_hulls(robots: RobotState, obstacles: Obstacles, count: int) -> None:
+    """Write the frames of the robots' hulls, the last `count` obstacles."""
     for robot in range(count):
-        row = first_robot + robot
+        row = obstacles.count - count + robot
         if robots.is_standing[robot] == 0:
             obstacles.x[row] = FAR_M
             obstacles.height[row] = NOWHERE_M
@@ -152,17 +171,12 @@ def _is_stale(obstacles: Obstacles) -> int:
 
 @kernel
 def _find_candidates(
-    robots: RobotState,
-    obstacles: Obstacles,
-    first_loose: int,
-    first_robot: int,
-    count: int,
-    reach_m: float,
-    height_m: float,
-    first: Ints,
-    near: Ints,
+    robots: RobotState, obstacles: Obstacles, limits: Limits, candidates: Candidates, near: Ints
 ) -> None:
-    """List the obstacles that each robot may detect; those of robot r begin at `near[first[r]]`."""
+    """List the obstacles that each robot may detect."""
+    reach = limits.reach[0]
+    height = limits.height[0]
+    first_hull = obstacles.count - candidates.count
     for row in range(obstacles.count):
         obstacles.known_x[row] = obstacles.x[row]
         obstacles.known_y[row] = obstacles.y[row]
@@ -173,15 +187,17 @@ def _find_candidates(
         half = math.sqrt(half_x * half_x + half_y * half_y)
         c = abs(obstacles.cosine[row])
         s = abs(obstacles.sine[row])
-        obstacles.reach_x[row] = (
-            (min(half, c * half_x + s * half_y) if row < first_loose else half) + reach_m + _MARGIN_M
-        )
-        obstacles.reach_y[row] = (
-            (min(half, s * half_x + c * half_y) if row < first_loose else half) + reach_m + _MARGIN_M
-        )
+        along_x = half
+        along_y = half
+        if obstacles.is_fixed[row] == 1:
+            along_x = min(half, c * half_x + s * half_y)
+            along_y = min(half, s * half_x + c * half_y)
+        obstacles.reach_x[row] = along_x + reach + _MARGIN_M
+        obstacles.reach_y[row] = along_y + reach + _MARGIN_M
     found = 0
-    for robot in range(count):
-        first[robot] = found
+    for robot in range(candidates.count):
+        candidates.first[robot] = found
+        candidates.last[robot] = found
         if robots.is_standing[robot] == 0:
             continue
         x = robots.x[robot]
@@ -190,12 +206,12 @@ def _find_candidates(
             if (
                 abs(x - obstacles.x[row]) <= obstacles.reach_x[row]
                 and abs(y - obstacles.y[row]) <= obstacles.reach_y[row]
-                and obstacles.height[row] >= height_m
-                and row != first_robot + robot
+                and obstacles.height[row] >= height
+                and row != first_hull + robot
             ):
                 near[found] = row
                 found += 1
-    first[count] = found
+        candidates.last[robot] = found
 
 
 @kernel
@@ -205,45 +221,38 @@ def cast(
     planes: Planes,
     mounts: Mounts,
     rays: Rays,
-    first_loose: int,
-    first_robot: int,
-    count: int,
-    range_m: float,
-    reach_m: float,
-    height_m: float,
-    is_narrow: int,
-    first: Ints,
+    limits: Limits,
+    candidates: Candidates,
     near: Ints,
     distances: Floats,
 ) -> None:
-    """Write the lengths of all rays to `distances`, shape (count, sensors, rays), inf for a ray that meets nothing.
+    """Write the lengths of all rays to `distances`, shape (robots, sensors, rays), inf for a ray that meets nothing.
 
     Args:
         robots: poses of the robots.
-        obstacles: all obstacles; those of robots are written.
+        obstacles: all obstacles, those of the robots last; these are written.
         planes: half planes of the polygons.
         mounts: sensors of a robot.
         rays: rays of a robot.
-        first_loose: number of obstacles that never move.
-        first_robot: number of obstacles that are no robots.
-        count: number of robots.
-        range_m: length of the rays.
-        reach_m: distance of the farthest end of a ray from the robot's origin.
-        height_m: height of the rays above the floor.
-        is_narrow: whether all rays are within 90 degrees of the axis of their sensor.
-        first: candidates, see `_find_candidates`; shape (count + 1,).
-        near: candidates, shape (count * obstacles,).
+        limits: range and height of the rays.
+        candidates: one element for each robot; written, as is `near`.
+        near: rows of the candidates, shape (robots * obstacles,).
         distances: result.
     """
-    _place_hulls(robots, obstacles, first_robot, count)
+    count = candidates.count
+    _place_hulls(robots, obstacles, count)
     if _is_stale(obstacles) == 1:
-        _find_candidates(robots, obstacles, first_loose, first_robot, count, reach_m, height_m, first, near)
+        _find_candidates(robots, obstacles, limits, candidates, near)
+    # Locals: WebAssembly reads an element of a record from memory each time.
+    range_m = limits.range[0]
+    reach_m = limits.reach[0]
+    first_hull = obstacles.count - count
     far = range_m * (1.0 + 1e-12)
     for number in range(count * rays.count):
         distances[number] = _FAR
     for robot in range(count):
-        own = first_robot + robot
-        for pair in range(first[robot], first[robot + 1]):
+        own = first_hull + robot
+        for pair in range(candidates.first[robot], candidates.last[robot]):
             row = near[pair]
             half_x = obstacles.half_x[row]
             half_y = obstacles.half_y[row]
@@ -270,9 +279,8 @@ def cast(
                     continue
                 ax = c * mounts.axis_x[sensor] - s * mounts.axis_y[sensor]
                 ay = s * mounts.axis_x[sensor] + c * mounts.axis_y[sensor]
-                if is_narrow == 1 and (
-                    _is_facing(sx, sy, ax, ay, mounts.cosine[sensor], mounts.sine[sensor], radius) == 0
-                ):
+                cosine = mounts.cosine[sensor]
+                if cosine > 0.0 and _is_facing(sx, sy, ax, ay, cosine, mounts.sine[sensor], radius) == 0:
                     continue
                 for ray in range(mounts.first_ray[sensor], mounts.last_ray[sensor]):
                     way_x = c * rays.x[ray] - s * rays.y[ray]
