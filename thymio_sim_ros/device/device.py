@@ -66,7 +66,7 @@ class AsebaDevice:
         self.load_meter = LoadMeter()
         """Counts of native calls and events."""
         settings = Settings(options.settings_file)
-        indicators = Indicators(described.addresses, lambda address: self._inputs.is_measured(address))
+        indicators = Indicators(described.addresses)
         outputs = Outputs(self.layout, settings, indicators)
         self.services = FirmwareServices(
             node_id,
@@ -270,7 +270,7 @@ class AsebaDevice:
         if self._indicators_ns <= now_ns:
             self._indicators_ns = NEVER_NS
             if not is_off:
-                self._outputs.queue(*self._indicators.update(self._vm.variables.words))
+                self._outputs.queue(*self._indicators.update(self._vm.variables.words, self._inputs.is_measured))
         self.end_tick(now_ns)
         if self._indicators.is_animated and not is_off:
             self._plan_indicators(now_ns)

@@ -20,7 +20,7 @@ class Robot:
         self.addresses = target(layout).addresses
         self.memory = [0] * target(layout).variables_size
         self.measured: set[int] = set()
-        self.indicators = Indicators(self.addresses, self.measured.__contains__)
+        self.indicators = Indicators(self.addresses)
         self.lights: dict[str, tuple[int, ...]] = {}
         self.sounds: list[int] = []
 
@@ -31,7 +31,8 @@ class Robot:
             assert len(words) == size
             self.memory[address : address + size] = words
             self.measured.add(address)
-        commands = [command for _ in range(updates) for command in self.indicators.update(self.memory)]
+        is_measured = self.measured.__contains__
+        commands = [command for _ in range(updates) for command in self.indicators.update(self.memory, is_measured)]
         for command in commands:
             if isinstance(command, ShowOnLeds):
                 self.lights[command.group] = command.levels

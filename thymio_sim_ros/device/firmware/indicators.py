@@ -53,14 +53,9 @@ def _locate(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[
 class Indicators:
     """The indicators of one robot. Invariant: a command is returned for a group only if its levels have changed."""
 
-    def __init__(self, addresses: Mapping[str, tuple[int, int]], is_measured: Callable[[int], bool]) -> None:
-        """Create the indicators whose variables all exist.
-
-        Args:
-            addresses: address and size of each variable.
-            is_measured: returns whether a sensor has written an address since the reset.
-        """
-        self._addresses, self._is_measured = addresses, is_measured
+    def __init__(self, addresses: Mapping[str, tuple[int, int]]) -> None:
+        """Create the indicators whose variables all exist; `addresses` has address and size of each variable."""
+        self._addresses = addresses
         self._buttons = [addresses[name][0] for name in ButtonsIndicator.variables]
         places = [addresses[name] for make in INDICATORS for name in make().variables if name in addresses]
         self.addresses = tuple(address for address, _ in places)
@@ -139,8 +134,13 @@ class Indicators:
             for group, levels in indicator.levels((words,)).items()
         )
 
-    def update(self, memory: Sequence[int]) -> Sequence[Command]:
-        """Return commands for changed lights, and sounds for touched buttons; `memory` has all words (int16)."""
+    def update(self, memory: Sequence[int], is_measured: Callable[[int], bool]) -> Sequence[Command]:
+        """Return commands for changed lights, and sounds for touched buttons.
+
+        Args:
+            memory: all words (int16).
+            is_measured: returns whether a sensor has written an address since the reset.
+        """
         parts = [memory[begin:end] for begin, end in self._spans]
         if parts == self._last and not self.is_animated and not self._without_data:
             return ()
@@ -149,7 +149,9 @@ class Indicators:
         commands: list[Command] = []
         for indicator, places, used in self._indicators:
             if indicator in self._without_data:
-                self._update_first(indicator, places, commands)
+                if self._has_data(indicator, is_measured):
+                    self._without_data.discard(indicator)
+                    self._update_one(indicator, places, commands)
             elif not used.isdisjoint(changed) or indicator.is_animated:
                 self._update_one(indicator, places, commands)
         if not self._button_parts.isdisjoint(changed):
@@ -157,12 +159,10 @@ class Indicators:
         self.is_animated = any(indicator.is_animated for indicator in self._animated)
         return commands
 
-    def _update_first(self, indicator: Indicator, places: Places, commands: list[Command]) -> None:
-        """Update an indicator that had no data, if its variables have been measured since the reset."""
+    def _has_data(self, indicator: Indicator, is_measured: Callable[[int], bool]) -> bool:
+        """Whether one of its variables has been measured since the reset, or it has none."""
         addresses = [self._addresses[name][0] for name in indicator.variables]
-        if not addresses or any(map(self._is_measured, addresses)):
-            self._without_data.discard(indicator)
-            self._update_one(indicator, places, commands)
+        return not addresses or any(map(is_measured, addresses))
 
     def _update_one(self, indicator: Indicator, places: Places, commands: list[Command]) -> None:
         assert self._last is not None

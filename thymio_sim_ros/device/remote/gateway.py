@@ -6,8 +6,6 @@ belong to that program.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from aseba_vm import protocol
 from aseba_vm.protocol import Message
 from thymio_sim_ros.device.remote.remote_device import RemoteHost
@@ -23,9 +21,8 @@ _CONTROLS = (protocol.SetBytecode, protocol.Reset, protocol.Run, protocol.Pause,
 class Gateway:
     """Passes messages between clients and the robot of a session. Invariant: messages are kept only for clients."""
 
-    def __init__(self, session: Session, host: RemoteHost, flush: Callable[[], None]) -> None:
-        """`flush` sends what waits in the session."""
-        self._session, self._host, self._flush = session, host, flush
+    def __init__(self, session: Session, host: RemoteHost) -> None:
+        self._session, self._host = session, host
         self._clients: set[int] = set()
         self._outbox: list[Message] = []
         self._words: list[int] = []
@@ -67,7 +64,7 @@ class Gateway:
         if isinstance(message, _CONTROLS):
             self._host.device.run_control.release()
         self._session.client.send(message)
-        self._flush()
+        self._host.device.on_run()
         return []
 
     def install_bytecode(self) -> None:

@@ -33,7 +33,7 @@ class RemoteRobot:
         """The robot as the owner of programs needs it; a Thymio II until it has described itself."""
         self.host = RemoteHost(self.device)
         """The selection of its program."""
-        self.gateway = Gateway(self._session, self.host, lambda: self.device.on_run())
+        self.gateway = Gateway(self._session, self.host)
         """The robot as a node for other clients."""
         self.connections = 0
         """Number of times that the robot has connected."""

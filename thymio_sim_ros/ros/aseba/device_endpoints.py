@@ -6,7 +6,7 @@ Topics: docs/spec/ros-interface.md section 6.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from functools import partial
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
@@ -19,33 +19,24 @@ from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.device.programs.status import OFF, RUNNING
 from thymio_sim_ros.device.robot_device import RobotDevice, RobotHost
-from thymio_sim_ros.engine.inputs import BreakpointsSet, Controlled, DeviceStart, Loaded, VariableSet
+from thymio_sim_ros.engine.inputs import BreakpointsSet, Controlled, DeviceStart, Loaded
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
 from thymio_sim_ros.ros.aseba.event_endpoints import EventEndpoints
 from thymio_sim_ros.ros.aseba.program_owner import ProgramOwner
+from thymio_sim_ros.ros.aseba.runtime_values import DebugOptions, RuntimeValues
 from thymio_sim_ros.ros.aseba.status_endpoints import LoadedProgram, StatusEndpoints, describe_position
 from thymio_sim_ros.ros.aseba.variable_endpoints import VariableEndpoints
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 
-__all__ = ["DebugOptions", "DeviceEndpoints"]
+__all__ = ["DeviceEndpoints"]
 
 SERVICES = ("run", "pause", "step", "step_line", "stop", "reset")
 """Run control by services, `aseba/<word>`."""
 
 ALL = "*"
 """In `DebugOptions.local_events`: all there are."""
-
-
-@dataclass(frozen=True, slots=True)
-class DebugOptions:
-    """Debug options of one robot: breakpoint lines, variables and local events with topics, language of help texts."""
-
-    breakpoints: tuple[int, ...] = ()
-    watch: tuple[str, ...] = ()
-    local_events: tuple[str, ...] = ()
-    language: str = "en"
 
 
 class DeviceEndpoints:
@@ -61,14 +52,13 @@ class DeviceEndpoints:
         number: int,
         emit: Callable[[DeviceEndpoints, str, Sequence[int]], None],
         diagnostics: RuntimeDiagnostics,
-        layout: Callable[[], str],
-        debug_options: DebugOptions | None = None,
+        values: RuntimeValues,
         is_simulated: bool = True,
     ) -> None:
         """`robot`: its name for the owner; `emit` takes the events that are emitted on its topics.
 
-        `layout` returns the layout of the variables of all robots. `is_simulated`: whether the robot's machine is in
-        this process.
+        `values` have the layout of the variables of all robots, and debug options. `is_simulated`: whether the robot's
+        machine is in this process.
         """
         self.names = names
         self.number = number
@@ -77,9 +67,9 @@ class DeviceEndpoints:
         self.share: Assignment | None = None
         self.on_program: Callable[[ThymioProgram], None] = lambda program: None
         """Called with each program that the robot begins to run."""
-        self._node, self._owner, self._layout = node, owner, layout
+        self._node, self._owner, self._values = node, owner, values
         self._diagnostics = diagnostics
-        self._debug_options = debug_options or DebugOptions()
+        self._debug_options = values.debug_options(names.name)
         self._program = self._own = load_program("", "none")
         self._device: RobotDevice | None = None
         """The device whose program was published last."""
@@ -87,12 +77,8 @@ class DeviceEndpoints:
         self._overload = ""
         self._warn = ThrottledLog(node)
         self._status = StatusEndpoints(node, names, number=number)
-        self._events = EventEndpoints(
-            node, names, lambda event, args: emit(self, event, args), warn=self._warn, messages=diagnostics.messages
-        )
-        self._variables = VariableEndpoints(
-            node, names, lambda: self.device, self._write_variable, language=self._debug_options.language
-        )
+        self._events = EventEndpoints(node, names, partial(emit, self), warn=self._warn, messages=diagnostics.messages)
+        self._variables = VariableEndpoints(node, names, owner, robot, language=self._debug_options.language)
         self._shutdown = node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
         self._services = [
             node.create_service(Trigger, names.topic(f"aseba/{word}"), self._controller(word)) for word in SERVICES
@@ -127,7 +113,7 @@ class DeviceEndpoints:
         """What the device starts with: a program, or a built-in behavior; `share` has notes for the user."""
         self.share = share
         own = share.program if share is not None else None
-        self._own = own or load_program("", "none", self._layout())
+        self._own = own or load_program("", "none", self._values.params.layout)
         return DeviceStart(self.number, self._own, behaviour, self._debug_options.breakpoints)
 
     def load(self, share: Assignment | None, behaviour: str = "") -> None:
@@ -217,9 +203,6 @@ class DeviceEndpoints:
     def _set_breakpoints(self, lines: tuple[int, ...]) -> None:
         if lines != self.host.breakpoints and not self._owner.is_replaying:
             self._owner.apply(BreakpointsSet(self.robot, lines))
-
-    def _write_variable(self, name: str, words: Sequence[int]) -> None:
-        self._owner.apply(VariableSet(self.robot, name, tuple(words)))
 
     def _on_shutdown(self, _message: Empty) -> None:
         self._owner.apply(Controlled(self.robot, "switch_off"))

@@ -248,8 +248,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
             number=number,
             emit=self.emitter.emit,
             diagnostics=self._diagnostics,
-            layout=lambda: self._values.params.layout,
-            debug_options=self._values.debug_options(names.name),
+            values=self._values,
             is_simulated=self._target is None,
         )
         if self.standalone is not None and self._target is not None:

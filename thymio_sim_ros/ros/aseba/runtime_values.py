@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
-from thymio_sim_ros.ros.aseba.device_endpoints import DebugOptions
 from thymio_sim_ros.ros.aseba.parameters import RuntimeParams
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 
-__all__ = ["RuntimeValues"]
+__all__ = ["DebugOptions", "RuntimeValues"]
+
+
+@dataclass(frozen=True, slots=True)
+class DebugOptions:
+    """Debug options of one robot: breakpoint lines, variables and local events with topics, language of help texts."""
+
+    breakpoints: tuple[int, ...] = ()
+    watch: tuple[str, ...] = ()
+    local_events: tuple[str, ...] = ()
+    language: str = "en"
 
 
 class RuntimeValues:

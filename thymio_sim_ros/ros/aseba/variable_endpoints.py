@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from rcl_interfaces.msg import (
@@ -24,7 +24,9 @@ from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.device.editor.help import help_of
 from thymio_sim_ros.device.robot_device import RobotDevice
+from thymio_sim_ros.engine.inputs import VariableSet
 from thymio_sim_ros.ros.aseba.event_endpoints import unique_topic_words
+from thymio_sim_ros.ros.aseba.program_owner import ProgramOwner
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 
@@ -37,23 +39,14 @@ _ELEMENT = re.compile(r"(?P<name>.+)\[(?P<index>\d{1,5})\]")
 
 
 class VariableEndpoints:
-    """Reads and writes the variables of a device."""
+    """Reads and writes the variables of a robot's device."""
 
-    def __init__(
-        self,
-        node: Node,
-        names: RobotNames,
-        device: Callable[[], RobotDevice],
-        write: Callable[[str, Sequence[int]], None],
-        *,
-        language: str,
-    ) -> None:
-        """`device` returns the device of the robot; `write` writes a whole variable."""
+    def __init__(self, node: Node, names: RobotNames, owner: ProgramOwner, robot: str, *, language: str) -> None:
+        """`owner` has the device of the robot, `robot` is its name there; `language` is that of help texts."""
         self.language = language
         self._node = node
         self._names = names
-        self._device = device
-        self._write_variable = write
+        self._owner, self._robot = owner, robot
         self._watched: dict[str, Any] = {}
         self._published: dict[str, tuple[int, ...]] = {}
         self._places: list[tuple[str, int, int]] = []
@@ -70,7 +63,7 @@ class VariableEndpoints:
 
     def set_program(self, watch: Sequence[str]) -> None:
         """Set up the variables of a new program, and topics for the watched ones that exist."""
-        places = self._device().variables.addresses()
+        places = self._device.variables.addresses()
         self._places = sorted(((name, *place) for name, place in places.items()), key=lambda item: item[1])
         self._layout = convert_readings.layout([(name, size) for name, _, size in self._places])
         self._last_table = []
@@ -87,7 +80,7 @@ class VariableEndpoints:
     def publish_changes(self) -> None:
         """Publish variables that changed since the last call."""
         for name, publisher in self._watched.items():
-            words = self._device().variables.get(name)
+            words = self._device.variables.get(name)
             if self._published.get(name) != words:
                 self._published[name] = words
                 publisher.publish(Int16MultiArray(data=list(words)))
@@ -101,11 +94,15 @@ class VariableEndpoints:
         for service in self._services:
             self._node.destroy_service(service)
 
+    @property
+    def _device(self) -> RobotDevice:
+        return self._owner.hosts[self._robot].device
+
     def _topic(self, word: str) -> str:
         return full_name(self._node, self._names.topic(f"aseba/variables/{word}"))
 
     def _publish_table(self) -> None:
-        words = self._device().variables.words()
+        words = self._device.variables.words()
         now_s = time.monotonic()
         if words != self._last_table or now_s - self._last_table_s >= AT_LEAST_EVERY_S:
             self._last_table, self._last_table_s = words, now_s
@@ -118,7 +115,7 @@ class VariableEndpoints:
     def _value(self, name: str) -> ParameterValue:
         whole, index = _element(name)
         try:
-            words = self._device().variables.get(whole)
+            words = self._device.variables.get(whole)
             found = words if index is None else (words[index],)
         except (KeyError, IndexError):
             return ParameterValue()
@@ -142,13 +139,16 @@ class VariableEndpoints:
         if index is None:
             self._write_variable(whole, words)
             return
-        all_words = list(self._device().variables.get(whole))
+        all_words = list(self._device.variables.get(whole))
         if index >= len(all_words):
             raise IndexError(f"{whole}: found element {index}, expected 0 to {len(all_words) - 1}")
         if len(words) != 1:
             raise ValueError(f"{name}: found {len(words)} integers, expected 1")
         all_words[index] = words[0]
         self._write_variable(whole, all_words)
+
+    def _write_variable(self, name: str, words: Sequence[int]) -> None:
+        self._owner.apply(VariableSet(self._robot, name, tuple(words)))
 
     def _on_list(self, request: ListParameters.Request, response: ListParameters.Response) -> ListParameters.Response:
         names = [name for name, _, _ in self._places if _is_wanted(name, list(request.prefixes), request.depth)]
@@ -163,7 +163,7 @@ class VariableEndpoints:
         return response
 
     def _descriptor(self, name: str) -> ParameterDescriptor:
-        place = self._device().variables.addresses().get(name)
+        place = self._device.variables.addresses().get(name)
         if place is None:
             return ParameterDescriptor(name=name)
         return ParameterDescriptor(
