@@ -22,7 +22,7 @@ MAX_PENDING = 100
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """How pending events are handled."""
+    """Rules by which pending events are handled."""
 
     coalesces: bool
     """Whether several occurrences of a pending local event count as one."""

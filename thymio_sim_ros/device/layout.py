@@ -153,7 +153,7 @@ def extend(base: TargetDescription, sensing: Sequence[Sensor], acting: Sequence[
     for native in (native for actuator in acting for native in actuator.aseba.natives):
         parameters = tuple(Parameter(name, size) for name, size in native.signature)
         known = natives.setdefault(native.name, NativeFunction(native.name, parameters, native.description))
-        sizes, expected = ([one.size for one in both] for both in (parameters, known.parameters))
+        sizes, expected = ([parameter.size for parameter in both] for both in (parameters, known.parameters))
         if sizes != expected:
             raise ValueError(
                 f"native {native.name}: a plug-in declares parameters of {sizes} words, expected {expected}"

@@ -1,4 +1,5 @@
-"""A robot as a node of an Aseba network: what it answers to the messages of tools, and what it sends by itself.
+"""A robot as a node of an Aseba network: its answers to the messages of tools, and the messages that it sends by
+itself.
 
 Source: docs/spec/aseba-protocol.md section 1.4, with the version that the client states (section 1.2). Bytecode that a
 tool writes becomes the program of the robot (`programs/foreign.py`).

@@ -1,4 +1,4 @@
-"""What the owner of a robot's Aseba side needs of it, be it a simulated device or a robot behind a network."""
+"""Interface of a robot's Aseba side for its owner, be it a simulated device or a robot behind a network."""
 
 from __future__ import annotations
 

@@ -16,14 +16,14 @@ INT16 = range(-0x8000, 0x8000)
 class DeviceVariables:
     """The variables of the robot and of its program, in the memory of the machine.
 
-    A program writes the memory without a trace. Whatever derives values from variables (commands, indicators) therefore
-    compares `writes` first, and the memory itself only if that count has changed.
+    A program writes the memory without notice. Parts that derive values from variables (commands, indicators) therefore
+    compare `writes` first, and the memory itself only if that count has changed.
     """
 
     def __init__(self, vm: VirtualMachine, due: DueTime) -> None:
-        """Create the variables of a machine. Whatever may have written them makes `due` now."""
+        """Create the variables of a machine. Possible writes make `due` now."""
         self.writes = 0
-        """Number of runs, resets and calls of `set`: what may have written the memory, apart from readings."""
+        """Number of runs, resets and calls of `set`, which may have written the memory; readings do not count."""
         self.last_clear = 0
         """Value of `writes` after the last `clear`."""
         self.sets = 0

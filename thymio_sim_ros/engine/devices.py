@@ -75,7 +75,7 @@ class Devices:
         self.emitted: list[tuple[str, EmittedEvent]] = []
         self.ran: set[str] = set()
         self.runs = 0
-        """How often the devices have run."""
+        """Number of times that the devices have run."""
         self.present: Mapping[str, RobotDevice] = {}
         """The devices that run: those of the robots that are in the world."""
         self._sent: list[SentMessages] = []
@@ -119,7 +119,7 @@ class Devices:
                 host.load(start.program)
 
     def starts(self) -> dict[str, DeviceStart]:
-        """What the devices start with after a reset."""
+        """Return the starts of the devices after a reset, by robot."""
         return {
             name: DeviceStart(host.device.node_id, host.user_program, host.behaviour, tuple(host.breakpoints))
             for name, host in self.hosts.items()

@@ -92,7 +92,7 @@ class Engine:
         )
         starts = _device_starts(list(self.world.robots), programs, behaviour)
         self.start = RunStart(playground, self.world.options, starts, options, shares_numbers)
-        """What the run started with, since the last reset."""
+        """Start of the run, since the last reset."""
         self.recorders: list[Recorder] = []
         """Get the inputs from now on, and digests of the state."""
         self._devices = Devices(self._choose_fed)
@@ -152,7 +152,7 @@ class Engine:
 
     @property
     def runs(self) -> int:
-        """How often devices have run."""
+        """Number of times that the devices have run."""
         return self._devices.runs
 
     @property

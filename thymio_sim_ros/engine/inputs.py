@@ -40,12 +40,12 @@ __all__ = [
 ]
 
 CONTROLS = ("run", "pause", "step", "step_line", "stop", "reset", "switch_off")
-"""What `Controlled` can do to a robot: the methods of its run control; `run` also switches it on."""
+"""Words of `Controlled`, the methods of the run control of a robot; `run` also switches it on."""
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceStart:
-    """What the device of a robot starts with: its number on the network, its program, and breakpoints at lines of it.
+    """Start of the device of a robot: its number on the network, its program, and breakpoints at lines of the program.
 
     With a `behaviour`, such as "menu", the robot is switched on with that, and the program waits in the menu.
     """
@@ -58,7 +58,7 @@ class DeviceStart:
 
 @dataclass(frozen=True, slots=True)
 class RunStart:
-    """What a run starts with: its world, and the devices by the names of their robots."""
+    """Start of a run: its world, and the devices by the names of their robots."""
 
     playground: Playground
     world: WorldOptions

@@ -63,7 +63,7 @@ def is_link(name: str) -> str:
 
 
 def is_clutter(path: str) -> bool:
-    """Whether a path leads to what systems and tools add beside the work: `.git`, `.DS_Store`, `__MACOSX`, …"""
+    """Whether a path leads to files that systems and tools add: `.git`, `.DS_Store`, `__MACOSX`, …"""
     return any((part.startswith(".") and part not in (".", "..")) or part in _CLUTTER for part in path.split("/"))
 
 
@@ -129,9 +129,9 @@ def read_zip(data: bytes) -> dict[str, bytes]:
 def read_class_zip(data: bytes) -> dict[str, bytes | RejectedError | None]:
     """Read a zip of the whole class.
 
-    A file that is rejected comes as the reason, so that it costs its own submission only. None stands for what is no
-    file: clutter, and a folder, whose path ends in "/.", so that a pupil without files is not forgotten. Raises
-    RejectedError if the zip as a whole is damaged or too large, or has a path out of it.
+    A rejected file is replaced by the reason, so that the other submissions are graded. Clutter and folders are None;
+    the path of a folder ends in "/.", so that a pupil without files is listed, too. Raises RejectedError if the zip as
+    a whole is damaged or too large, or has a path out of it.
     """
     files: dict[str, bytes | RejectedError | None] = {}
     with _opened_zip(data) as archive:
@@ -204,7 +204,7 @@ def _twice(name: str) -> RejectedError:
 
 
 def unpack(files: Content) -> dict[str, bytes]:
-    """Replace zips by their files, if a submission is nothing but zips; zips in zips stay as they are.
+    """Replace zips by their files, if a submission has only zips; zips in zips stay as they are.
 
     Raises RejectedError.
     """

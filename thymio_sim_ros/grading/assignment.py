@@ -1,4 +1,4 @@
-"""What submissions are graded with: the tests, the expected files, the limits.
+"""Assignments: the tests, the expected files and the limits with which submissions are graded.
 
 An assignment is a pytest file, or a TOML file beside its tests:
 

@@ -21,7 +21,7 @@ def did_not_begin(report: Report) -> bool:
 
 def fails_in_setup(submission: Submission, report: Report) -> bool:
     """Whether the tests of a submission did not begin, or one failed before it, without naming its files."""
-    return did_not_begin(report) or any(_reason(submission, one) for one in report.outcomes.values())
+    return did_not_begin(report) or any(_reason(submission, outcome) for outcome in report.outcomes.values())
 
 
 def common_failure(graded: Iterable[tuple[Submission, Report]], tests: Sequence[GradedTest]) -> str:

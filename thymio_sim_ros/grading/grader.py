@@ -79,8 +79,8 @@ def run_submission(submission: Submission, *, assignment: Assignment, tests: tup
         except DestroyedError as error:
             return Report({}, remark=f"{_DESTROYED} ({error})")
         if report.remark:  # what is printed beside hidden tests is not for pupils
-            said = () if assignment.hidden.issuperset(part.tests) else report.notes
-            return Report({}, remark=": ".join([report.remark, *said]))
+            notes = () if assignment.hidden.issuperset(part.tests) else report.notes
+            return Report({}, remark=": ".join([report.remark, *notes]))
         outcomes |= report.outcomes
     return Report(outcomes)
 

@@ -44,9 +44,9 @@ def pupils(metadata: object) -> dict[str, Pupil]:
 
 def _pupil(entry: object) -> Pupil:
     listed = entry.get(":submitters") if isinstance(entry, dict) else None
-    people = [one for one in listed if isinstance(one, dict)] if isinstance(listed, list) else []
-    names = [name for one in people if (name := _text(one, ":name"))]
-    keys = [_text(one, ":sid") or _text(one, ":email") for one in people]
+    people = [person for person in listed if isinstance(person, dict)] if isinstance(listed, list) else []
+    names = [name for person in people if (name := _text(person, ":name"))]
+    keys = [_text(person, ":sid") or _text(person, ":email") for person in people]
     return Pupil(" and ".join(names), "\0".join(sorted(keys)) if all(keys) else "")
 
 

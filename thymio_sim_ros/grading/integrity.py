@@ -1,8 +1,8 @@
 """Finds functions of the tests that a submission has replaced in the process of the test.
 
-Code in the same interpreter can change whatever it wants, this check included. It finds assignments to functions,
-methods and classes of the fixtures, the checks, pytest and the tests, methods that are added to their classes, and
-functions of Python that the tests use: those that are built in, and those of modules such as `math`.
+Code in the same interpreter can change anything, also this check. It finds assignments to functions, methods and
+classes of the fixtures, the checks, pytest and the tests, methods that are added to their classes, and functions of
+Python that the tests use: those that are built in, and those of modules such as `math`.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ _REASONS: Mapping[str, str] = {
     "process limit": "the program started more than {processes} processes and threads: look for a loop that never ends",
     "file limit": "the program has too many open files: close each one after use",
 }
-"""What each outcome means, and what to do."""
+"""Meaning of each outcome, and advice."""
 
 _SIGNS: Mapping[str, str] = {
     "output limit": r"printed more than [\d.]+ MB",

@@ -28,7 +28,7 @@ def is_copy(name: str, wanted: str) -> bool:
     A name that has such a mark itself, as `level_2.aesl`, is no copy of another one that has, as `level_1.aesl`.
     """
     suffix = PurePosixPath(wanted).suffix.casefold()
-    found, target = (unicodedata.normalize("NFC", PurePosixPath(one).name).casefold() for one in (name, wanted))
+    found, target = (unicodedata.normalize("NFC", PurePosixPath(path).name).casefold() for path in (name, wanted))
     while suffix in found.removesuffix(suffix) and (shorter := _APPENDED.sub("", found)) != found:
         found = shorter
     stem = found.removesuffix(suffix).rstrip()

@@ -36,7 +36,7 @@ class Verdict:
     output: str = ""
     cpu_s: float = 0.0
     files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
-    """What explains a failure: `run.jsonl` (run log) and `trace.svg`."""
+    """Files that explain a failure: `run.jsonl` (run log) and `trace.svg`."""
 
     @property
     def points(self) -> Fraction:
@@ -55,7 +55,7 @@ class Graded:
     verdicts: Sequence[Verdict]
     remark: str = ""
     for_pupil: str = ""
-    """What the pupil reads in place of a remark about the teacher's machine."""
+    """Text for the pupil in place of a remark about the teacher's machine."""
 
     @property
     def points(self) -> Fraction:

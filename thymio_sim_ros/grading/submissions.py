@@ -45,9 +45,9 @@ _Read = bytes | RejectedError | None
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """What one pupil handed in: relative paths with slashes → content.
+    """Files of one pupil: relative paths with slashes → content.
 
-    `problem` says why it cannot be graded, else it is empty. `notes` are what the teacher should know.
+    `problem`: why it cannot be graded, else empty. `notes`: for the teacher.
     """
 
     name: str
@@ -78,7 +78,7 @@ def find(path: Path) -> list[Submission]:
         merged[key] = _merged(merged[key], entry) if key in merged else entry
     if not merged:
         raise GradingError(f"{path}: found no submissions, expected a folder, file or zip for each pupil")
-    return _with_unique_names(sorted(merged.values(), key=lambda one: (one.name.casefold(), one.name, one.identifier)))
+    return _with_unique_names(sorted(merged.values(), key=_place_in_class))
 
 
 def read_one(path: Path) -> Submission:
@@ -172,7 +172,7 @@ def _class_entries(path: Path) -> list[Submission]:
 
 
 def _with_numbers(name: str) -> list[tuple[str, int, str]]:
-    """A key for sorting by which 99 comes before 100: learning platforms count what is handed in."""
+    """A key for sorting by which 99 comes before 100: learning platforms number submissions."""
     numbers = [digits.lstrip("0") for digits in _DIGITS.findall(name)]
     return [(text, len(digits), digits) for text, digits in zip(_DIGITS.split(name), [*numbers, ""], strict=True)]
 
@@ -244,6 +244,10 @@ def _merged(one: Submission, other: Submission) -> Submission:
         problem=one.problem or other.problem,
         notes=tuple(dict.fromkeys([*one.notes, *notes])),
     )
+
+
+def _place_in_class(submission: Submission) -> tuple[str, str, str]:
+    return submission.name.casefold(), submission.name, submission.identifier
 
 
 def _with_unique_names(submissions: list[Submission]) -> list[Submission]:

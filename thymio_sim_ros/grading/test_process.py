@@ -2,7 +2,7 @@
 
 Usage: python -m thymio_sim_ros.grading.test_process <folder for logs> <test file>… <report> <control>
 
-`report` and `control` are file descriptors; `sandbox/report_protocol.py` describes what goes through them.
+`report` and `control` are file descriptors; `sandbox/report_protocol.py` describes their content.
 """
 
 from __future__ import annotations
@@ -207,12 +207,13 @@ class GradingPlugin:
 def _not_ended(folder: str) -> Generator[None, object, object]:
     """Run a phase of a test, in which exceptions that end Python or pytest are failures of this test.
 
-    `folder`: where the files are whose lines are named.
+    `folder`: folder of the files whose lines are named.
     """
     try:
         return (yield)
     except tuple(_ENDS) as error:
-        frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.startswith(f"{folder}/")]
+        stack = traceback.extract_tb(error.__traceback__)
+        frames = [frame for frame in stack if frame.filename.startswith(f"{folder}/")]
         where = f"{frames[-1].filename}, line {frames[-1].lineno}: " if frames else ""
         what = next(text for kind, text in _ENDS.items() if isinstance(error, kind))
         text = f"{where}{what} ends the program before the test is over: remove it"

@@ -156,7 +156,7 @@ def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str
     for node, name, value in sorted(rules, key=lambda rule: rule[0] not in ("", SUITE)):
         found = targets(name) if node in ("", SUITE) else ((node, name),)
         if not found:
-            known = [one for values in defaults(SuiteConfig()).values() for one in parameters.by_name(values)]
+            known = [key for values in defaults(SuiteConfig()).values() for key in parameters.by_name(values)]
             warnings.append(
                 f"parameter {name} is not a parameter of the suite and has no effect{parameters.meant(name, known)}"
             )

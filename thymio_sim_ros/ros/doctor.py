@@ -1,8 +1,8 @@
-"""Examines a running suite as another node sees it: who is connected to whom, what arrives, and what is wrong.
+"""Examines a running suite as another node sees it: its connections, the last messages, and faults.
 
-Simulator and Aseba runtime find what is wrong with endpoints and messages (`rclpy_ext/connections.py`,
-`rclpy_ext/message_reports.py`), the runtime also with its programs; both publish it. This module collects it, with the
-topics that other nodes use.
+Simulator and Aseba runtime find faults of endpoints and messages (`rclpy_ext/connections.py`,
+`rclpy_ext/message_reports.py`), the runtime also those of its programs; both publish them. This module collects them,
+with the topics that other nodes use.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SUITE = ("simulator", "aseba_runtime", "foxglove_bridge", "web_ui")
 FIND_S = 8.0
 """Longest wait for a simulator: discovery, and the next `/diagnostics`."""
 LOOK_S, LOOKS = 2.0, 4
-"""How long messages are collected, and how often new topics are looked for meanwhile."""
+"""Time for which messages are collected, and number of searches for new topics meanwhile."""
 
 _STATE, _DIAGNOSTICS = "_state", "/diagnostics"
 _OF_EVERY_NODE = frozenset({"/rosout", "/parameter_events", "/clock", _DIAGNOSTICS})
@@ -151,13 +151,13 @@ class _Doctor:
     # --- topics ---
 
     def _uses(self) -> Iterator[TopicUse]:
-        """Yield the topics of the suite that other nodes publish or subscribe to; one of two types is two of them."""
+        """Yield the topics of the suite that other nodes publish or subscribe to, once for each type."""
         for topic, kinds in self._node.get_topic_names_and_types():
             if topic in _OF_EVERY_NODE or not self._is_of_robot(topic):
                 continue
             published = self._node.get_publishers_info_by_topic(topic)
-            subscribed = [one for one in self._node.get_subscriptions_info_by_topic(topic) if one.node_name != NAME]
-            names = {one.node_name for one in (*published, *subscribed)}
+            subscribed = [info for info in self._node.get_subscriptions_info_by_topic(topic) if info.node_name != NAME]
+            names = {info.node_name for info in (*published, *subscribed)}
             if names.intersection(SUITE) and names.difference(SUITE):
                 yield from (TopicUse(topic, kind, _nodes(published, kind), _nodes(subscribed, kind)) for kind in kinds)
 
@@ -165,7 +165,7 @@ class _Doctor:
         return not self._robot or topic.startswith(f"/{self._robot.strip('/')}/")
 
     def _listen(self, use: TopicUse) -> None:
-        """Subscribe to a topic of the suite's type; one process cannot use another one on the same topic."""
+        """Subscribe to a topic with the type of the suite; one process cannot use two types on the same topic."""
         nodes = (node.rpartition("/")[2] for node in (*use.publishers, *use.subscribers))
         if not use.publishers or not set(nodes).intersection(SUITE) or (use.name, use.type) in self._listened:
             return
@@ -189,8 +189,8 @@ class _Doctor:
     # --- what is wrong ---
 
     def _describe(self, state: Mapping[str, Any]) -> None:
-        """Take over what a simulator says about itself."""
-        names = tuple(one["name"] for one in state["robots"])
+        """Process the state that a simulator publishes."""
+        names = tuple(robot["name"] for robot in state["robots"])
         if self._robot and self._robot.strip("/") not in names:
             listed = ", ".join(filter(None, names)) or "one without a name (its topics have no prefix)"
             raise NothingFoundError(f"no robot '{self._robot}': the robots are {listed}")
@@ -200,8 +200,8 @@ class _Doctor:
             found.faults.append(
                 "The simulation is paused: press Play on the page, or call /simulator/pause with data false"
             )
-        fallen = [one["name"] or one["robot"] for one in state["robots"] if one["fallen"]]
-        found.faults += [f"Robot {one} fell off an edge: put it back on the page, or reset" for one in fallen]
+        fallen = [robot["name"] or robot["robot"] for robot in state["robots"] if robot["fallen"]]
+        found.faults += [f"Robot {robot} fell off an edge: put it back on the page, or reset" for robot in fallen]
         found.faults += state["faults"]
 
     def _other_faults(self) -> Iterable[str]:
@@ -230,7 +230,7 @@ class _Doctor:
 def _nodes(infos: Iterable[Any], kind: str) -> tuple[str, ...]:
     """The nodes of the endpoints of a type."""
     return tuple(
-        sorted({f"{one.node_namespace.rstrip('/')}/{one.node_name}" for one in infos if one.topic_type == kind})
+        sorted({f"{info.node_namespace.rstrip('/')}/{info.node_name}" for info in infos if info.topic_type == kind})
     )
 
 

@@ -1,6 +1,6 @@
 """docs/ros.md from the declarations of the nodes: `python -m thymio_sim_ros.ros.generate_ros_docs > docs/ros.md`.
 
-Plug-ins of other packages are left out: the page is about what is shipped.
+Plug-ins of other packages are left out: the page describes this package only.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class _Line:
 
     @property
     def sort(self) -> tuple[str, ...]:
-        """What merged topics have in common."""
+        """Properties that merged topics have in common."""
         word = self.topic.rpartition("/")[2]
         frame = self.frame.replace(f"_{word}_", "_…_")
         return (self.place, self.type, self.rate, frame, self.profile, self.about)
@@ -132,8 +132,10 @@ def _published() -> Iterator[_Line]:
 
 
 def _listened() -> Iterator[_Line]:
-    for one in robot_inputs():
-        yield _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
+    for robot_input in robot_inputs():
+        yield _Line(
+            robot_input.topic, type_name(robot_input.type), "", "", qos.kind_of(robot_input.profile), robot_input.about
+        )
 
 
 def _of_driver() -> Iterator[tuple[str, str, str, str]]:
@@ -142,9 +144,14 @@ def _of_driver() -> Iterator[tuple[str, str, str, str]]:
 
 
 def _of_world() -> Iterator[_Line]:
-    for topic, one in world_topics.TOPICS.items():
+    for topic, world_topic in world_topics.TOPICS.items():
         yield _Line(
-            _in_no_namespace(topic), type_name(one.type), one.rate, one.frame, qos.kind_of(one.profile), one.about
+            _in_no_namespace(topic),
+            type_name(world_topic.type),
+            world_topic.rate,
+            world_topic.frame,
+            qos.kind_of(world_topic.profile),
+            world_topic.about,
         )
     moving = "`map -> odom -> base_link` and the wheels; `map -> odom` compensates the drift of the odometry"
     yield _Line("/tf", tf2_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
@@ -235,8 +242,8 @@ def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
 def _grouped(values: object) -> Iterator[tuple[parameters.Declared, str]]:
     """The first parameter of each group, and the name of its row."""
     groups: dict[tuple[str, str], list[parameters.Declared]] = {}
-    for one in parameters.declared(values):
-        groups.setdefault((_outer(one.name), one.metadata["text"]), []).append(one)
+    for parameter in parameters.declared(values):
+        groups.setdefault((_outer(parameter.name), parameter.metadata["text"]), []).append(parameter)
     for group in groups.values():
         first = group[0]
         several = f"{first.name.split('.')[0]}.<sensor>.{first.name.rpartition('.')[2]}"
@@ -250,7 +257,7 @@ def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
     for name in suite:
         nodes = combined_parameters.targets(name)
         node, own_name = nodes[-1]
-        called = [f"`{one}`" if own == name else f"`{one}` (its `{own}`)" for one, own in nodes]
+        called = [f"`{target}`" if own == name else f"`{target}` (its `{own}`)" for target, own in nodes]
         yield f"`{name}`", ", ".join(called), _value(parameters.by_name(values[node])[own_name])
     for node, own in values.items():
         for first, line_name in _grouped(own):
@@ -268,8 +275,8 @@ def _value(value: object) -> str:
     return f"`{str(value).lower() if isinstance(value, bool) else repr(value) if isinstance(value, str) else value}`"
 
 
-def _limits(one: parameters.Declared) -> str:
-    descriptor = one.descriptor
+def _limits(parameter: parameters.Declared) -> str:
+    descriptor = parameter.descriptor
     for bounds in descriptor.floating_point_range:
         return f"{bounds.from_value:g}…{bounds.to_value:g}"
     for bounds in descriptor.integer_range:

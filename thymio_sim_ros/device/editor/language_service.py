@@ -1,4 +1,4 @@
-"""The language service for editors: what a program can use, and what the compiler says about a text.
+"""The language service for editors: what a program can use, and the findings of the compiler about a text.
 
 Everything is plain data, ready for JSON; docs/aseba_ros.md names the fields. Nothing here changes a device.
 """
@@ -91,9 +91,9 @@ def check(question: Question) -> dict[str, Any]:
 
 
 def describe_target(layout: str = THYMIO, language: str = ENGLISH) -> dict[str, Any]:
-    """What every program of a robot of this layout can use, the most useful first, and the limits it has to keep.
+    """Return what a program for this layout can use, the most useful first, and its limits.
 
-    `topics`: those of the help, in the order in which it lists them.
+    `topics`: topics of the help, in the order in which it lists them.
     """
     memory = target(layout)
     return {
@@ -217,7 +217,7 @@ def _check_node(
 
 
 def _note(kind: str, node: aesl.Node, question: Question, *arguments: str) -> dict[str, Any]:
-    """What was guessed about a node, at its code."""
+    """Return an assumption about a node as a finding at its code."""
     row, column = node.place(0)
     sentence = _sentence(kind, (node.name, *arguments), question.language)
     return _finding(kind, sentence, row + 1, column + 1, 0, node.name)
@@ -254,7 +254,7 @@ def _placed(node: aesl.Node, kind: str, sentence: str, pos: SourcePos | None) ->
 
 
 def _hint(node: aesl.Node, hint: Hint | None, language: str) -> dict[str, Any] | None:
-    """What was probably meant; places of the edit are those of the file, its text is that of the program."""
+    """Return a hint with the places of its edit in the file; the text of the edit is program text."""
     if hint is None:
         return None
     edit = None

@@ -1,4 +1,4 @@
-"""What a program declares, and where: names for editors, also of a text that does not compile."""
+"""Declarations of a program and their places, for editors; also of a text that does not compile."""
 
 from __future__ import annotations
 

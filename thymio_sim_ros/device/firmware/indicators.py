@@ -103,7 +103,7 @@ class Indicators:
         """End the indicator of these lights, because a program sets them; return the groups that it had lit."""
         groups = PROXIMITY_GROUPS if group in PROXIMITY_GROUPS else (group,)
         self._claimed_groups.update(groups)
-        return [one for one in groups if self._shown.pop(one, None) is not None]
+        return [name for name in groups if self._shown.pop(name, None) is not None]
 
     def mute_buttons(self) -> None:
         """End the sounds of buttons, because a program uses sound."""

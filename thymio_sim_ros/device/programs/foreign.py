@@ -58,7 +58,7 @@ def foreign_program(
 
 
 def is_unnamed(program: ThymioProgram, event: str) -> bool:
-    """Whether the event of a program has no name but its number: it means something else in other programs."""
+    """Whether the event of a program has only a number, which has another meaning in other programs."""
     made_up = (f"event_{number}" for number, (name, _) in enumerate(program.events) if name == event)
     return program.is_foreign and event in made_up
 

@@ -24,7 +24,7 @@ class RobotId:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """The program of a robot, or None, and messages for the user about what does not match."""
+    """The program of a robot, or None, and messages for the user about programs and robots that do not match."""
 
     program: ThymioProgram | None
     notes: tuple[str, ...] = ()

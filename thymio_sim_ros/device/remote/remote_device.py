@@ -50,7 +50,7 @@ class RemoteDevice:
     def __init__(self, session: Session, number: int) -> None:
         """`number`: that of the robot until it is connected."""
         self.layout = session.program.own.layout
-        """What the node has described."""
+        """Layout that the node has described."""
         self.radio = (0, 0)
         """Channel and network of the radio; a real robot has one of its own, which is not known."""
         self.notices = Notices()
@@ -63,7 +63,7 @@ class RemoteDevice:
         self.due = DueTime()
         """Always now: whatever waits to be sent is sent whenever the owner runs."""
         self.on_run: Callable[[], None] = lambda: None
-        """Called where a simulated robot would run: whatever waits to be sent is sent then."""
+        """Called where a simulated robot would run: sends the messages that wait."""
         self._session, self._number = session, number
         self._events: list[EmittedEvent] = []
 

@@ -54,7 +54,7 @@ class RemoteRobot:
 
     @property
     def name(self) -> str:
-        """What the robot calls itself, and its number."""
+        """Name, node number and protocol version that the robot reports; empty before it is connected."""
         node = self._session.node
         return (
             "" if node is None else f"{printable(node.description.name)} (node {node.number}, protocol {node.version})"
@@ -62,7 +62,7 @@ class RemoteRobot:
 
     @property
     def target(self) -> TargetDescription:
-        """What the robot has described; before, a Thymio II."""
+        """Description that the robot has sent; before, that of a Thymio II."""
         return target(self.device.layout)
 
     @property

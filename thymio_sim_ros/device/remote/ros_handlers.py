@@ -54,7 +54,7 @@ class RemoteProgram:
 
 def served_natives(target: TargetDescription) -> dict[str, int]:
     """Return the native functions that commands can call on a robot, with their numbers of arguments."""
-    known = {native.name: [one.size for one in native.parameters] for native in target.natives}
+    known = {native.name: [parameter.size for parameter in native.parameters] for native in target.natives}
     return {name: len(known[name]) for name in _WANTED if name in known and set(known[name]) == {1}}
 
 

@@ -63,7 +63,7 @@ class RemoteRunControl:
         """The breakpoints at lines."""
         self._line_step: _LineStep | None = None
         self._program: RemoteProgram | None = None
-        """The program that runs again when a robot that was switched off is switched on."""
+        """The program that runs when the robot is switched on again."""
 
     @property
     def status(self) -> DeviceStatus:

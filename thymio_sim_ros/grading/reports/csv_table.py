@@ -20,7 +20,7 @@ def csv_table(class_: Sequence[Graded], tests: Sequence[GradedTest]) -> str:
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["name", "id", "points", "maximum", "verdict", *short_names(list(tests)), "remark"])
     for graded in class_:
-        each = [number(verdict.points) for verdict in graded.verdicts]
+        points = [number(verdict.points) for verdict in graded.verdicts]
         submission = graded.submission
         row = [
             shown_name(graded),
@@ -29,7 +29,7 @@ def csv_table(class_: Sequence[Graded], tests: Sequence[GradedTest]) -> str:
             number(graded.maximum),
             _verdict(graded),
         ]
-        table.writerow(map(_plain, [*row, *each, shown_remark(graded)]))
+        table.writerow(map(_plain, [*row, *points, shown_remark(graded)]))
     return text.getvalue()
 
 

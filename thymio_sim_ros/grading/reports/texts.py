@@ -28,12 +28,13 @@ def number(value: Fraction) -> str:
 def file_name(graded: Graded) -> str:
     """A file name for a submission, without suffix, which depends on no other submission.
 
-    It is the name in its own letters, and eight digits that tell equal and similar names apart.
+    It is the name in its own letters, and eight digits that distinguish equal and similar names.
     """
     submission = graded.submission
     name = submission.name.removesuffix(f" ({submission.identifier})")  # added where others have the same name
     letters = "".join(
-        one if unicodedata.category(one)[0] in "LMN" else "-" for one in unicodedata.normalize("NFC", name)
+        character if unicodedata.category(character)[0] in "LMN" else "-"
+        for character in unicodedata.normalize("NFC", name)
     )
     readable = re.sub("-+", "-", letters).strip("-")[:_LONGEST_NAME] or "submission"
     owner = f"{name}\0{submission.key or submission.identifier}".encode("utf-8", "surrogatepass")

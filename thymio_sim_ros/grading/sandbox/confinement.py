@@ -1,4 +1,4 @@
-"""What a test process gives up before it runs: the rights of its user, and resources beyond the limits."""
+"""Confinement of a test process: before it runs, it gives up rights of its user and resources beyond the limits."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _MARGIN_S = 30
 
 @dataclass(frozen=True, slots=True)
 class Confinement:
-    """How a test process is confined. `user`: the user and group that it becomes, None for the present ones.
+    """Confinement of a test process. `user`: the user and group that it becomes, None for the present ones.
 
-    `writable` are the only folders that it may write, where Landlock keeps it from others; None without Landlock.
+    `writable`: the only folders in which it may write, as Landlock enforces; None without Landlock.
     """
 
     user: int | None

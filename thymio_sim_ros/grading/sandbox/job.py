@@ -1,4 +1,4 @@
-"""What the grader gives a sandbox, and what it gets back."""
+"""Job that the grader gives a sandbox, and the report that it gets back."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Outcome:
     cpu_s: float = 0.0
     files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     phase: str = ""
-    """Where the test ended if it did not pass: "setup", "call" or "teardown"."""
+    """Phase in which the test ended if it did not pass: "setup", "call" or "teardown"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,16 +56,18 @@ class Report:
     notes: tuple[str, ...] = ()
 
     def to_json(self) -> str:
-        """As text, bytes in base64."""
+        """Return the report as text, with bytes in base64."""
         return json.dumps(asdict(self), default=lambda data: base64.b64encode(data).decode())
 
     @classmethod
     def from_json(cls, text: str) -> Report:
-        """From `to_json`."""
+        """Return the report from the text of `to_json`."""
         data: dict[str, Any] = json.loads(text)
         outcomes = {
-            test: Outcome(**{**one, "files": {name: base64.b64decode(text) for name, text in one["files"].items()}})
-            for test, one in data["outcomes"].items()
+            test: Outcome(
+                **{**fields, "files": {name: base64.b64decode(text) for name, text in fields["files"].items()}}
+            )
+            for test, fields in data["outcomes"].items()
         }
         collected = tuple((test, points) for test, points in data["collected"])
         return cls(outcomes, collected, data["remark"], tuple(data["notes"]))

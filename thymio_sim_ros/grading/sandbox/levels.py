@@ -96,6 +96,6 @@ def run_job(job: Job) -> Report:
     try:
         return Report.from_json(output.decode())
     except ValueError:
-        said = errors.decode("utf-8", "replace").strip().rpartition("\n")[2]
+        last_line = errors.decode("utf-8", "replace").strip().rpartition("\n")[2]
         kind = DestroyedError if process.returncode < 0 else GradingError
-        raise kind(f"the sandbox ended with code {process.returncode}: {said or 'no message'}") from None
+        raise kind(f"the sandbox ended with code {process.returncode}: {last_line or 'no message'}") from None

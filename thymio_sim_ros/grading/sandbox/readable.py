@@ -31,7 +31,7 @@ _SYSTEM = (
     "/nix/store",
 )  # fmt: skip
 _PARTS = ("aseba_vm", "thymio_sim_ros", "playgrounds", "share")
-"""What is read of it. A source tree has other files, perhaps an assignment."""
+"""Readable parts of an installation. A source tree has other files, perhaps an assignment."""
 
 UNPRIVILEGED_ID = 65534
 """A user and group without rights."""
@@ -50,7 +50,7 @@ def readable_paths() -> list[str]:
 
 
 def needed_paths() -> list[str]:
-    """Without these no test process starts: the interpreter, this package, pytest."""
+    """Paths without which no test process starts: the interpreter, this package, pytest."""
     pytest = importlib.util.find_spec("pytest")
     found = [str(PACKAGE_FOLDER / "aseba_vm"), str(PACKAGE_FOLDER / "thymio_sim_ros")]
     found += [os.path.dirname(pytest.origin)] if pytest is not None and pytest.origin else []

@@ -1,4 +1,4 @@
-"""The report of a test process, line by line, checked: a line that does not belong there is an attempt to forge it.
+"""The report of a test process, checked line by line: an unexpected line is an attempt to forge it.
 
 A line is a JSON object with the secret of the process and its kind:
 

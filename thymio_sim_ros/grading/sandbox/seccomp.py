@@ -1,7 +1,7 @@
 """A filter of system calls: refuses those that no test needs and that widen what the kernel exposes.
 
-It also refuses memory that belongs to no file and to no process alone (memfd, System V, shared anonymous mappings): it
-stays when a process unmaps it, so that no measurement of processes finds it.
+It also refuses memory that belongs to no file and to no process alone (memfd, System V, shared anonymous mappings):
+such memory stays when a process unmaps it, and no measurement of processes finds it.
 """
 
 from __future__ import annotations

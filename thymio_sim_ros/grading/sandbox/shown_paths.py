@@ -1,4 +1,4 @@
-"""Paths in reports: folders of the machine and of the sandbox are left out, which tell pupils nothing."""
+"""Paths in reports: folders of the machine and of the sandbox are left out, because they do not help pupils."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ _ENVIRONMENT = ("LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "ROS_DISTRO", "RMW_IMPLE
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a job runs: its writable folder, how it is confined, and whether a kernel namespace has its processes."""
+    """Place of a job: its writable folder, its confinement, and whether a kernel namespace has its processes."""
 
     folder: Path
     confinement: Confinement
@@ -111,10 +111,10 @@ class _Supervisor:
                 if test:
                     self._end_test(process, test, outcome, str(error))
                 return bool(test) and not (isinstance(error, LimitError) and error.is_final)
-            said = process.last_line()
+            last_line = process.last_line()
             how = f"{outcome} before the first test: {error}"
             self.remark = f"stopped before the first test: {error.how}" if isinstance(error, Ended) else how
-            self.notes = (said,) if said else ()
+            self.notes = (last_line,) if last_line else ()
         finally:
             process.close(self._kill_all)
         return False
@@ -201,8 +201,8 @@ class _Supervisor:
     def _write_afresh(self) -> None:
         """Write data and submission, but no file of the submission whose name is taken. Raises LimitError, ForgedError.
 
-        Processes of the submission may run and change paths meanwhile. So a process writes that has no more rights than
-        they have, and what they could not have written themselves, they cannot make it write.
+        Processes of the submission may run and change paths meanwhile. Therefore the process that writes has no more
+        rights than they have, so that they cannot make it write to places that are closed to them.
         """
         self._unbind()
         if not self._place.has_own_disk:

@@ -1,4 +1,4 @@
-"""What the processes of a sandbox use, from /proc."""
+"""Resources used by the processes of a sandbox, from /proc."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PAGE = os.sysconf("SC_PAGE_SIZE")
 _WORKING = "RD"
 """States of threads that compute, or wait for a processor or a disk."""
 _OF_DDS = b"dds."
-"""Begin of the names of threads of Fast DDS, which also run now and then in a program that waits."""
+"""Beginning of the names of threads of Fast DDS, which run at times even in a program that waits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,8 @@ def is_working(pid: int, *, without: int | None = None) -> bool:
 
 
 def memory_used(limit: int) -> int:
-    """Memory of the descendants of this process in bytes. Shared pages count once for each unless that is over `limit`:
-    to tell them apart takes long.
+    """Memory of the descendants of this process in bytes. Shared pages count once for each process unless the sum
+    exceeds `limit`: finding them takes long.
     """
     found = descendants()
     memory = sum(process.rss for process in found)

@@ -110,7 +110,7 @@ class DeviceEndpoints:
         return self._events.has_subscribers
 
     def begin(self, share: Assignment | None, behaviour: str) -> DeviceStart:
-        """What the device starts with: a program, or a built-in behavior; `share` has notes for the user."""
+        """Return the start of the device: a program, or a built-in behavior; `share` has notes for the user."""
         self.share = share
         own = share.program if share is not None else None
         self._own = own or load_program("", "none", self._values.params.layout)
@@ -135,7 +135,7 @@ class DeviceEndpoints:
         self._diagnostics.messages.add_rejected(f"{robot}event {event}", reason)
 
     def publish(self, events: Iterable[EmittedEvent] = ()) -> None:
-        """Publish what the robot did in its last run: the events that it emitted, local events, notices, status."""
+        """Publish the results of the last run: emitted events, local events, notices, status."""
         if self._is_closed:
             return
         host = self.host

@@ -30,7 +30,7 @@ class Emitter:
     def __init__(
         self, node: Node, owner: ProgramOwner, robots: Sequence[DeviceEndpoints], messages: MessageReports
     ) -> None:
-        """`robots`: all robots of the runtime, at any time; `messages` takes why events were rejected."""
+        """`robots`: all robots of the runtime, at any time; `messages` collects the reasons of rejected events."""
         self.reaches_all = True
         self.shares_numbers = False
         self._owner, self._robots = owner, robots

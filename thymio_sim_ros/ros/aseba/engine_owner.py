@@ -42,7 +42,7 @@ class EngineOwner:
 
     @property
     def runs(self) -> int:
-        """How often the devices of the present engine have run."""
+        """Number of times that the devices of the present engine have run."""
         return self._runner.engine.runs
 
     @property

@@ -48,7 +48,7 @@ class LoadService:
         return response
 
     def _started(self, given: Mapping[str, Any], robot: str | None) -> SetParametersResult:
-        """Load what is given into this robot, or into all. Raises RequestError for wrong values."""
+        """Load the program of a request into this robot, or into all. Raises RequestError for wrong values."""
         checked = SetParametersResult(successful=True)
         if "source" in given:
             checked = self._checker.check(given)
@@ -62,11 +62,11 @@ class LoadService:
 
 
 def _parameters(given: Mapping[str, Any], robot: str | None, robots: Sequence[str]) -> dict[str, Any]:
-    """The parameters of the node for what is given. For all robots, none keeps a program of its own."""
+    """Return the parameters of the node for a request; a program for all robots replaces those of single robots."""
     prefix = f"robots.{robot}." if robot else ""
     values: dict[str, Any] = {}
     if not prefix:
-        values = {f"robots.{each}.script.{kind}": "" for each in robots if each for kind in ("path", "source")}
+        values = {f"robots.{name}.script.{kind}": "" for name in robots if name for kind in ("path", "source")}
     if "source" in given:
         values |= {f"{prefix}script.name": given.get("name", ""), f"{prefix}script.source": given["source"]}
         if not prefix:

@@ -1,7 +1,7 @@
 """Connects the robots of a runtime to the network servers: messages of clients in, messages of the nodes out.
 
 The servers run in a thread of their own (`thymio_sim_ros/network/thread.py`); robots belong to the thread of the
-executor. A mailbox takes what clients send, and calls in the other thread take what nodes answer.
+executor. A mailbox takes the messages of clients; answers of nodes are passed by calls in the thread of the servers.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class NetworkLink:
                 robot.on_program = partial(self.thread.call, network.set_program)
 
     def drain(self) -> None:
-        """Handle what clients sent before the node had an executor, which nothing else would wake."""
+        """Handle messages that clients sent before the node had an executor; nothing else handles them."""
         self._mailbox.drain()
 
     def close(self) -> None:
@@ -104,7 +104,7 @@ class NetworkLink:
         self.thread.close()
 
     def _handle(self, post: _Post) -> None:
-        """Execute what a client has sent. Replies keep their order with what the node sends by itself."""
+        """Execute the messages of a client. Replies stay in order with the messages that the node sends by itself."""
         robot = post.robot
         if robot not in self._networks:  # it is gone
             return

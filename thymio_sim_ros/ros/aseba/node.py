@@ -111,7 +111,7 @@ class AsebaRuntime:
 
     @property
     def startup_message(self) -> str:
-        """The programs, for the user, and what they do not get on robots of other processes."""
+        """The programs, as text for the user, and the inputs that they do not get on robots of other processes."""
         programs = dict.fromkeys(endpoints.program.name for endpoints in self.robots if endpoints.program.name)
         is_outside = self.robots.standalone is not None and not self.values.params.robot
         return f"Program: {', '.join(programs) or 'none'}" + (f"; {driver_input.MISSING}" if is_outside else "")

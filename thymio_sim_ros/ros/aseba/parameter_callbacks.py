@@ -36,7 +36,7 @@ class ParameterCallbacks:
         self.has_started = False
         """Whether the last change started a program, also one of the same name."""
         self.started_again: frozenset[str] = frozenset()
-        """The robots that start by the change that is being made, also if it has the present values."""
+        """The robots that the present change starts, even if it changes no value."""
         node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, values.last_set_text))
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)

@@ -244,9 +244,9 @@ def exclusive(parameters: Sequence[Parameter], present: Callable[[str], Any]) ->
         kind = ARRAYS.get(parameter.name.rpartition(".")[2])
         is_empty = not isinstance(parameter.value, str) and isinstance(parameter.value, Sized) and not parameter.value
         result.append(Parameter(parameter.name, kind, []) if kind is not None and is_empty else parameter)
-        for one, other in (("script.path", "script.source"), ("script.source", "script.path")):
-            sibling = parameter.name.removesuffix(one) + other
-            if parameter.name.endswith(one) and parameter.value and sibling not in given:
+        for suffix, other in (("script.path", "script.source"), ("script.source", "script.path")):
+            sibling = parameter.name.removesuffix(suffix) + other
+            if parameter.name.endswith(suffix) and parameter.value and sibling not in given:
                 result.append(Parameter(sibling, value=""))
         is_program = parameter.name in ("script.path", "script.source") and parameter.value
         if is_program and BEHAVIOUR not in given and parameter.value != present(parameter.name):

@@ -37,7 +37,7 @@ class ProgramOwner(Protocol):
 
     @property
     def runs(self) -> int:
-        """How often the devices have run."""
+        """Number of times that the devices have run."""
 
     @property
     def ran(self) -> Set[str]:
@@ -51,4 +51,4 @@ class ProgramOwner(Protocol):
         """Return and clear the messages for clients, in order."""
 
     def apply(self, happened: ProgramInput) -> None:
-        """Apply an input now, then publish what comes of it. Raises as `Devices.apply` does."""
+        """Apply an input now, then publish its results. Raises as `Devices.apply` does."""

@@ -150,7 +150,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
         self.on_change()
 
     def publish(self) -> None:
-        """Publish what the programs did in their last run."""
+        """Publish the results of the last run of the programs."""
         owner = self.owner
         events: dict[str, list[EmittedEvent]] = {}
         ran: Set[str] = frozenset()
@@ -187,7 +187,7 @@ class RobotSet(Sequence[DeviceEndpoints]):
             self.standalone.restart()
 
     def refresh(self) -> None:
-        """Publish what all programs show, after a reset of the world."""
+        """Publish the state of all programs after a reset of the world."""
         self.publish()
         for endpoints in self._robots:
             endpoints.publish()
@@ -195,7 +195,9 @@ class RobotSet(Sequence[DeviceEndpoints]):
     def poll_subscribers(self) -> None:
         """Publish earlier commands again for new subscribers; defer no ticks while events have receivers."""
         if self._runner is not None:
-            is_prompt = self._runner.engine.has_clients or any(one.has_event_subscribers for one in self._robots)
+            is_prompt = self._runner.engine.has_clients or any(
+                endpoints.has_event_subscribers for endpoints in self._robots
+            )
             self._runner.scheduler.is_prompt = is_prompt
         for outside in self._outside.values():
             outside.outputs.resend()

@@ -1,8 +1,8 @@
 """The Fast DDS profiles of this package's processes. A profile of the user has priority, and so has another RMW.
 
 `ANNOUNCING`: every participant announces itself every 250 ms instead of every 3 s. A starting participant of Fast DDS 2
-announces itself before it reads its sockets, and so loses the answers of quick peers. A peer answers once; its next
-regular announcement is what the new participant discovers it by (measured: some starts took 3 s longer, at load most).
+announces itself before it reads its sockets, and so loses the answers of quick peers. A peer answers once; the new
+participant then discovers it by its next regular announcement (measured: some starts took 3 s longer, at load most).
 
 `ALONE`: also, the endpoints of one participant do not match each other, and memory for messages is allocated on demand.
 By default Fast DDS compares every endpoint with all others of its participant and allocates memory for a hundred

@@ -86,7 +86,7 @@ def remove_abandoned_segments(folder: Path = SHARED_MEMORY) -> list[Path]:
 
 
 def remove_abandoned() -> None:
-    """Remove what killed processes of this user have left: before a process creates its first participant."""
+    """Remove files of killed processes of this user; to be called before a process creates its first participant."""
     remove_incomplete_ports()
     remove_abandoned_segments()
 

@@ -109,9 +109,11 @@ class _TFMessage(metaclass=_Metaclass):
     @transforms.setter
     def transforms(self, value: Iterable[TransformStamped]) -> None:
         found = list(value)
-        for one in found:
-            if not isinstance(one, TransformStamped):
-                raise TypeError(f"transforms: found {type(one).__name__}, expected geometry_msgs.msg.TransformStamped")
+        for transform in found:
+            if not isinstance(transform, TransformStamped):
+                raise TypeError(
+                    f"transforms: found {type(transform).__name__}, expected geometry_msgs.msg.TransformStamped"
+                )
         self._transforms = value if isinstance(value, list) else found
 
     @classmethod

@@ -127,7 +127,7 @@ class FoxgloveBridge:
 
     @property
     def startup_message(self) -> str:
-        """Where to connect, as text for the log."""
+        """Addresses for clients, as text for the log."""
         place = self._scheme, self.address, self.port
         is_open = not self.tokens.is_required
         how = f"or {_app_link(urls(*place)[0])}" if is_open else "with the token on standard output"

@@ -252,13 +252,13 @@ class Parameters:
         )
 
     def _explained(self, node: str, name: str, reason: str) -> str:
-        """Return the reason of a node, or what rclpy means by a sentence that does not name the parameter."""
+        """Return the reason of a node; a sentence of rclpy that does not name the parameter is replaced."""
         if reason.startswith(_UNDECLARED):
             return unknown(name, node, list(self._types.get(node, ())))
         return reason or "rejected by the node"
 
     def _report_unknown(self, request: ParametersRequested) -> None:
-        """Say which requested parameters do not exist, of many some: the answer has the others only."""
+        """Report requested parameters that do not exist, of many only some; the answer has the others."""
         reasons = ((name, self._absence(name)) for name in dict.fromkeys(request.names))
         for name, reason in islice(((name, reason) for name, reason in reasons if reason), MAX_REFUSALS):
             status = Status(StatusLevel.WARNING, f"{name}: {reason}", parameter_status(name))

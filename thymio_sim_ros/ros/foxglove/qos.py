@@ -13,7 +13,7 @@ __all__ = ["SubscriptionQos", "publisher_qos", "subscription_qos"]
 
 @dataclass(frozen=True, slots=True)
 class SubscriptionQos:
-    """How to subscribe to a topic; comparable, to detect changes.
+    """QoS of a subscription; comparable, to detect changes.
 
     `retained` is the number of messages retained for new clients, 0 unless the topic is transient local. With several
     publishers it is the maximum: the publisher of a message is not known, and one that publishes often must not
@@ -40,7 +40,7 @@ def subscription_qos(
     within `min_depth` and `max_depth`; each publisher counts at least 1, because Fast DDS reports depth 0.
     """
     profiles = [info.qos_profile for info in publishers]
-    asked = sum(max(1, profile.depth) for profile in profiles)
+    total_depth = sum(max(1, profile.depth) for profile in profiles)
     is_transient_local = bool(profiles) and all(
         item.durability == DurabilityPolicy.TRANSIENT_LOCAL for item in profiles
     )
@@ -48,8 +48,8 @@ def subscription_qos(
         is_reliable=not best_effort
         and bool(profiles)
         and all(item.reliability == ReliabilityPolicy.RELIABLE for item in profiles),
-        retained=0 if not is_transient_local else max_depth if len(profiles) > 1 else min(asked, max_depth),
-        depth=min(max(asked, min_depth), max_depth),
+        retained=0 if not is_transient_local else max_depth if len(profiles) > 1 else min(total_depth, max_depth),
+        depth=min(max(total_depth, min_depth), max_depth),
     )
 
 

@@ -76,7 +76,7 @@ class ServiceCalls:
         self._open: set[_Call] = set()
         """Calls without an answer."""
         self._deadlines: list[tuple[float, int, _Call]] = []
-        """Heap of deadlines; an entry of a call that has another deadline by now, or is not open, means nothing."""
+        """Heap of deadlines; an entry of a call that has another deadline by now, or is not open, is ignored."""
         self._numbers = itertools.count()
         self._finished: deque[tuple[_Call, Any, str]] = deque()
         self._is_finishing = False

@@ -33,8 +33,8 @@ _SLICE_S = 0.005
 """Longest time that one call of `poll` subscribes."""
 
 KEEP_S = 30.0
-"""How long a subscription is kept after its last client: a page that is loaded again uses it, too. Each new one leaves
-97 bytes in Fast DDS 2.14 for ever; while it is kept, its publishers work."""
+"""Time for which a subscription is kept after its last client, because a page that is loaded again uses it, too. Each
+new subscription leaks 97 bytes in Fast DDS 2.14; while one is kept, its publishers work."""
 
 
 class _Topic:

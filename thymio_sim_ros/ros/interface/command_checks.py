@@ -36,7 +36,7 @@ def tiny_field(message: Any) -> str:
             if inner:
                 return f"{name}.{inner}"
             continue
-        if any(0.0 < abs(one) < SMALLEST for one in values):
+        if any(0.0 < abs(number) < SMALLEST for number in values):
             return str(name)
     return ""
 

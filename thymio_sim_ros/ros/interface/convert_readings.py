@@ -87,12 +87,12 @@ def proximity_range(
     reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions, *, index: int
 ) -> Range:
     """Return the range of one proximity sensor as in the driver."""
-    said = options.proximity[index]
+    fields = options.proximity[index]
     message = Range(
         radiation_type=Range.INFRARED,
-        field_of_view=said.fov_rad,
-        min_range=said.min_m,
-        max_range=said.max_m,
+        field_of_view=fields.fov_rad,
+        min_range=fields.min_m,
+        max_range=fields.max_m,
         range=cdr_fields.proximity_range_m(reading, options, index),
     )
     return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))

@@ -1,4 +1,4 @@
-"""Detects endpoints of other nodes that ROS silently does not connect to a node, and says why, with the cure.
+"""Detects endpoints of other nodes that ROS silently does not connect to a node; warnings name reason and cure.
 
 Such an endpoint has another type than ours, an incompatible QoS, or another name: a namespace that the robot does not
 have, a misspelled name, or a topic that is switched off. The usual cases are a TwistStamped on `cmd_vel`, as published
@@ -74,7 +74,7 @@ SERVER = Side("server", "client", "it gets no call", "Serve")
 
 @dataclass(frozen=True, slots=True)
 class _Query:
-    """How endpoints of a side and their peers are found: methods of a node, and the attribute with our own peers."""
+    """Methods of a node that find endpoints of a side and their peers, and the attribute with our own peers."""
 
     side: Side
     by_node: str
@@ -139,14 +139,18 @@ class _OwnNames:
     def meant(self, name: str, kind: str) -> list[str]:
         """Return the names that another one could mean: those with the same last word, or a similar one and its type.
 
-        Of several, those that share the most words at the end, of these those with its type, of these the shortest.
+        Several names are narrowed down: to those that share the most words at the end, then to those with its type,
+        then to the shortest.
         """
         near = self._by_word.get(_last(name), [])
         if not near and (word := self._similar_word(_last(name))) is not None:
-            near = [one for one in self._by_word[word] if self.types[one] == kind]
-        ranks = {one: (_common_end(name, one), self.types[one] == kind, -one.count("/")) for one in near}
+            near = [candidate for candidate in self._by_word[word] if self.types[candidate] == kind]
+        ranks = {
+            candidate: (_common_end(name, candidate), self.types[candidate] == kind, -candidate.count("/"))
+            for candidate in near
+        }
         best = max(ranks.values(), default=None)
-        return [one for one in near if ranks[one] == best]
+        return [candidate for candidate in near if ranks[candidate] == best]
 
     def _similar_word(self, word: str) -> str | None:
         if word not in self._similar:
@@ -164,7 +168,7 @@ class Connections:
         self._switched_off = switched_off or {}
         self._own: dict[Side, _OwnNames] = {}
         self._misfits: dict[_Endpoint, Unconnected | None] = {}
-        """Endpoints with name and type of ours, with what is wrong with their QoS."""
+        """Endpoints with name and type of ours, with the fault of their QoS."""
         self._suspects: frozenset[_Endpoint] = frozenset()
         self._nodes: frozenset[tuple[str, str]] = frozenset()
         self._next_s = self._next_look_s = 0.0
@@ -184,9 +188,9 @@ class Connections:
         suspects = self._suspects
         began_s = time.thread_time()
         before, self.unconnected = self.unconnected, self.find()
-        for one in self.unconnected:
-            if one not in before:
-                self._node.get_logger().warning(str(one))
+        for endpoint in self.unconnected:
+            if endpoint not in before:
+                self._node.get_logger().warning(str(endpoint))
         cost_s = time.thread_time() - began_s
         is_open = not self._suspects <= suspects
         self._next_s = time.monotonic() + (POLL_PERIOD_S if is_open else max(POLL_PERIOD_S, cost_s / SHARE))
@@ -199,7 +203,7 @@ class Connections:
             name=f"{self._node.get_name()}: connections",
             hardware_id="thymio_sim_ros",
             message=str(self.unconnected[0]) if count else "all nodes use the names and types of this node",
-            values=[KeyValue(key=one.topic, value=str(one)) for one in self.unconnected],
+            values=[KeyValue(key=endpoint.topic, value=str(endpoint)) for endpoint in self.unconnected],
         )
 
     def find(self, *, is_settled: bool = False) -> tuple[Unconnected, ...]:
@@ -211,21 +215,21 @@ class Connections:
         found: list[Unconnected | None] = []
         suspects: set[_Endpoint] = set()
         misfits, self._misfits = self._misfits, {}
-        for one in self._others():
-            types = self._own_names(one.query).types
-            if one.topic not in types:
-                if not self._may_be_wrong(one) or getattr(self._node, one.query.count_peers)(one.topic):
+        for endpoint in self._others():
+            types = self._own_names(endpoint.query).types
+            if endpoint.topic not in types:
+                if not self._may_be_wrong(endpoint) or getattr(self._node, endpoint.query.count_peers)(endpoint.topic):
                     continue
-                suspects.add(one)
-                if is_settled or one in self._suspects:
-                    found.append(self._wrong_name(one))
-            elif one.type != types[one.topic]:
-                found.append(wrong_type(one.query.side, one.topic, one.full_node, one.type, types))
+                suspects.add(endpoint)
+                if is_settled or endpoint in self._suspects:
+                    found.append(self._wrong_name(endpoint))
+            elif endpoint.type != types[endpoint.topic]:
+                found.append(wrong_type(endpoint.query.side, endpoint.topic, endpoint.full_node, endpoint.type, types))
             else:
-                self._misfits[one] = misfits[one] if one in misfits else self._wrong_qos(one)
-                found.append(self._misfits[one])
+                self._misfits[endpoint] = misfits[endpoint] if endpoint in misfits else self._wrong_qos(endpoint)
+                found.append(self._misfits[endpoint])
         self._suspects = frozenset(suspects)
-        return tuple(dict.fromkeys(one for one in found if one is not None))
+        return tuple(dict.fromkeys(endpoint for endpoint in found if endpoint is not None))
 
     def _others(self) -> Iterator[_Endpoint]:
         own = (self._node.get_name(), self._node.get_namespace())
@@ -247,34 +251,37 @@ class Connections:
             self._own[query.side] = known = _OwnNames(endpoints)
         return known
 
-    def _may_be_wrong(self, one: _Endpoint) -> bool:
+    def _may_be_wrong(self, endpoint: _Endpoint) -> bool:
         """Whether a name that is not ours could mean one of ours."""
-        return bool(self._parameter_of(one) or self._own_names(one.query).meant(one.topic, one.type))
+        return bool(
+            self._parameter_of(endpoint) or self._own_names(endpoint.query).meant(endpoint.topic, endpoint.type)
+        )
 
-    def _parameter_of(self, one: _Endpoint) -> str:
+    def _parameter_of(self, endpoint: _Endpoint) -> str:
         """Return the parameter that would switch on the publisher of a topic; empty if there is none."""
-        if one.query.side is not SUBSCRIBER:
+        if endpoint.query.side is not SUBSCRIBER:
             return ""
-        return next((of for topic, of in self._switched_off.items() if one.topic.endswith(f"/{topic}")), "")
+        return next((of for topic, of in self._switched_off.items() if endpoint.topic.endswith(f"/{topic}")), "")
 
-    def _wrong_name(self, one: _Endpoint) -> Unconnected:
-        side, names = one.query.side, self._own_names(one.query)
-        meant = names.meant(one.topic, one.type)
-        if parameter := self._parameter_of(one):
+    def _wrong_name(self, endpoint: _Endpoint) -> Unconnected:
+        side, names = endpoint.query.side, self._own_names(endpoint.query)
+        meant = names.meant(endpoint.topic, endpoint.type)
+        if parameter := self._parameter_of(endpoint):
             cure = f"It is switched off: start the simulator with {_argument(f'{parameter}:=true')}"
-            return Unconnected(one.topic, one.full_node, side, one.type, f"a {side.peer}", cure)
-        heard = " or ".join(
-            name if names.types[name] == one.type else f"{name} of {names.types[name]}" for name in meant[:MAX_NAMES]
+            return Unconnected(endpoint.topic, endpoint.full_node, side, endpoint.type, f"a {side.peer}", cure)
+        meant_names = " or ".join(
+            name if names.types[name] == endpoint.type else f"{name} of {names.types[name]}"
+            for name in meant[:MAX_NAMES]
         )
         cures = [f"{side.use} {meant[0]}"]
-        space = one.namespace.rstrip("/")
-        if space and one.topic.removeprefix(space) in meant:
+        space = endpoint.namespace.rstrip("/")
+        if space and endpoint.topic.removeprefix(space) in meant:
             cures.append(f"start the node without the namespace {space}")
-        if (robot := self._robot_of(one.topic, meant)) and self._node.has_parameter(NAMES_PARAMETER):
+        if (robot := self._robot_of(endpoint.topic, meant)) and self._node.has_parameter(NAMES_PARAMETER):
             argument = _argument(f"{NAMES_PARAMETER}:=[{robot}]")
             cures.append(f"start the simulator with {argument}")
-        expected = f"{heard}, since {one.topic} has no {side.peer}"
-        return Unconnected(one.topic, one.full_node, side, one.type, expected, _alternatives(cures))
+        expected = f"{meant_names}, since {endpoint.topic} has no {side.peer}"
+        return Unconnected(endpoint.topic, endpoint.full_node, side, endpoint.type, expected, _alternatives(cures))
 
     def _robot_of(self, topic: str, meant: Collection[str]) -> str:
         """Return the name that a robot without a name would need for this topic; empty if that is not the reason."""
@@ -282,21 +289,23 @@ class Connections:
         robot, _, rest = topic.removeprefix(f"{space}/").partition("/")
         return robot if topic.startswith(f"{space}/") and f"{space}/{rest}" in meant else ""
 
-    def _wrong_qos(self, one: _Endpoint) -> Unconnected | None:
-        """Return what is wrong with the QoS of an endpoint; services have the same everywhere."""
-        if one.query.side is CLIENT:
+    def _wrong_qos(self, endpoint: _Endpoint) -> Unconnected | None:
+        """Return the fault of the QoS of an endpoint; services have the same QoS everywhere."""
+        if endpoint.query.side is CLIENT:
             return None
-        published = self._node.get_publishers_info_by_topic(one.topic)
-        subscribed = self._node.get_subscriptions_info_by_topic(one.topic)
-        is_publisher = one.query.side is PUBLISHER
+        published = self._node.get_publishers_info_by_topic(endpoint.topic)
+        subscribed = self._node.get_subscriptions_info_by_topic(endpoint.topic)
+        is_publisher = endpoint.query.side is PUBLISHER
         theirs, ours = (published, subscribed) if is_publisher else (subscribed, published)
         own = self._node.get_fully_qualified_name()
         for info in theirs:
             for peer in ours:
-                if (_node_of(info), _node_of(peer)) != (one.full_node, own):
+                if (_node_of(info), _node_of(peer)) != (endpoint.full_node, own):
                     continue
                 found, expected = info.qos_profile, peer.qos_profile
-                if wrong := wrong_qos(one.query.side, one.topic, one.full_node, one.type, found, expected):
+                if wrong := wrong_qos(
+                    endpoint.query.side, endpoint.topic, endpoint.full_node, endpoint.type, found, expected
+                ):
                     return wrong
         return None
 
@@ -366,10 +375,10 @@ def _plain(word: str) -> str:
     return word.lower().replace("_", "")
 
 
-def _common_end(one: str, other: str) -> int:
+def _common_end(name: str, other: str) -> int:
     """Return the number of words at their ends that two names share."""
-    pairs = zip(reversed(one.split("/")), reversed(other.split("/")), strict=False)
-    return next((count for count, (left, right) in enumerate(pairs) if left != right), len(one))
+    pairs = zip(reversed(name.split("/")), reversed(other.split("/")), strict=False)
+    return next((count for count, (left, right) in enumerate(pairs) if left != right), len(name))
 
 
 def _alternatives(parts: Iterable[str]) -> str:

@@ -1,4 +1,4 @@
-"""A node whose endpoints only this process reaches: for what belongs to a test, and not to a program under test.
+"""A node whose endpoints only this process reaches: for parts of a test, as opposed to a program under test.
 
 A private name or domain would hide nothing, because every participant can list the graph and join any domain. So these
 endpoints do not exist in DDS at all: callers get the `LocalNode` itself.
@@ -95,7 +95,7 @@ class LocalNode:
         return self._topics.get(name)
 
     def service(self, name: str) -> Callable[[Any], Any] | None:
-        """Return what answers a request to a service, by its full name; None if there is no such service."""
+        """Return the function that answers requests to a service, by its full name; None without this service."""
         if name not in self._services:
             return None
         kind, callback = self._services[name]

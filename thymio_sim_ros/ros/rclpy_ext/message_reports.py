@@ -1,4 +1,4 @@
-"""Remembers what is wrong with messages to a node: for its log, `/diagnostics`, the page and `thymio-sim doctor`."""
+"""Reports on faulty messages to a node: for its log, `/diagnostics`, the page and `thymio-sim doctor`."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 __all__ = ["RECENT_S", "MessageReports"]
 
 RECENT_S = 10.0
-"""How long a report about a message counts as the present state."""
+"""Time for which a report about a message counts as the present state."""
 
 _MAX_REPORTS = 100
 """Subjects that are remembered; limited, because their names may come from untrusted clients."""
 
 
 class MessageReports:
-    """What is wrong with messages to a node: their numbers since the start, and the last report about each subject.
+    """Reports on faulty messages to a node: their numbers since the start, and the last report on each subject.
 
-    A subject is a topic, or what a message on it names, such as an event.
+    A subject is a topic, or something that a message on it names, such as an event.
     """
 
     def __init__(self, node: Node) -> None:
@@ -49,7 +49,7 @@ class MessageReports:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What is wrong with recent messages, a sentence for each subject."""
+        """Faults of recent messages, a sentence for each subject."""
         return tuple(_recent(self._faults).values())
 
     def status(self) -> DiagnosticStatus:
@@ -70,7 +70,7 @@ class MessageReports:
 
 def _remember(reports: dict[str, tuple[str, float]], about: str, text: str) -> None:
     if about not in reports and len(reports) >= _MAX_REPORTS:
-        del reports[min(reports, key=lambda one: reports[one][1])]
+        del reports[min(reports, key=lambda subject: reports[subject][1])]
     reports[about] = f"{about} {text}", time.monotonic()
 
 

@@ -5,9 +5,9 @@ arrives as text, an empty list as a list of booleans, and the lines of a program
 a value is converted to the declared type where possible, and a value that equals the current one, directly or after
 such a round trip, is accepted without being set, even if the parameter is read-only.
 
-The reason of a rejection says in the words of a terminal what rclpy says with names of its classes, or not at all: it
-loses the name of an unknown parameter. A reason also comes with the success of a value that changes nothing although
-a user may expect it to act, such as the present playground: `ros2 param set` prints it.
+Reasons of rejections are written in the terms of `ros2 param`: those of rclpy have names of its classes, and lack the
+name of an unknown parameter. A reason also comes with the success of a value that changes nothing although a user may
+expect it to act, such as the present playground: `ros2 param set` prints it.
 """
 
 from __future__ import annotations
@@ -76,11 +76,13 @@ class ParameterNode(Node):
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set the values that differ, all or none; called by rclpy's parameter services."""
-        wanted = [self._as_declared(one) for one in parameter_list]
+        wanted = [self._as_declared(parameter) for parameter in parameter_list]
         if refusal := next(filter(None, map(self._unknown, wanted)), ""):
             return SetParametersResult(successful=False, reason=refusal)
-        present = {one.name: one.value for one in wanted if self._is_present(one)}
-        changed = [one for one in wanted if one.name not in present or self._is_set_again(one.name)]
+        present = {parameter.name: parameter.value for parameter in wanted if self._is_present(parameter)}
+        changed = [
+            parameter for parameter in wanted if parameter.name not in present or self._is_set_again(parameter.name)
+        ]
         if changed:
             result = super().set_parameters_atomically(changed)
             if not result.successful:
@@ -140,8 +142,8 @@ def parameter_node(name: str, *, context: Context, **options: Any) -> Node:
     return ParameterNode(name, context=context, **options)
 
 
-def _are_equal(one: Parameter, other: Parameter) -> bool:
-    return bool(one.type_ == other.type_ and parameters.plain(one.value) == parameters.plain(other.value))
+def _are_equal(parameter: Parameter, other: Parameter) -> bool:
+    return bool(parameter.type_ == other.type_ and parameters.plain(parameter.value) == parameters.plain(other.value))
 
 
 def _is_loaded_from(present: Parameter, wanted: Parameter) -> bool:
@@ -173,6 +175,6 @@ def _numbers(found: str | Sequence[str]) -> list[float] | None:
         if not isinstance(found, list):
             return None
     try:
-        return [float(one) for one in found]
+        return [float(item) for item in found]
     except (TypeError, ValueError, OverflowError):
         return None

@@ -42,7 +42,7 @@ _EXPECTED: Mapping[Parameter.Type, str] = {
     Parameter.Type.DOUBLE_ARRAY: "a list of numbers with a decimal point, such as [2.0, 0.5]",
     Parameter.Type.STRING_ARRAY: "a list of texts",
 }
-"""What is expected as the value of a parameter of each type, as it is typed in a terminal."""
+"""Expected value of a parameter by type, as it is typed in a terminal."""
 
 _SHOWN = 60
 """Characters of a wrong value that a message has at most; a program or a playground is longer."""
@@ -101,14 +101,14 @@ class Declared:
     @property
     def descriptor(self) -> ParameterDescriptor:
         """The descriptor shown by `ros2 param describe`."""
-        said = self.metadata
-        expected = [f"one of: {', '.join(said['choices'])}"] if said["choices"] else []
-        expected += [f"{said['size']} values"] if said["size"] is not None else []
-        expected += [f"each {_limits(said)}"] if isinstance(self.default, list) and _limits(said) else []
+        metadata = self.metadata
+        expected = [f"one of: {', '.join(metadata['choices'])}"] if metadata["choices"] else []
+        expected += [f"{metadata['size']} values"] if metadata["size"] is not None else []
+        expected += [f"each {_limits(metadata)}"] if isinstance(self.default, list) and _limits(metadata) else []
         descriptor = ParameterDescriptor(
-            description=said["text"], read_only=said["fixed"], additional_constraints="; ".join(expected)
+            description=metadata["text"], read_only=metadata["fixed"], additional_constraints="; ".join(expected)
         )
-        low, high = said["low"], said["high"]
+        low, high = metadata["low"], metadata["high"]
         if (low is None and high is None) or isinstance(self.default, list):
             return descriptor
         if isinstance(self.default, float):
@@ -122,25 +122,27 @@ class Declared:
 
     def refusal(self, value: Any) -> str:
         """Return the reason why a value is invalid, or an empty text; constraints of the descriptor are not checked."""
-        said = self.metadata
+        metadata = self.metadata
         if value is None:
             return f"{self.name}: found nothing, expected a value"
-        if said["choices"] and value not in said["choices"]:
-            return f"{self.name} is '{value}', expected {' or '.join(said['choices'])}"
+        if metadata["choices"] and value not in metadata["choices"]:
+            return f"{self.name} is '{value}', expected {' or '.join(metadata['choices'])}"
         if isinstance(value, float) and not math.isfinite(value):
             return f"{self.name} is {value}, expected a finite number"
         if not isinstance(self.default, list):
             return ""
-        if said["size"] is not None and len(value) != said["size"]:
-            return f"{self.name}: found {len(value)} values, expected {said['size']}"
+        if metadata["size"] is not None and len(value) != metadata["size"]:
+            return f"{self.name}: found {len(value)} values, expected {metadata['size']}"
         for number, item in enumerate(value):
-            if isinstance(item, float) and not _is_within(item, said):
-                return f"{self.name}[{number}] is {item}, expected {_limits(said) or 'a finite number'}"
+            if isinstance(item, float) and not _is_within(item, metadata):
+                return f"{self.name}[{number}] is {item}, expected {_limits(metadata) or 'a finite number'}"
         return ""
 
 
-def _limits(said: Mapping[str, Any]) -> str:
-    low, high = (None if bound is None or math.isinf(bound) else _short(bound) for bound in (said["low"], said["high"]))
+def _limits(limits: Mapping[str, Any]) -> str:
+    low, high = (
+        None if bound is None or math.isinf(bound) else _short(bound) for bound in (limits["low"], limits["high"])
+    )
     if low is None and high is None:
         return ""
     if high is None:
@@ -153,9 +155,9 @@ def _short(number: float) -> str:
     return str(number) if isinstance(number, int) else f"{number:g}"
 
 
-def _is_within(value: float, said: Mapping[str, Any]) -> bool:
-    low = -math.inf if said["low"] is None else said["low"]
-    high = math.inf if said["high"] is None else said["high"]
+def _is_within(value: float, limits: Mapping[str, Any]) -> bool:
+    low = -math.inf if limits["low"] is None else limits["low"]
+    high = math.inf if limits["high"] is None else limits["high"]
     return bool(math.isfinite(value) and low <= value <= high)
 
 
@@ -183,52 +185,52 @@ def declare(node: Node, defaults: T) -> T:
     Raises StartError for a value from the command line that violates a descriptor or a field.
     """
     values = defaults
-    for one in declared(defaults):
-        if one.metadata["array"] is not None:
-            found = declare_array(node, one.name, one.metadata["array"], one.metadata["text"], one.default)
-            values = _with(values, one.path, found)
+    for item in declared(defaults):
+        if item.metadata["array"] is not None:
+            found = declare_array(node, item.name, item.metadata["array"], item.metadata["text"], item.default)
+            values = _with(values, item.path, found)
             continue
         try:
-            parameter = node.declare_parameter(one.name, one.default, one.descriptor)
+            parameter = node.declare_parameter(item.name, item.default, item.descriptor)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
-            reason = _start_refusal(node, one) or " ".join(str(error).split())
-            raise StartError(f"parameter {one.name} of {node.get_name()}: {reason}") from error
-        value = one.default if parameter.value is None else plain(parameter.value)
-        reason = one.refusal(value)
+            reason = _start_refusal(node, item) or " ".join(str(error).split())
+            raise StartError(f"parameter {item.name} of {node.get_name()}: {reason}") from error
+        value = item.default if parameter.value is None else plain(parameter.value)
+        reason = item.refusal(value)
         if reason:
             raise StartError(reason)
-        values = _with(values, one.path, value)
+        values = _with(values, item.path, value)
     return values
 
 
-def _start_refusal(node: Node, one: Declared) -> str:
+def _start_refusal(node: Node, item: Declared) -> str:
     """Return why the start value of a parameter does not fit its descriptor, or an empty text."""
-    descriptor = one.descriptor
-    descriptor.type = Parameter.Type.from_parameter_value(one.default).value
-    given = node._parameter_overrides.get(one.name)  # rclpy has no public accessor
+    descriptor = item.descriptor
+    descriptor.type = Parameter.Type.from_parameter_value(item.default).value
+    given = node._parameter_overrides.get(item.name)  # rclpy has no public accessor
     return "" if given is None else misfit(given, descriptor)
 
 
 def start_refusal_of_rclpy(node: Node) -> str:
     """Return which parameter that rclpy declares itself has a start value of another type, or an empty text."""
     expected = ParameterDescriptor(type=Parameter.Type.BOOL.value)
-    given = {name: one for name, one in node._parameter_overrides.items() if name in _BOOLS_OF_RCL}
-    reasons = ((name, misfit(one, expected)) for name, one in given.items())
+    given = {name: parameter for name, parameter in node._parameter_overrides.items() if name in _BOOLS_OF_RCL}
+    reasons = ((name, misfit(parameter, expected)) for name, parameter in given.items())
     return next((f"parameter {name} of {node.get_name()}: {reason}" for name, reason in reasons if reason), "")
 
 
 def misfit(wanted: Parameter, descriptor: ParameterDescriptor) -> str:
     """Return why a value does not fit the type or the range of its parameter, or an empty text.
 
-    rclpy decides; this describes in the words of a terminal what its own sentence says with names of Python's classes.
+    rclpy decides; its own sentence has names of Python's classes, this one the terms of `ros2 param`.
     """
     value, kind = plain(wanted.value), Parameter.Type(descriptor.type)
     if kind in _EXPECTED and not descriptor.dynamic_typing and wanted.type_ != kind:
         return f"found {'nothing' if value is None else shown(value)}, expected {_EXPECTED[kind]}"
     for bounds in (*descriptor.integer_range, *descriptor.floating_point_range):
-        said = {"low": bounds.from_value, "high": bounds.to_value}
-        if isinstance(value, int | float) and not _is_within(value, said):
-            return f"found {value}, expected {_limits(said)}"
+        limits = {"low": bounds.from_value, "high": bounds.to_value}
+        if isinstance(value, int | float) and not _is_within(value, limits):
+            return f"found {value}, expected {_limits(limits)}"
     return ""
 
 
@@ -270,7 +272,9 @@ def warn_of_unknown(
     known = is_known or node.has_parameter
     for name in sorted(overrides(node)):
         if not known(name) and not name.startswith(_OF_RCL):
-            near = meant(name, [one for one in (*node.get_parameters_by_prefix(""), *names) if known(one)])
+            near = meant(
+                name, [candidate for candidate in (*node.get_parameters_by_prefix(""), *names) if known(candidate)]
+            )
             node.get_logger().warning(
                 f"parameter {name} is not a parameter of {node.get_name()} and has no effect{near}; see docs/{page}"
             )
@@ -286,24 +290,27 @@ def meant(name: str, names: Sequence[str]) -> str:
 
 def _with_word(name: str, names: Sequence[str]) -> list[str]:
     """Return the names that have this one as a word, as `cmd_vel_timeout` has `timeout`."""
-    return [one for one in names if name in re.split(r"[._]", one)]
+    return [candidate for candidate in names if name in re.split(r"[._]", candidate)]
 
 
 def overrides(node: Node) -> dict[str, Any]:
     """Return the parameter overrides of a node, name → value; None for an empty list."""
-    return {name: one.value for name, one in node._parameter_overrides.items()}  # rclpy has no public accessor
+    given = node._parameter_overrides  # rclpy has no public accessor
+    return {name: parameter.value for name, parameter in given.items()}
 
 
 def refusal(values: Any, parameters: Iterable[Parameter]) -> str:
     """Return the reason why a change violates a field, or an empty text."""
-    known = {one.name: one for one in declared(values)}
-    reasons = (known[one.name].refusal(plain(one.value)) for one in parameters if one.name in known)
+    known = {item.name: item for item in declared(values)}
+    reasons = (
+        known[parameter.name].refusal(plain(parameter.value)) for parameter in parameters if parameter.name in known
+    )
     return next((reason for reason in reasons if reason), "")
 
 
 def updated(values: T, parameters: Iterable[Parameter]) -> T:
     """Return the values after a change; unknown parameters are ignored."""
-    paths = {one.name: one.path for one in declared(values)}
+    paths = {item.name: item.path for item in declared(values)}
     for parameter in parameters:
         if parameter.name in paths and parameter.value is not None:
             values = _with(values, paths[parameter.name], plain(parameter.value))
@@ -326,7 +333,7 @@ def declare_array(node: Node, name: str, kind: Parameter.Type, text: str, defaul
 
 def by_name(values: Any) -> dict[str, Any]:
     """Return the values of a dataclass by parameter name."""
-    return {one.name: one.default for one in declared(values)}
+    return {item.name: item.default for item in declared(values)}
 
 
 def described(text: str) -> ParameterDescriptor:

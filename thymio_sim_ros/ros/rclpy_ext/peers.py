@@ -25,7 +25,7 @@ from thymio_sim_ros.ros.rclpy_ext.callback_groups import forget_destroyed
 __all__ = ["HasPeers", "PeerContext", "follow_clock"]
 
 _CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""That of rclpy's time source."""
+"""QoS of the time source of rclpy."""
 
 
 @runtime_checkable

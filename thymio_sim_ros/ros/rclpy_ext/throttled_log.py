@@ -17,7 +17,7 @@ WARN_EVERY_S = 5.0
 _MAX_KEYS = 1000
 """Reasons that are remembered; limited, because their texts may come from untrusted clients."""
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-"""What may differ between two texts about the same reason."""
+"""Numbers, which may differ between two texts about the same reason."""
 
 
 class ThrottledLog:

@@ -43,8 +43,8 @@ class SimulatorEndpoints:
         *,
         is_localized: bool = True,
     ) -> None:
-        """`control` publishes what shows the world; `make` creates the endpoints of a robot from its name in the world
-        and its ROS names. `is_localized`: see `TransformOptions`.
+        """`control` publishes the topics of the world; `make` creates the endpoints of a robot from its name in the
+        world and its ROS names. `is_localized`: see `TransformOptions`.
         """
         self.clock = ClockPublisher(node, is_on=params.publish_clock, rate_hz=params.clock_rate)
         self.world = WorldEndpoints(node, control, publish_map=params.publish_map, map_frame=params.map_frame)

@@ -51,10 +51,8 @@ HEARTBEAT_NS = SECOND_NS
 
 
 class Simulator:
-    """The simulator node.
-
-    `runner` owns the engine, `endpoints` what is published, `params` the current parameters. Invariant: only `run_once`
-    and callbacks of `node` use them.
+    """The simulator node. `runner` owns the engine, `endpoints` the publishers, `params` the current parameters.
+    Invariant: only `run_once` and callbacks of `node` use them.
     """
 
     def __init__(

@@ -67,7 +67,7 @@ class ProximityParams:
         """Range fields of the seven sensors in Thymio's order."""
         front = (self.left, self.center_left, self.center, self.center_right, self.right)
         every: Sequence[RangeParams] = (*front, self.rear_left, self.rear_right)
-        return tuple(RangeFields(one.range_min, one.range_max, one.fov) for one in every)
+        return tuple(RangeFields(sensor.range_min, sensor.range_max, sensor.fov) for sensor in every)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 __all__ = ["LOAD_ERRORS", "PreparedPlayground", "new_engine"]
 
 LOAD_ERRORS = (PlaygroundError, resources.ResourceError, StartError, OSError)
-"""What `PreparedPlayground.load` raises for a value that the user can correct."""
+"""Exceptions that `PreparedPlayground.load` raises for a value that the user can correct."""
 
 
 @dataclass(frozen=True, slots=True)

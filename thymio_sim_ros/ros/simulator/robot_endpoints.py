@@ -71,7 +71,7 @@ def first_words() -> frozenset[str]:
     For hidden topics the word is included without `_` too, as in the driver's names.
     """
     rows = (row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor))
-    topics = (*rows, *(one.topic for one in robot_inputs()), "aseba/")
+    topics = (*rows, *(robot_input.topic for robot_input in robot_inputs()), "aseba/")
     words = {topic.partition("/")[0] for topic in topics if "/" in topic}
     return frozenset(words | {word.removeprefix(HIDDEN) for word in words})
 
@@ -171,13 +171,15 @@ class RobotEndpoints:
             )
             self._description.publish(String(data=urdf(names)))
         known = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
-        inputs = [one for one in known if one.topic not in options.left_out]
+        inputs = [robot_input for robot_input in known if robot_input.topic not in options.left_out]
         self._subscriptions: list[tuple[Any, Any]] = [
             (
-                chosen := self._control if one.is_of_operator else node,
-                chosen.create_subscription(one.type, names.topic(one.topic), self._handler(one), one.profile),
+                chosen := self._control if robot_input.is_of_operator else node,
+                chosen.create_subscription(
+                    robot_input.type, names.topic(robot_input.topic), self._handler(robot_input), robot_input.profile
+                ),
             )
-            for one in inputs
+            for robot_input in inputs
         ]
         handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
         self._services = [
@@ -277,45 +279,45 @@ class RobotEndpoints:
         target.is_sent = wanted
         (self._demand.add if wanted else self._demand.remove)(target.topic_demand)
         sensor = target.topic_demand.sensor
-        self._sent[sensor] = tuple(one for one in self._publishers[sensor] if one.is_sent)
+        self._sent[sensor] = tuple(publisher for publisher in self._publishers[sensor] if publisher.is_sent)
 
-    def _handler(self, one: RobotInput) -> Callable[[Any], None]:
+    def _handler(self, robot_input: RobotInput) -> Callable[[Any], None]:
         def handle(message: Any) -> None:
             try:
-                for command in one.commands(message, self._owner.input_context()):
+                for command in robot_input.commands(message, self._owner.input_context()):
                     self._owner.post(command)
-                limit_check = one.limit_check(message)
+                limit_check = robot_input.limit_check(message)
                 if limit_check:
-                    self._report_limit(one, limit_check)
+                    self._report_limit(robot_input, limit_check)
                 if field := tiny_field(message):
                     text = f"has a value near zero in {field}: {_INT_IN_FLOAT}"
-                    self._owner.messages.add_suspect(self._full_name(one), text)
-                    self._warn_once(one, text)
+                    self._owner.messages.add_suspect(self._full_name(robot_input), text)
+                    self._warn_once(robot_input, text)
             except (CommandError, PlacementError) as error:
-                self._owner.messages.add_rejected(self._full_name(one), error)
+                self._owner.messages.add_rejected(self._full_name(robot_input), error)
                 if isinstance(error, NotFiniteError) and not self._is_cause_named:
                     self._is_cause_named = not self._owner.convert_options.driver_ranges
                     if self._is_cause_named:
-                        self._report(one, _SUM_OF_RANGES)
+                        self._report(robot_input, _SUM_OF_RANGES)
 
         return handle
 
-    def _report_limit(self, one: RobotInput, limit_check: str) -> None:
+    def _report_limit(self, robot_input: RobotInput, limit_check: str) -> None:
         """Log a clamped message once per topic: programs use large numbers for full speed on purpose."""
-        self._owner.messages.add_clamped(self._full_name(one), limit_check)
-        self._warn_once(one, f"clamped: {limit_check}")
+        self._owner.messages.add_clamped(self._full_name(robot_input), limit_check)
+        self._warn_once(robot_input, f"clamped: {limit_check}")
 
-    def _warn_once(self, one: RobotInput, text: str) -> None:
-        reason = one.topic, text.partition(":")[0]
+    def _warn_once(self, robot_input: RobotInput, text: str) -> None:
+        reason = robot_input.topic, text.partition(":")[0]
         if reason not in self._reported:
             self._reported.add(reason)
-            self._report(one, f"{text} (reported once per topic)")
+            self._report(robot_input, f"{text} (reported once per topic)")
 
-    def _report(self, one: RobotInput, text: str) -> None:
-        self._node.get_logger().warning(f"{self._full_name(one)} {text}")
+    def _report(self, robot_input: RobotInput, text: str) -> None:
+        self._node.get_logger().warning(f"{self._full_name(robot_input)} {text}")
 
-    def _full_name(self, one: RobotInput) -> str:
-        return full_name(self._node, self.names.topic(one.topic))
+    def _full_name(self, robot_input: RobotInput) -> str:
+        return full_name(self._node, self.names.topic(robot_input.topic))
 
     def _reset_odometry(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._owner.post(commands.ResetOdometry())

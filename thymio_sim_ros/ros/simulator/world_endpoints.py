@@ -39,7 +39,7 @@ _WORDS = ("~/_state", "~/_overview", "~/_playgrounds", "~/_sensors", "_markers",
 """Topics that are always published here; the clock and the diagnostics have publishers of their own."""
 
 _SHOWING = ("~/_overview", "_markers", "_markers/objects", "map")
-"""Those that show where things are."""
+"""Topics that show positions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class WorldState:
     fallen: frozenset[str] = frozenset()
     """Names (in the world) of the robots that fell off an edge."""
     faults: tuple[str, ...] = ()
-    """What is wrong with endpoints and messages of other nodes, a sentence each."""
+    """Faults of endpoints and messages of other nodes, a sentence each."""
 
     def as_json(self) -> str:
         """Return the message text of `~/_state`."""
@@ -142,7 +142,8 @@ class WorldEndpoints:
         self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
 
     def publish_overview_if_due(self, world: World, wall_ns: int) -> None:
-        """Publish where everything is, if there is a subscriber and the last overview is long enough ago.
+        """Publish the positions of robots and objects, if there is a subscriber and the last overview is long enough
+        ago.
 
         `wall_ns` is of `time.monotonic_ns`.
         """

@@ -133,7 +133,8 @@ class WorldRunner:
             self._is_spinning = self._is_waiting = False
 
     def run_beside(self, slow: Callable[[], T]) -> T:
-        """Call a slow function and return its result or raise its exception, while the world goes on; messages wait.
+        """Call a slow function and return its result or raise its exception. The world continues meanwhile; messages
+        wait.
 
         The function runs on another thread, and must not change what the node uses. Raises InterruptedError if the node
         stops meanwhile.

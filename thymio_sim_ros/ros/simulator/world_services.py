@@ -1,7 +1,7 @@
 """Services and topics that control time and world (docs/ros.md).
 
 Robots are added, removed and moved by services of `rcl_interfaces`: among the standard types only these carry names
-with values and return a reason for each. A topic moves what a viewer drags.
+with values and return a reason for each. A topic moves robots and objects that a viewer drags.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ class WorldServices:
         """Return a service handler that applies `act` to each name and returns a reason where it fails."""
 
         def answer(request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
-            response.results = [self._attempt(act, one.name, one.value) for one in request.parameters]
+            response.results = [self._attempt(act, parameter.name, parameter.value) for parameter in request.parameters]
             self._runner.update_robots()
             return response
 

@@ -101,7 +101,7 @@ class WebPage:
 
     @property
     def startup_message(self) -> str:
-        """Where to open the page, as text for the log."""
+        """Addresses of the page, as text for the log."""
         return f"Page: {describe_urls('http', self.params.address, self.port, '/')}"
 
     @property

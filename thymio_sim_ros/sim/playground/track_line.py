@@ -24,7 +24,7 @@ EVERY = 5
 
 _TIE_M = 0.01
 _MAX_JUMP_M = 0.1
-"""Where segments of a track cross, several may be nearest within `_TIE_M`. The segment that continues the driven
+"""At a crossing of a track, several segments may be nearest within `_TIE_M`. The segment that continues the driven
 distance is chosen: a robot does not advance more than `_MAX_JUMP_M` between two samples."""
 
 

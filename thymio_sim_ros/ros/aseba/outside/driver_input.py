@@ -34,7 +34,7 @@ MISSING = (
     "the ROS driver does not publish ambient light, intensities of infrared communication, raw buttons and the address "
     "of the remote control: these stay 0"
 )
-"""What programs do not get, for the user."""
+"""Inputs that programs do not get, as text for the user."""
 
 FULL_SOUND = 255
 COMM_SENSORS = 7

@@ -46,7 +46,7 @@ POLL_S = 0.05
 SHUTDOWN = "shutdown"
 """The input that run control subscribes to, for simulated robots too."""
 SENSORS = "simulator/_sensors"
-"""Where viewers expect the list of sensors."""
+"""Topic on which viewers expect the list of sensors."""
 LONGEST_STEP_NS = SECOND_NS // 4
 """Longest time that passes for the link between two calls."""
 CAPACITY = 4096
@@ -72,7 +72,11 @@ def left_out(robot: RemoteRobot) -> frozenset[str]:
     missing = [sensor for sensor in all_sensors() if sensor.name not in sensors]
     rows = {row.topic for sensor in missing for row in sensor_topics.rows_of(sensor)}
     known = robot.device.variables.addresses().keys() | served_natives(robot.target).keys()
-    absent = {one.topic for one in robot_inputs() if not known.issuperset(NEEDED.get(one.topic, ("",)))}
+    absent = {
+        robot_input.topic
+        for robot_input in robot_inputs()
+        if not known.issuperset(NEEDED.get(robot_input.topic, ("",)))
+    }
     return frozenset(rows | absent | {sensor_topics.TRUTH})
 
 

@@ -24,7 +24,7 @@ class StandaloneOwner:
         send: Callable[[str, Command], None],
         publish: Callable[[], None],
     ) -> None:
-        """`now_ns` returns the time of the node; `publish` publishes what the devices did in their last run."""
+        """`now_ns` returns the time of the node; `publish` publishes the results of the last run of the devices."""
         self.devices = Devices()
         self._now_ns, self._send, self._publish = now_ns, send, publish
 
@@ -50,7 +50,7 @@ class StandaloneOwner:
 
     @property
     def runs(self) -> int:
-        """How often the devices have run."""
+        """Number of times that the devices have run."""
         return self.devices.runs
 
     @property

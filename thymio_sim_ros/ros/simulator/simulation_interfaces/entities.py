@@ -78,7 +78,7 @@ class Entities:
             pattern = re.compile(filters.filter)
         except re.error as error:
             raise RefusedError(FAILED, f"filter {filters.filter!r} is no regular expression: {error}") from error
-        wanted = {one.category for one in filters.categories}
+        wanted = {kind.category for kind in filters.categories}
         for name, category in self._categories().items():
             if pattern.search(name) and (not wanted or category in wanted):
                 yield name
@@ -183,11 +183,11 @@ class Entities:
         return next(name for name in (f"{wanted or SPAWNABLE}_{number}" for number in numbers) if name not in taken)
 
     def _spawn_all(self, request: Any, response: Any) -> None:
-        for one in request.spawn_requests:
+        for spawn in request.spawn_requests:
             result = self._messages.SpawnResult()
             result.result.result = OK
             try:
-                self._spawn(one, result)
+                self._spawn(spawn, result)
             except RefusedError as refusal:
                 result.result.result, result.result.error_message = refusal.code, str(refusal)
             response.results.append(result)
