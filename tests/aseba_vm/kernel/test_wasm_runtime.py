@@ -11,7 +11,7 @@ import pytest
 
 from aseba_vm.kernel import wasm_runtime
 from aseba_vm.kernel.wasm_runtime import is_usable
-from tests.patience import PATIENCE_S
+from tests.patience import PROGRAM_S
 
 ROOT = Path(__file__).parents[3]
 ENOUGH, TOO_LITTLE = 1 << 30, 300 << 20
@@ -52,7 +52,7 @@ def run(script: str, *, path: Path = ROOT, address_space: int = resource.RLIM_IN
     head = f"import resource\nresource.setrlimit(resource.RLIMIT_AS, ({address_space}, {address_space}))\n"
     head += f"import sys\nsys.path[:0] = [{str(path)!r}, {str(ROOT)!r}]\n"
     done = subprocess.run(
-        [sys.executable, "-c", head + script], capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        [sys.executable, "-c", head + script], capture_output=True, text=True, timeout=PROGRAM_S, check=False
     )
     assert done.returncode == 0, done.stderr
     return done.stdout, done.stderr.splitlines()
