@@ -56,7 +56,9 @@ check: lint $(VENV)/.ready-test  ## before a commit: lint, and tests without ROS
 test: platform $(VENV)/.ready-test web  ## before a push: a test of everything; ARGS='-n 0 -k name' goes to pytest
 	@$(TEST) -m 'not slow' $(ARGS)
 
-SEED ?= $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
+ifndef SEED
+SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
+endif
 test-all: platform $(VENV)/.ready-test web  ## every night: all tests, also the long ones, with new random examples
 	@echo "Hypothesis explores with seed $(SEED); make test-all SEED=$(SEED) repeats it."
 	@$(TEST) --hypothesis-profile explore --hypothesis-seed $(SEED) $(ARGS)
