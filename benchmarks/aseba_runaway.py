@@ -173,7 +173,7 @@ def run(program: Path, options: argparse.Namespace, folder: Path) -> Figures:
         finally:
             pupils.close()
         faults = [
-            line for line in running.process.output.splitlines() if "Traceback" in line or "fault of ours" in line
+            line for line in running.process.output.splitlines() if "Traceback" in line or "internal error" in line
         ]
     if code or faults:
         raise RuntimeError(f"{program.stem}: exit code {code} {'; '.join(faults)}")
