@@ -224,10 +224,6 @@ class VirtualMachine:
 
     # -- events (docs/spec/aseba-bytecode-vm.md sections 10.2 and 10.5)
 
-    def address_of(self, event: int) -> int:
-        """The address of the code of an event, 0 if there is none."""
-        return self.code.addresses.get(event, 0)
-
     def setup(self, event: int) -> int:
         """Start an event.
 

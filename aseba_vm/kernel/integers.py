@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 __all__ = ["floor_log2", "instruction_of", "quotient", "remainder", "wrap", "wrap32"]
-
-Integer = Callable[..., int]
 
 
 def wrap(value: int) -> int:

@@ -3,7 +3,6 @@ import { test } from "node:test";
 
 import { makeBlock } from "../../web_ui/vpl/blocks.js";
 import {
-  addBlock,
   changeBlock,
   copyRow,
   insertRow,
@@ -46,15 +45,14 @@ test("a program always ends with an empty row", () => {
   assert.deepEqual(names(removeRow(TWO, 2)), names(TWO));
 });
 
-test("a click in the palette adds to the selected row, else to the first that lacks a block", () => {
-  assert.deepEqual(names(addBlock(TWO, "prox")), ["clap: move colortop", "button: move", "prox: ", "-: "]);
-  assert.deepEqual(names(addBlock(TWO, "prox", 0))[0], "prox: move colortop");
-  assert.deepEqual(names(addBlock(TWO, "sound", 1))[1], "button: move sound");
-  assert.deepEqual(names(addBlock(addBlock(TWO, "acc"), "move"))[2], "acc: move");
+test("a block is put into a row, and a program still ends with an empty row", () => {
+  assert.deepEqual(names(putBlock(TWO, 2, makeBlock("prox"))), ["clap: move colortop", "button: move", "prox: ", "-: "]);
+  assert.deepEqual(names(putBlock(TWO, 0, makeBlock("prox")))[0], "prox: move colortop");
+  assert.deepEqual(names(putBlock(TWO, 1, makeBlock("sound")))[1], "button: move sound");
 });
 
 test("an action of a kind that the row has is refused, with the reason", () => {
-  assert.equal(addBlock(TWO, "move", 0), TWO);
+  assert.equal(putBlock(TWO, 0, makeBlock("move")), TWO);
   assert.deepEqual(whyNot(TWO, 0, makeBlock("move")), { key: "edit.twice", values: { row: 1 } });
   assert.deepEqual(whyNot(TWO, 0, makeBlock("timer")), { key: "edit.advanced", values: { row: 1 } });
   assert.equal(whyNot(TWO, 9, makeBlock("move"))?.key, "edit.row");
@@ -221,7 +219,7 @@ test("extended mode has conditions, of what lasts, and they take the place of ev
   assert.equal(whyNot(made, 0, makeBlock("clap"), "conditions")?.key, "edit.slot");
   assert.equal(whyNot(made, 0, makeBlock("counter"), "event")?.key, "edit.slot");
   assert.equal(whyNot(withMode(made, "advanced"), 0, makeBlock("prox"), "conditions")?.key, "edit.extended");
-  assert.deepEqual(addBlock(made, "counter", 1).rows[1].conditions[0].values, [3, 0]);
+  assert.deepEqual(putBlock(made, 1, makeBlock("counter")).rows[1].conditions[0].values, [3, 0]);
   const moved = moveBlock(made, { row: 1, slot: "event" }, 0, { slot: "conditions", at: 0 });
   assert.deepEqual(
     moved.rows[0].conditions.map(({ name }) => name),

@@ -40,8 +40,6 @@ class ClientSendQueue:
         self._limit = limit
         self._newest: dict[int, bytes] = {}
         self._next_warning_s = float("-inf")
-        self.dropped = 0
-        """Data frames replaced by newer ones."""
 
     @property
     def has_backlog(self) -> bool:
@@ -84,7 +82,6 @@ class ClientSendQueue:
         return False
 
     def _keep(self, subscription_id: int, frame: bytes) -> None:
-        self.dropped += subscription_id in self._newest
         self._newest[subscription_id] = frame
         now_s = time.monotonic()
         if now_s >= self._next_warning_s:

@@ -58,11 +58,6 @@ export class Camera {
     this.resize(this.size.width, this.size.height);
   }
 
-  /** @param {number} inset  at the left */
-  setInset(inset) {
-    this.setInsets({ left: inset });
-  }
-
   /** Nothing is nearer than this share of the way to what is looked at; near and far need a small ratio. */
   #setNear() {
     const far = this.camera.position.distanceTo(this.controls.target);

@@ -121,11 +121,6 @@ const DRAWINGS = /** @type {const} */ ({
 
 /** @typedef {keyof typeof DRAWINGS} IconName */
 
-/** Whether there is an icon of this name. @param {string} name @returns {name is IconName} */
-export function isIcon(name) {
-  return Object.hasOwn(DRAWINGS, name);
-}
-
 /**
  * @param {IconName} name
  * @param {{ small?: boolean }} [how]  small: 20 px, as on the stage

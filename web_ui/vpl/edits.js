@@ -69,19 +69,6 @@ export function putBlock(program, row, block, { slot = slotOf(block), index } = 
   return withSlot(program, row, slot, isList(found) ? spliced(found, index ?? found.length, 0, block) : block);
 }
 
-/**
- * Add a new block, as a click in a palette does: to the selected row, else to the first row that lacks one.
- *
- * @param {Program} program
- * @param {string} name
- * @param {number | null} [selected]
- */
-export function addBlock(program, name, selected = null) {
-  const slot = slotOf(name);
-  const lacking = program.rows.findIndex((row) => (isList(row[slot]) ? row[slot].length === 0 : row[slot] === null));
-  return putBlock(program, selected ?? (lacking < 0 ? program.rows.length - 1 : lacking), makeBlock(name));
-}
-
 /** Remove a block; a state filter is emptied. @param {Program} program @param {Place} place */
 export function removeBlock(program, { row, slot, index = 0 }) {
   if (blockAt(program, { row, slot, index }) === null) return program;

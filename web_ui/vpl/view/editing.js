@@ -237,8 +237,3 @@ function fresh(text) {
     areWarningsRead: false,
   };
 }
-
-/** An empty program, in the mode that a toolbox offers first. @param {readonly Mode[]} modes */
-export function emptyFile(modes) {
-  return newVpl(makeProgram(modes[0]));
-}

@@ -7,7 +7,7 @@ robot that is discovered later or was restarted.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,23 +91,6 @@ class OutputEndpoints:
         self._sent.pop(key, None)
         if publisher.is_retained or not sent.receivers:
             self._sent[key] = sent
-
-    def send_all(self, commands: Sequence[Command], *, latest: bool = False) -> int:
-        """Publish commands in order and return how many were skipped.
-
-        With `latest` only the last command for each topic and part is published.
-        """
-        kept = commands
-        if latest:
-            last: dict[Hashable, Command] = {}
-            for command in commands:
-                key = _topic(command), _part(command)
-                last.pop(key, None)
-                last[key] = command
-            kept = list(last.values())
-        for command in kept:
-            self.send(command)
-        return len(commands) - len(kept)
 
     def resend(self) -> None:
         """Send retained and unreceived commands again to new subscribers.
