@@ -276,15 +276,15 @@ def test_an_interrupted_test_leaves_nothing_behind(ros_domain, word):
 
     before = signal.signal(signal.SIGALRM, stop)
     threads = set(threading.enumerate())
+    ros = Ros(ros_domain)
     try:
-        ros = Ros(ros_domain)
         ros.start(Echo)
         ros.publisher(String, "heard").publish(String(data=word))
-        signal.setitimer(signal.ITIMER_REAL, 0.05)
         with pytest.raises(TimeoutError):
+            signal.setitimer(signal.ITIMER_REAL, 0.05)
             ros.until(lambda: False)
-        ros.close()
     finally:
+        ros.close()
         signal.signal(signal.SIGALRM, before)
     assert set(threading.enumerate()) == threads
     assert not ros.context.ok()
