@@ -10,9 +10,11 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from thymio_sim_ros.lockstep.barrier import TOPIC
 from thymio_sim_ros.lockstep.matching import EVERYWHERE, fit
+from thymio_sim_ros.names.type_names import type_name
+from thymio_sim_ros.ros.rclpy_ext.connections import SUBSCRIBER, wrong_qos
 from thymio_sim_ros.testing.failure_messages import pluralized
 
-__all__ = ["as_published", "topic_lines"]
+__all__ = ["as_published", "misfit", "topic_lines"]
 
 
 def as_published(node: Node, topic: str, depth: int, *, transient_local: bool | None) -> QoSProfile:
@@ -27,6 +29,18 @@ def as_published(node: Node, topic: str, depth: int, *, transient_local: bool | 
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if transient_local else DurabilityPolicy.VOLATILE,
     )
+
+
+def misfit(node: Node, kind: Any, topic: str, qos: QoSProfile | int) -> str:
+    """A sentence if a subscription of `node` fits no publisher of other nodes, although there are some; else empty."""
+    profile = QoSProfile(depth=qos) if isinstance(qos, int) else qos
+    own = node.get_fully_qualified_name()
+    misfits = [
+        wrong_qos(SUBSCRIBER, topic, own, type_name(kind), profile, info.qos_profile)
+        for info in node.get_publishers_info_by_topic(topic)
+        if info.node_name != node.get_name()
+    ]
+    return str(misfits[0]) if misfits and all(misfits) else ""
 
 
 def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:

@@ -4,27 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
 import pytest
-import rclpy
-from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.signals import SignalHandlerOptions
-from rclpy.utilities import get_default_context, try_shutdown
 
-from thymio_sim_ros import course_packages
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
-from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros.compat import dds_profile
-from thymio_sim_ros.ros.rclpy_ext import log_directory
-from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections, wrong_qos
+from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor, nodes_of
 from thymio_sim_ros.testing.awaited import Awaited
@@ -34,6 +25,7 @@ from thymio_sim_ros.testing.ros import discovery, student
 from thymio_sim_ros.testing.ros.containment import Containment
 from thymio_sim_ros.testing.ros.cpu_limit import CPU_LIMIT_S, START_CPU_S
 from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
+from thymio_sim_ros.testing.ros.private_context import PrivateContext
 from thymio_sim_ros.testing.ros.program import OUTPUT_BYTES, Program
 from thymio_sim_ros.testing.ros.program_files import find
 from thymio_sim_ros.testing.ros.programs import Programs
@@ -56,9 +48,6 @@ DEPTH = 1000
 
 NOTICE = 2
 """Deliveries until a publisher knows a subscription: the event, then the task that the event creates."""
-
-THREADS_S = 2.0
-"""Last resort: time for threads of nodes under test to notice that ROS is shut down and to end, in s of real time."""
 
 TEST_NODE = "test"
 
@@ -96,14 +85,8 @@ class Ros:
         """The simulation of this test, if there is one; it owns simulated time."""
         self._folder, self._output_limit = folder, output_limit
         self._containment = Containment()
-        self._threads = set(threading.enumerate())
-        # Code under test may use the default context (`rclpy.ok()`). If it is in use already, it is left alone.
-        self.context = get_default_context()
-        if self.context.ok():
-            self.context = Context()
-        log_directory.ensure()
-        course_packages.add_to_path()
-        rclpy.init(args=[], context=self.context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+        self._context = PrivateContext(domain)
+        self.context = self._context.context
         # The events executor writes crash reports to the file behind stderr, which `--capture=sys` does not provide.
         with contextlib.redirect_stderr(sys.__stderr__):
             self._executor = make_executor(self.context)
@@ -131,7 +114,7 @@ class Ros:
     def add(self, node: Node, *, cpu_limit: float = CPU_LIMIT_S) -> Node:
         """Add a node under test; it gets an executor of its own and is destroyed when the test ends."""
         self._nodes.append(node)
-        with self._alive():
+        with self._context.alive():
             self._turns[node] = ExecutorTurns(node, self.context, self._containment, cpu_limit)
         return node
 
@@ -279,7 +262,7 @@ class Ros:
 
     def deliver(self) -> None:
         """Handle all pending messages without waiting, those of nodes under test first."""
-        with self._alive():
+        with self._context.alive():
             self._run_turns()
             deliver(self._executor)
 
@@ -287,7 +270,7 @@ class Ros:
         """Spin all executors once, for `SLICE_S` at most."""
         if self.programs.running:
             self.programs.take_turns(self._now_ns())
-        with self._alive():
+        with self._context.alive():
             self._run_turns()
             self._executor.spin_once(timeout_sec=SLICE_S)
 
@@ -379,23 +362,11 @@ class Ros:
         with student.types_explained(self.node, SUBSCRIBER, kind, name):
             subscription = self.node.create_subscription(kind, name, recorder.add, qos)
         self._recorders.append(recorder)
-        self._check_qos(kind, name, qos)
+        if misfit := discovery.misfit(self.node, kind, name, qos):
+            self.fail(misfit)
         self.until(lambda: is_matched(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
         return recorder
-
-    def _check_qos(self, kind: Any, topic: str, qos: QoSProfile | int) -> None:
-        """Fail the test if a subscription with this profile fits no publisher of its topic, although there are some."""
-        __tracebackhide__ = True
-        infos, node = self.node.get_publishers_info_by_topic(topic), self.node.get_fully_qualified_name()
-        profile = QoSProfile(depth=qos) if isinstance(qos, int) else qos
-        misfits = [
-            wrong_qos(SUBSCRIBER, topic, node, type_name(kind), profile, info.qos_profile)
-            for info in infos
-            if info.node_name != TEST_NODE
-        ]
-        if misfits and all(misfits):
-            self.fail(str(misfits[0]))
 
     def publisher(self, kind: Any, topic: str, *, depth: int = 10) -> Any:
         """Create a publisher, and wait until it has a subscriber."""
@@ -458,7 +429,7 @@ class Ros:
         """Close all nodes, executors and the context."""
         with contextlib.ExitStack() as end:  # each step is done even when another fails
             end.callback(self._containment.close)
-            end.callback(self._close_context)
+            end.callback(self._context.close)
             end.callback(self._executor.shutdown)
             for node in self._nodes:
                 end.callback(self._destroy, node)
@@ -466,36 +437,11 @@ class Ros:
                     end.callback(self._turns[node].shutdown)
                 else:
                     end.callback(self._executor.remove_node, node)
-            end.callback(self._end_threads)
+            end.callback(self._context.end_threads)
             for life in self._lives:
                 end.callback(life.close)
                 end.callback(self._executor.remove_node, life.node)
             end.callback(self.programs.close, self._now_ns())
-
-    def _end_threads(self) -> None:
-        """Shut ROS down before the nodes are destroyed if they run threads, whose loops check `rclpy.ok()`."""
-        running = set(threading.enumerate()) - self._threads
-        if running:
-            self._close_context()
-        deadline = time.monotonic() + THREADS_S
-        for thread in running:
-            thread.join(max(0.0, deadline - time.monotonic()))
-
-    def _close_context(self) -> None:
-        if self.context is get_default_context():
-            try_shutdown()
-        else:
-            self.context.try_shutdown()
-
-    @contextlib.contextmanager
-    def _alive(self) -> Iterator[None]:
-        """Fail the test with an explanation if the context is shut down in the middle of it."""
-        try:
-            if not self.context.ok():
-                raise ExternalShutdownException
-            yield
-        except ExternalShutdownException:
-            pytest.fail("a node under test shut ROS down: rclpy.shutdown() belongs to main()")
 
     def _simulated(self) -> Stepped:
         if self.simulation is None:
