@@ -9,7 +9,6 @@ from typing import Any
 from geometry_msgs.msg import Twist
 from rclpy._rclpy_pybind11 import RMWError
 from rclpy.serialization import deserialize_message, serialize_message
-from std_msgs.msg import Int16MultiArray
 from visualization_msgs.msg import MarkerArray
 
 from tests.fuzz.target import Target, text
@@ -23,7 +22,6 @@ from thymio_sim_ros.ros.foxglove import cdr_complexity, json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError
 from thymio_sim_ros.ros.foxglove.json_messages import JsonMessageError
 from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
-from thymio_sim_ros.ros.rclpy_ext.raw_publisher import words_of
 
 PARAMETER_TYPES = (None, "float64", "float64_array", "byte_array")
 
@@ -67,10 +65,6 @@ def _tf() -> Iterator[bytes]:
     yield tf2_messages.encode([one, one._replace(child="thymio/a")])
 
 
-def _words() -> Iterator[bytes]:
-    yield bytes(serialize_message(Int16MultiArray(data=[1, -2])))
-
-
 TARGETS = (
     Target("tf", _transforms, (TransformDataError,), _tf),
     Target(
@@ -83,7 +77,6 @@ TARGETS = (
         ],
         ('"points":[', '"text":', "1e999", "null"),
     ),
-    Target("ros-words", lambda data: list(words_of(data)), (RuntimeError,), _words),
     Target(
         "ros-twist",
         lambda data: deserialize_message(data, Twist),

@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState, LaserScan, Range
 from std_msgs.msg import Float32
 from visualization_msgs.msg import Marker
 
-from thymio_sim_ros.ros.interface import cdr_fields, convert_readings, sensor_topics
+from thymio_sim_ros.ros.interface import convert_readings, rotations, sensor_topics
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.names import RobotNames, ros_names, topic_word
 from thymio_sim_ros.sim.model import readings, units
@@ -149,7 +149,7 @@ def test_yaw_survives_as_quaternion(yaw):
 @pytest.mark.parametrize("tilt", [Tilt(0.0, 0.0), Tilt(0.3, -0.2), Tilt(-3.0, 0.1), Tilt(0.1, 3.1)])
 @pytest.mark.parametrize("yaw", [0.0, 3.0, math.pi, 3.2, 5.0, 7.0, 40.0, -3.0, -3.2, -5.0, -40.0])
 def test_every_orientation_has_a_w_that_is_not_negative(yaw, tilt):
-    x, y, z, w = cdr_fields.rotation(yaw, tilt)
+    x, y, z, w = rotations.rotation(yaw, tilt)
     assert w >= 0.0
     assert math.hypot(x, y, z, w) == pytest.approx(1.0)
     forward = (1 - 2 * (y * y + z * z), 2 * (x * y + w * z))
@@ -159,7 +159,7 @@ def test_every_orientation_has_a_w_that_is_not_negative(yaw, tilt):
 
 @pytest.mark.parametrize("angle", [0.0, 1.0, 3.5, -3.5, 100.0])
 def test_wheels_turn_with_a_w_that_is_not_negative(angle):
-    x, y, z, w = cdr_fields.wheel_rotation(angle)
+    x, y, z, w = rotations.wheel_rotation(angle)
     assert w >= 0.0
     assert (x, z) == (0.0, 0.0)
     assert (w * w - y * y, 2 * w * y) == pytest.approx((math.cos(angle), math.sin(angle)))

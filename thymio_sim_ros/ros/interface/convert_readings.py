@@ -27,18 +27,18 @@ from std_msgs.msg import (
 )
 from visualization_msgs.msg import Marker, MarkerArray
 
-from thymio_sim_ros.ros.interface import cdr_fields
-from thymio_sim_ros.ros.interface.cdr_fields import LASER_OFFSET_M, PROXIMITY_MIN_M
 from thymio_sim_ros.ros.interface.headers import SECOND_NS, stamped
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.ros.interface.rotations import rotation
 from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF
-from thymio_sim_ros.sim.model import readings
+from thymio_sim_ros.sim.commands import LED_FULL
+from thymio_sim_ros.sim.model import readings, units
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt, Twist
 
 # The driver's constants of a Range (docs/spec/ros-interface.md section 3).
-PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.14, 0.3
+PROXIMITY_MIN_M, PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.0215, 0.14, 0.3
 GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
-LASER_STEP_RAD, LASER_ANGLE_RAD = 0.32, 0.64
+LASER_STEP_RAD, LASER_ANGLE_RAD, LASER_OFFSET_M = 0.32, 0.64, 0.08
 
 TRAIL_M = 0.0015
 """Height of pen strokes, for viewers: above all paint."""
@@ -71,7 +71,7 @@ class ConvertOptions:
 
 def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
     """Return the rotation of a body that is tilted, then turned about z; w >= 0."""
-    x, y, z, w = cdr_fields.rotation(yaw_rad, tilt)
+    x, y, z, w = rotation(yaw_rad, tilt)
     return Quaternion(x=x, y=y, z=z, w=w)
 
 
@@ -87,13 +87,17 @@ def proximity_range(
     reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions, *, index: int
 ) -> Range:
     """Return the range of one proximity sensor as in the driver."""
-    fields = options.proximity[index]
+    fields, value = options.proximity[index], reading.ranges_m[index]
+    if options.driver_ranges:
+        value = -1.0 if math.isinf(value) else max(value, fields.min_m)
+    elif value < fields.min_m:
+        value = -math.inf
     message = Range(
         radiation_type=Range.INFRARED,
         field_of_view=fields.fov_rad,
         min_range=fields.min_m,
         max_range=fields.max_m,
-        range=cdr_fields.proximity_range_m(reading, options, index),
+        range=value,
     )
     return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
 
@@ -108,7 +112,10 @@ def laser(reading: readings.ProximityReading, names: RobotNames, options: Conver
         scan_time=options.scan_ns / SECOND_NS,
         range_min=PROXIMITY_MIN_M + LASER_OFFSET_M,
         range_max=PROXIMITY_MAX_M + LASER_OFFSET_M,
-        ranges=cdr_fields.laser_m(reading),
+        ranges=[
+            math.inf if math.isinf(range_m) else max(range_m, PROXIMITY_MIN_M) + LASER_OFFSET_M
+            for range_m in reading.ranges_m[4::-1]
+        ],
         intensities=[float(count) for count in reading.words[4::-1]],
     )
     return stamped(message, reading.stamp_ns, names.frame("laser_link"))
@@ -116,12 +123,14 @@ def laser(reading: readings.ProximityReading, names: RobotNames, options: Conver
 
 def ground_range(reading: readings.GroundReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
     """Return whether the floor reflects below one ground sensor, as a range."""
+    not_reflecting, reflecting = (1.0, 0.0) if options.driver_ranges else (math.inf, -math.inf)
+    is_dark = reading.words[4 + index] < options.ground_threshold
     message = Range(
         radiation_type=Range.INFRARED,
         field_of_view=GROUND_FOV_RAD,
         min_range=GROUND_MIN_M,
         max_range=GROUND_MAX_M,
-        range=cdr_fields.ground_range_m(reading, options, index),
+        range=not_reflecting if is_dark else reflecting,
     )
     return stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
 
@@ -129,8 +138,11 @@ def ground_range(reading: readings.GroundReading, names: RobotNames, options: Co
 def ground_reflectance(
     reading: readings.GroundReading, _names: RobotNames, _options: ConvertOptions, *, index: int
 ) -> Float32:
-    """Return the part of the light that the floor reflects below one ground sensor: 0 (black) to 1 (white)."""
-    return Float32(data=cdr_fields.gray(reading, index))
+    """Return the part of the light that the floor reflects below one ground sensor: 0 (black) to 1 (white).
+
+    It corresponds to the count of the sensor without ambient light.
+    """
+    return Float32(data=units.ground_reflectance(reading.words[4 + index]))
 
 
 def button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:
@@ -189,7 +201,7 @@ def leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOpti
     """Return the intensities of all lights, with a labeled dimension for each group."""
     return Float32MultiArray(
         layout=layout((group, len(levels)) for group, levels in reading.groups),
-        data=cdr_fields.led_levels(reading),
+        data=[level / LED_FULL for _, levels in reading.groups for level in levels],
     )
 
 

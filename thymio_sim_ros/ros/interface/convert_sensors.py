@@ -9,10 +9,10 @@ from sensor_msgs.msg import BatteryState, Imu, Temperature
 from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Int8, Int16
 from visualization_msgs.msg import Marker
 
-from thymio_sim_ros.ros.interface import cdr_fields
 from thymio_sim_ros.ros.interface.headers import stamped
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.sim.model import readings
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_HEIGHT_M, PROXIMITY_POSES, PROXIMITY_RANGE_M
 
 ACCELERATION_VARIANCE = 0.07
 TEMPERATURE_VARIANCE = 0.01
@@ -23,15 +23,20 @@ ABSENT = -1.0
 
 
 RAY_WIDTH_M = 0.003
+FREE, HIT = ColorRGBA(r=0.45, g=0.75, b=1.0, a=0.6), ColorRGBA(r=1.0, g=0.3, b=0.2, a=1.0)
+"""Colors of rays without and with an obstacle."""
 
 
 def rays(reading: readings.ProximityReading, names: RobotNames, _options: object) -> Marker:
     """Return the seven rays of the proximity sensors as lines of the measured length, for viewers."""
     marker = Marker(ns="rays", action=Marker.ADD, type=Marker.LINE_LIST, frame_locked=True)
     marker.scale.x = RAY_WIDTH_M
-    ends, colors = cdr_fields.ray_lines(reading)
-    marker.points = [Point(x=x, y=y, z=z) for x, y, z in ends]
-    marker.colors = [ColorRGBA(r=r, g=g, b=b, a=a) for r, g, b, a in colors]
+    for (x, y, yaw), range_m in zip(PROXIMITY_POSES, reading.ranges_m, strict=True):
+        is_free = math.isinf(range_m)
+        length = PROXIMITY_RANGE_M if is_free else range_m
+        end_x, end_y = x + length * math.cos(yaw), y + length * math.sin(yaw)
+        marker.points += (Point(x=x, y=y, z=PROXIMITY_HEIGHT_M), Point(x=end_x, y=end_y, z=PROXIMITY_HEIGHT_M))
+        marker.colors += (FREE if is_free else HIT,) * 2
     return stamped(marker, reading.stamp_ns, names.frame("base_link"))
 
 
@@ -61,7 +66,11 @@ def battery(reading: readings.BatteryReading, names: RobotNames, _options: objec
         charge=math.nan,
         capacity=math.nan,
         design_capacity=math.nan,
-        power_supply_status=cdr_fields.charging_status(reading),
+        power_supply_status=(
+            BatteryState.POWER_SUPPLY_STATUS_CHARGING
+            if reading.is_charging
+            else BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
+        ),
         power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO,
         present=True,
     )

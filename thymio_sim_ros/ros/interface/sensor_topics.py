@@ -27,8 +27,7 @@ from std_msgs.msg import (
 )
 from visualization_msgs.msg import Marker, MarkerArray
 
-from thymio_sim_ros.ros.interface import cdr_fields, convert_readings, convert_sensors, qos
-from thymio_sim_ros.ros.interface.cdr_templates import Patch
+from thymio_sim_ros.ros.interface import convert_readings, convert_sensors, qos
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames, raw_topic
@@ -62,8 +61,6 @@ class Row:
     on_change: Callable[[Any], Any] | None = None
     is_event: bool = False
     """Whether `encode` returns None for most readings."""
-    patch: Patch | None = None
-    """The parts of the serialized message that a reading changes, for topics with much traffic."""
 
 
 ROWS: dict[str, tuple[Row, ...]] = {
@@ -75,7 +72,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 partial(convert_readings.ground_range, index=i),
                 "-inf: the floor reflects, +inf: it does not; in the driver 0 and 1",
                 f"ground_{side}_link",
-                patch=cdr_fields.ground_patch(i),
             )
             for i, side in enumerate(SIDES)
         ),
@@ -85,7 +81,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 Float32,
                 partial(convert_readings.ground_reflectance, index=i),
                 "gray value of the floor measured by the sensor: 0 black (or no floor), 1 white",
-                patch=cdr_fields.reflectance_patch(i),
             )
             for i, side in enumerate(SIDES)
         ),
@@ -98,7 +93,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 partial(convert_readings.proximity_range, index=i),
                 "distance in m; +inf: no obstacle, -inf: too close; in the driver -1 and the minimum",
                 f"proximity_{name}_link",
-                patch=cdr_fields.proximity_patch(i),
             )
             for i, name in enumerate(PROXIMITY)
         ),
@@ -108,7 +102,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             convert_readings.laser,
             "the five front sensors from right to left, m from the center of the robot; intensities are counts",
             "laser_link",
-            patch=cdr_fields.LASER,
         ),
         Row(
             "_proximity/rays",
@@ -116,7 +109,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             convert_sensors.rays,
             "the seven rays as lines of the measured length; red if there is an obstacle",
             "base_link",
-            patch=cdr_fields.RAYS,
         ),
     ),
     "buttons": (
@@ -138,7 +130,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "backward, left, center, forward, right",
             "base_link",
             every_ns=SECOND_NS // 10,
-            patch=cdr_fields.JOY,
         ),
     ),
     "motor": (
@@ -148,7 +139,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             convert_readings.joints,
             "wheel angles in rad, not wrapped, and speeds in rad/s, left then right",
             every_ns=SECOND_NS // 20,
-            patch=cdr_fields.JOINTS,
         ),
     ),
     "pose": (
@@ -158,9 +148,8 @@ ROWS: dict[str, tuple[Row, ...]] = {
             convert_readings.odometry,
             "wheel odometry, from zero; with slip",
             "odom",
-            patch=cdr_fields.ODOMETRY,
         ),
-        Row(TRUTH, Odometry, convert_readings.truth, "true pose and velocity", MAP_FRAME, patch=cdr_fields.TRUTH),
+        Row(TRUTH, Odometry, convert_readings.truth, "true pose and velocity", MAP_FRAME),
     ),
     "leds": (
         Row(
@@ -170,7 +159,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "brightness 0…1 of every light, a labeled dimension for each group",
             profile=qos.TRANSIENT_LOCAL,
             always=True,
-            patch=cdr_fields.LEDS,
         ),
     ),
     "accelerometer": (
@@ -180,7 +168,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             convert_sensors.imu,
             "acceleration alone, m/s²; g upwards at rest",
             "base_link",
-            patch=cdr_fields.IMU,
         ),
     ),
     "temperature": (
@@ -190,7 +177,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             convert_sensors.temperature,
             "°C, in tenths",
             "base_link",
-            patch=cdr_fields.TEMPERATURE,
         ),
     ),
     "battery": (
@@ -200,7 +186,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             convert_sensors.battery,
             "V, charge 0…1, charging or not",
             "base_link",
-            patch=cdr_fields.BATTERY,
         ),
     ),
     "collision": (
@@ -277,7 +262,6 @@ def rows_of(sensor: Sensor) -> tuple[Row, ...]:
                 Int16MultiArray,
                 convert_readings.words,
                 about,
-                patch=cdr_fields.words_patch(sensor.aseba.size),
             ),
         )
         if is_seen

@@ -21,7 +21,7 @@ class LocalTopic:
 
     def __init__(self, kind: type, name: str) -> None:
         self.kind, self.topic_name = kind, name
-        self.handle = None  # read by raw_publisher, which then uses the methods below
+        self.handle = None  # read by subscription_count, which then uses the method below
         self.callbacks: list[Callable[[Any], None]] = []
         self.retained: list[Any] = []
         """The last message, if the topic is transient local."""

@@ -7,9 +7,8 @@ import time
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
-from thymio_sim_ros.ros.interface.cdr_templates import Patch, Template
-from thymio_sim_ros.ros.interface.headers import SECOND_NS
-from thymio_sim_ros.ros.rclpy_ext import raw_publisher
+from thymio_sim_ros.ros.interface.headers import SECOND_NS, stamp
+from thymio_sim_ros.ros.rclpy_ext.subscription_count import counter
 from thymio_sim_ros.ros.simulator.clock_conflict import ClockConflict
 from thymio_sim_ros.ros.simulator.world_topics import TOPICS
 
@@ -29,14 +28,12 @@ class ClockPublisher:
         self._gap_ns = round(MIN_PERIOD_SHARE * SECOND_NS / rate_hz)
         self._last_ns = 0
         self._has_subscribers = False
-        self._template = Template(Patch(()), Clock(), None)
-        publisher = node.create_publisher(TOPICS[TOPIC].type, TOPIC, TOPICS[TOPIC].profile) if is_on else None
-        self._send = raw_publisher.sender(publisher) if publisher is not None else None
-        self._count = raw_publisher.counter(publisher) if publisher is not None else None
+        self._publisher = node.create_publisher(TOPICS[TOPIC].type, TOPIC, TOPICS[TOPIC].profile) if is_on else None
+        self._count = None if self._publisher is None else counter(self._publisher)
         self.conflict: ClockConflict | None = None
         """Detects other publishers of the clock; None if this one is switched off."""
-        if publisher is not None:
-            self.conflict = ClockConflict(node, publisher.topic_name, node.context.get_domain_id())
+        if self._publisher is not None:
+            self.conflict = ClockConflict(node, self._publisher.topic_name, node.context.get_domain_id())
 
     @property
     def due_ns(self) -> int | None:
@@ -51,9 +48,9 @@ class ClockPublisher:
         """Publish simulated time, rate limited unless `last`: no other clock message is expected soon."""
         wall_ns = time.monotonic_ns()
         due_ns = self.due_ns
-        if self._send is None or not (last or (due_ns is not None and wall_ns >= due_ns)):
+        if self._publisher is None or not (last or (due_ns is not None and wall_ns >= due_ns)):
             return
         self._last_ns = wall_ns
-        self._send(self._template.at(now_ns))
+        self._publisher.publish(Clock(clock=stamp(now_ns)))
         if self.conflict is not None:
             self.conflict.record_published(now_ns)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from thymio_sim_ros.ros.interface.cdr_fields import PROXIMITY_MIN_M
 from thymio_sim_ros.ros.interface.convert_readings import (
     PROXIMITY_FOV_RAD,
     PROXIMITY_MAX_M,
+    PROXIMITY_MIN_M,
     ConvertOptions,
     RangeFields,
 )

@@ -16,7 +16,6 @@ from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
 from thymio_sim_ros.ros.interface import qos, sensor_topics
-from thymio_sim_ros.ros.interface.cdr_templates import Template
 from thymio_sim_ros.ros.interface.command_checks import CommandError, NotFiniteError, tiny_field
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
@@ -24,9 +23,9 @@ from thymio_sim_ros.ros.interface.names import HIDDEN, RobotNames, full_name
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput, robot_inputs
 from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
-from thymio_sim_ros.ros.rclpy_ext import raw_publisher
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
+from thymio_sim_ros.ros.rclpy_ext.subscription_count import counter
 from thymio_sim_ros.ros.simulator.visualization.urdf import urdf
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
@@ -97,15 +96,12 @@ class _SensorPublisher:
     topic_demand: TopicDemand
     next_ns: int
     publisher: Any = None
-    send: Callable[[bytes], None] = lambda _data: None
-    """Publishes a serialized message."""
     count: Callable[[], int] = lambda: 0
     """Returns the number of subscriptions."""
     is_sent: bool = False
     last: Any = None
     is_stale: bool = False
     """Whether the retained message is outdated after a reset, although the sensor reports nothing."""
-    template: Template | None = None
 
 
 class RobotOwner(Protocol):
@@ -198,9 +194,6 @@ class RobotEndpoints:
                 if stamp_ns < target.next_ns:
                     continue
                 target.next_ns = (stamp_ns // every_ns + 1) * every_ns
-            if target.template is not None and target.template.options is content:
-                target.send(target.template.fill(reading))
-                continue
             row = target.row
             if row.on_change is not None:
                 value = row.on_change(reading)
@@ -210,8 +203,6 @@ class RobotEndpoints:
             message = row.encode(reading, self.names, content)
             if message is None:
                 continue
-            if row.patch is not None:
-                target.template = Template.checked(row.patch, message, reading, content)
             target.is_stale = row.profile == qos.TRANSIENT_LOCAL
             target.publisher.publish(message)
 
@@ -266,7 +257,7 @@ class RobotEndpoints:
         topic, target = self.names.topic(row.topic), _SensorPublisher(row, topic_demand, next_ns=topic_demand.every_ns)
         profile = qos.overridable(self._node, topic, row.profile)
         target.publisher = self._node_of(row).create_publisher(row.type, topic, **profile)
-        target.send, target.count = raw_publisher.sender(target.publisher), raw_publisher.counter(target.publisher)
+        target.count = counter(target.publisher)
         self._publishers[topic_demand.sensor].append(target)
         self._send(target, wanted=row.always)
 

@@ -17,7 +17,7 @@ from rclpy.node import Node
 from thymio_sim_ros.ros.aseba.outside import driver_input
 from thymio_sim_ros.ros.interface import command_topics, driver_topics, plugin_topics, qos
 from thymio_sim_ros.ros.interface.names import RobotNames
-from thymio_sim_ros.ros.rclpy_ext import raw_publisher
+from thymio_sim_ros.ros.rclpy_ext.subscription_count import counter
 from thymio_sim_ros.sim.commands import Command, SetLed, ShowOnLeds
 
 __all__ = ["OutputEndpoints"]
@@ -69,7 +69,7 @@ class OutputEndpoints:
             self._publishers[row.topic] = _CommandPublisher(
                 encode,
                 publisher,
-                raw_publisher.counter(publisher),
+                counter(publisher),
                 row.is_retained,
             )
         self._counts = self._count()

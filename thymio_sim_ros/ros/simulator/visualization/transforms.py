@@ -18,8 +18,8 @@ from rclpy.qos import QoSProfile
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.compat.tf2_messages import Transform
 from thymio_sim_ros.ros.interface import qos
-from thymio_sim_ros.ros.interface.cdr_fields import rotation, wheel_rotation
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, SIDES, RobotNames
+from thymio_sim_ros.ros.interface.rotations import rotation, wheel_rotation
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
