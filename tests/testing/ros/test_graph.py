@@ -274,6 +274,10 @@ def test_an_interrupted_test_leaves_nothing_behind(ros_domain, word):
     def stop(_number, _frame):
         raise TimeoutError
 
+    def wait():
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        ros.until(lambda: False)
+
     before = signal.signal(signal.SIGALRM, stop)
     threads = set(threading.enumerate())
     ros = Ros(ros_domain)
@@ -281,8 +285,7 @@ def test_an_interrupted_test_leaves_nothing_behind(ros_domain, word):
         ros.start(Echo)
         ros.publisher(String, "heard").publish(String(data=word))
         with pytest.raises(TimeoutError):
-            signal.setitimer(signal.ITIMER_REAL, 0.05)
-            ros.until(lambda: False)
+            wait()
     finally:
         ros.close()
         signal.signal(signal.SIGALRM, before)
