@@ -103,7 +103,7 @@ def pytest_addoption(parser):
 
 
 ROOT = Path(__file__).parent
-ROS_FOLDERS = [ROOT / name for name in ("ros", "testing/ros", "tf")]
+ROS_FOLDERS = [ROOT / name for name in ("ros", "portable_ros/real", "testing/ros", "tf")]
 ROS_FIXTURES = {"ros", "ros_domain", "_shared"}
 LONGEST_FIRST = ("browser", "process", "ros")
 """Kinds of tests by their usual duration: a long one that starts last keeps one worker busy and the others idle."""

@@ -95,9 +95,14 @@ RULES = {
         _names("course_packages", "tf", "ros.compat.tf2_messages", "ros.rclpy_ext.throttled_log"),
         ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},
     ),
+    # rclpy and messages in pure Python: know no robot
+    f"{OURS}.portable_ros": Rule(_names("portable_ros"), frozenset({"numpy", "rosbags", "yaml"})),
     # the packages of other names, which only programs of students import
     f"{OURS}.course_packages": Rule(
-        _names("course_packages", "ros.compat.absent_types", "ros.compat.tf2_messages", "tf"), ROS
+        _names(
+            "course_packages", "portable_ros.import_hook", "ros.compat.absent_types", "ros.compat.tf2_messages", "tf"
+        ),
+        ROS,
     ),
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),

@@ -219,7 +219,7 @@ def test_every_ros_package_that_is_imported_is_declared() -> None:
 
 def test_ros_wheels_are_never_a_plain_dependency() -> None:
     project = _pyproject()["project"]
-    assert not any(requirement.startswith("ros") for requirement in project["dependencies"])
+    assert not any(requirement.startswith("ros-") for requirement in project["dependencies"])
     assert all("x86_64" in requirement for requirement in project["optional-dependencies"]["ros"])
 
 

@@ -12,6 +12,8 @@ import importlib.util
 import sys
 from pathlib import Path
 
+from thymio_sim_ros.portable_ros.import_hook import is_served
+
 __all__ = ["STARTUP", "add_to_path", "is_installed"]
 
 _FOLDER = Path(__file__).parent / "packages"
@@ -28,7 +30,10 @@ def add_to_path() -> None:
 
 
 def is_installed(name: str) -> bool:
-    """Whether `import name` finds an installed package: not one of ours, nor a file of a student."""
+    """Whether `import name` finds an installed package, or one of the embedded graph: not one of the packages here, nor
+    a file of a student."""
+    if is_served(name):
+        return True
     try:
         spec = importlib.util.find_spec(name)
     except (ImportError, ValueError):  # ValueError: a module that was not imported in the usual way

@@ -1,0 +1,165 @@
+"""The graph of a domain: its nodes and their endpoints, and which of them match."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd, GraphNode, PublisherEnd, ServiceEnd, SubscriptionEnd
+from thymio_sim_ros.portable_ros.rclpy.qos import incompatibilities
+
+__all__ = ["Graph", "graph_of"]
+
+
+class _Topic:
+    """The endpoints of a topic."""
+
+    def __init__(self) -> None:
+        self.publishers: list[PublisherEnd] = []
+        self.subscriptions: list[SubscriptionEnd] = []
+
+
+class Graph:
+    """Nodes and endpoints. Thread-safe: `lock` guards all, and `changed` is notified of each change."""
+
+    def __init__(self, domain_id: int) -> None:
+        self.domain_id = domain_id
+        self.lock = threading.RLock()
+        self._changed = threading.Condition(self.lock)
+        self.nodes: list[GraphNode] = []
+        self.topics: defaultdict[str, _Topic] = defaultdict(_Topic)
+        self.services: defaultdict[str, list[ServiceEnd]] = defaultdict(list)
+        self.clients: defaultdict[str, list[ClientEnd]] = defaultdict(list)
+
+    def wait_for(self, condition: Callable[[], bool], timeout_s: float | None) -> bool:
+        """Wait until a condition of the graph is true; return whether it is."""
+        end_s = None if timeout_s is None or timeout_s < 0 else time.monotonic() + timeout_s
+        with self._changed:
+            return self._changed.wait_for(condition, None if end_s is None else max(0.0, end_s - time.monotonic()))
+
+    def notify(self) -> None:
+        """Wake all waits, since something has changed."""
+        with self._changed:
+            self._changed.notify_all()
+
+    def add_node(self, node: GraphNode) -> None:
+        """Add a node."""
+        with self._changed:
+            self.nodes.append(node)
+            self._changed.notify_all()
+
+    def remove_node(self, node: GraphNode) -> None:
+        """Remove a node."""
+        with self._changed:
+            if node in self.nodes:
+                self.nodes.remove(node)
+            self._changed.notify_all()
+
+    def add_publisher(self, publisher: PublisherEnd) -> None:
+        """Add a publisher and match it with all subscriptions."""
+        with self._changed:
+            topic = self.topics[publisher.topic_name]
+            topic.publishers.append(publisher)
+            for subscription in topic.subscriptions:
+                self._meet(publisher, subscription)
+            self._changed.notify_all()
+
+    def remove_publisher(self, publisher: PublisherEnd) -> None:
+        """Remove a publisher."""
+        with self._changed:
+            topic = self.topics[publisher.topic_name]
+            if publisher in topic.publishers:
+                topic.publishers.remove(publisher)
+                for subscription in publisher.matched:
+                    subscription.unmatch(publisher)
+            self._forget(publisher.topic_name)
+
+    def add_subscription(self, subscription: SubscriptionEnd) -> None:
+        """Add a subscription and match it with all publishers."""
+        with self._changed:
+            topic = self.topics[subscription.topic_name]
+            topic.subscriptions.append(subscription)
+            for publisher in topic.publishers:
+                self._meet(publisher, subscription)
+            self._changed.notify_all()
+
+    def remove_subscription(self, subscription: SubscriptionEnd) -> None:
+        """Remove a subscription."""
+        with self._changed:
+            topic = self.topics[subscription.topic_name]
+            if subscription in topic.subscriptions:
+                topic.subscriptions.remove(subscription)
+                for publisher in subscription.matched:
+                    publisher.unmatch(subscription)
+            self._forget(subscription.topic_name)
+
+    def add_service(self, service: ServiceEnd) -> None:
+        """Add a service."""
+        with self._changed:
+            self.services[service.service_name].append(service)
+            self._changed.notify_all()
+
+    def remove_service(self, service: ServiceEnd) -> None:
+        """Remove a service."""
+        with self._changed:
+            if service in self.services[service.service_name]:
+                self.services[service.service_name].remove(service)
+            self._changed.notify_all()
+
+    def add_client(self, client: ClientEnd) -> None:
+        """Add a client."""
+        with self._changed:
+            self.clients[client.service_name].append(client)
+            self._changed.notify_all()
+
+    def remove_client(self, client: ClientEnd) -> None:
+        """Remove a client."""
+        with self._changed:
+            if client in self.clients[client.service_name]:
+                self.clients[client.service_name].remove(client)
+            self._changed.notify_all()
+
+    def services_for(self, client: ClientEnd) -> list[ServiceEnd]:
+        """The services that a client calls."""
+        with self.lock:
+            wanted = client.srv_type.TYPE_NAME
+            return [one for one in self.services[client.service_name] if wanted == one.srv_type.TYPE_NAME]
+
+    def _meet(self, publisher: PublisherEnd, subscription: SubscriptionEnd) -> None:
+        """Match two endpoints of a topic, or report to both why they do not match."""
+        kinds = {publisher.msg_type.TYPE_NAME, subscription.msg_type.TYPE_NAME}
+        if len(kinds) > 1:
+            return
+        wrong = incompatibilities(publisher.qos_profile, subscription.qos_profile)
+        if wrong:
+            publisher.events.report_incompatible(wrong[-1][0])
+            subscription.events.report_incompatible(wrong[-1][0])
+        else:
+            publisher.match(subscription)
+
+    def _forget(self, name: str) -> None:
+        topic = self.topics[name]
+        if not topic.publishers and not topic.subscriptions:
+            del self.topics[name]
+        self._changed.notify_all()
+
+
+def names_and_types(endpoints: Iterable[tuple[str, Any]]) -> list[tuple[str, list[str]]]:
+    """Names of topics or services with all their types, sorted; `endpoints` are pairs of name and class."""
+    found: defaultdict[str, set[str]] = defaultdict(set)
+    for name, kind in endpoints:
+        found[name].add(kind.TYPE_NAME)
+    return [(name, sorted(types)) for name, types in sorted(found.items())]
+
+
+_graphs: dict[int, Graph] = {}
+_lock = threading.Lock()
+
+
+def graph_of(domain_id: int) -> Graph:
+    """The graph of a domain; one for all contexts of the process."""
+    with _lock:
+        return _graphs.setdefault(domain_id, Graph(domain_id))

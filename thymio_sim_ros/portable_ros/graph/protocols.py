@@ -1,0 +1,143 @@
+"""What the parts of the room need of each other, so that none imports a part that imports it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Protocol
+
+from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind, QoSProfile
+
+
+class EndEvents(Protocol):
+    """Events of a publisher or a subscription."""
+
+    def report_match(self, change: int) -> None:
+        """Report a match (1) or its end (-1)."""
+
+    def report_incompatible(self, policy: QoSPolicyKind) -> None:
+        """Report an endpoint that does not fit because of a policy."""
+
+
+class SubscriptionEnd(Protocol):
+    """A subscription."""
+
+    msg_type: Any
+    qos_profile: QoSProfile
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+
+    @property
+    def events(self) -> EndEvents:
+        """The events."""
+
+    @property
+    def matched(self) -> Iterable[PublisherEnd]:
+        """The publishers."""
+
+    def add_match(self, publisher: PublisherEnd) -> None:
+        """Expect messages of a publisher."""
+
+    def unmatch(self, publisher: PublisherEnd) -> None:
+        """Expect no more messages of a publisher."""
+
+    def receive(self, data: bytes) -> None:
+        """Queue a serialized message."""
+
+
+class PublisherEnd(Protocol):
+    """A publisher."""
+
+    msg_type: Any
+    qos_profile: QoSProfile
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+
+    @property
+    def events(self) -> EndEvents:
+        """The events."""
+
+    @property
+    def matched(self) -> Iterable[SubscriptionEnd]:
+        """The subscriptions."""
+
+    def match(self, subscription: SubscriptionEnd) -> None:
+        """Send messages to a subscription from now on."""
+
+    def unmatch(self, subscription: SubscriptionEnd) -> None:
+        """Send no more messages to a subscription."""
+
+
+class ClientEnd(Protocol):
+    """A client of a service."""
+
+    srv_type: Any
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+
+    def receive(self, sequence: int, response: bytes) -> None:
+        """Queue a serialized response."""
+
+
+class ServiceEnd(Protocol):
+    """A service."""
+
+    srv_type: Any
+
+    @property
+    def service_name(self) -> str:
+        """The full name."""
+
+    def receive(self, client: ClientEnd, sequence: int, request: bytes) -> None:
+        """Queue a serialized request."""
+
+
+class TimerEnd(Protocol):
+    """A timer whose clock was set."""
+
+    def time_was_set(self) -> None:
+        """Plan the next call."""
+
+
+class Tasks(Protocol):
+    """An executor, as futures need it."""
+
+    def create_task(self, callback: Callable[..., Any], *args: Any) -> Any:
+        """Run a callback."""
+
+    def resume(self, task: Any) -> None:
+        """Run a task again."""
+
+
+class GraphNode(Protocol):
+    """A node, as the graph knows it."""
+
+    @property
+    def publishers(self) -> Iterable[PublisherEnd]:
+        """The publishers."""
+
+    @property
+    def subscriptions(self) -> Iterable[SubscriptionEnd]:
+        """The subscriptions."""
+
+    @property
+    def services(self) -> Iterable[ServiceEnd]:
+        """The services."""
+
+    @property
+    def clients(self) -> Iterable[ClientEnd]:
+        """The clients."""
+
+    def get_name(self) -> str:
+        """The name."""
+
+    def get_namespace(self) -> str:
+        """The namespace."""
+
+    def get_fully_qualified_name(self) -> str:
+        """Namespace and name."""

@@ -1,0 +1,113 @@
+"""Serves the room under the names that programs import: `rclpy`, `std_msgs` and the others.
+
+The hook never serves a part of what is installed: it serves all names, or, where there is an rclpy, none unless it is
+asked to. An installation with packages of messages but without rclpy is refused, because a program would mix both.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import sys
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+from thymio_sim_ros.errors import ThymioSimError
+
+__all__ = ["MixedInstallationError", "install", "is_served"]
+
+_ROOM = __package__
+_APIS = ("rclpy", "rosidl_parser")
+_FORMS = ("msg", "srv")
+
+
+class MixedInstallationError(ThymioSimError, ImportError):
+    """There are packages of messages without an rclpy, or parts of the other kind are imported already."""
+
+
+class _RoomLoader(Loader):
+    """Loads a module of the room; the import system gets the same object under both names."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """Import the module of the room."""
+        module = importlib.import_module(f"{_ROOM}.{self._name}")
+        self._own_spec = module.__spec__
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Restore what the import system has changed: the module was executed under its own name."""
+        module.__spec__ = self._own_spec
+
+
+class _MessagesLoader(Loader):
+    """Makes a package of messages, such as `std_msgs`, or its module, such as `std_msgs.msg`."""
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        """Let the import system make an empty module."""
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Fill a module with its classes, each of which is made when it is first used."""
+        from thymio_sim_ros.portable_ros.messages.packages import fill
+
+        fill(module)
+
+
+class _Finder(MetaPathFinder):
+    """Finds the modules that the room serves."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The spec of a module, None for others."""
+        top, _, rest = fullname.partition(".")
+        if top in _APIS:
+            own = importlib.util.find_spec(f"{_ROOM}.{fullname}")
+            if own is None:
+                return None
+            is_package = own.submodule_search_locations is not None
+            return ModuleSpec(fullname, _RoomLoader(fullname), origin=own.origin, is_package=is_package)
+        from thymio_sim_ros.portable_ros.messages.definitions import PACKAGES
+
+        if top not in PACKAGES or rest not in ("", *_FORMS):
+            return None
+        return ModuleSpec(fullname, _MessagesLoader(), origin=__file__, is_package=not rest)
+
+
+def install(*, is_forced: bool = False) -> bool:
+    """Serve the room from now on, if there is no rclpy or if it is forced; return whether it is served.
+
+    Raises MixedInstallationError.
+    """
+    if any(isinstance(one, _Finder) for one in sys.meta_path):
+        return True
+    is_there = importlib.util.find_spec("rclpy") is not None
+    if is_there and not is_forced:
+        return False
+    from thymio_sim_ros.portable_ros.messages.definitions import PACKAGES
+
+    imported = sorted(name for name in (*_APIS, *PACKAGES) if name in sys.modules)
+    if imported:
+        raise MixedInstallationError(
+            f"found {imported[0]} of another ROS imported already, expected none: install the embedded graph first"
+        )
+    found = None if is_there else next((one for one in sorted(PACKAGES) if importlib.util.find_spec(one)), None)
+    if found is not None and not is_forced:
+        raise MixedInstallationError(
+            f"found {found} without rclpy, expected both or neither: complete the installation of ROS, or use"
+            " `python -m thymio_sim_ros.portable_ros` to ignore it"
+        )
+    sys.meta_path.insert(0, _Finder())
+    return True
+
+
+def is_served(name: str) -> bool:
+    """Whether the import of a package gets the one of the room."""
+    top = name.partition(".")[0]
+    finder = next((one for one in sys.meta_path if isinstance(one, _Finder)), None)
+    return finder is not None and finder.find_spec(top, None) is not None

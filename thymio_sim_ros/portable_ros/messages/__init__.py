@@ -1,0 +1,1 @@
+"""The packages of messages and services: their definitions, classes, serialized form and type hashes."""

@@ -1,0 +1,130 @@
+"""Serialized messages (CDR, with its encapsulation) and type hashes, by rosbags.
+
+rosbags reads the attributes of a message by the names of its fields, and makes a message from values in their order.
+Its two type stores have the same messages: that for CDR has the attributes of our classes as fields, that for hashes
+has the fields themselves.
+"""
+
+from __future__ import annotations
+
+import functools
+import struct
+from collections.abc import Callable
+from typing import Any, cast
+
+from rosbags.interfaces import Nodetype
+from rosbags.serde import SerdeError
+from rosbags.typesys import Stores, get_typestore
+
+from thymio_sim_ros.portable_ros.messages.definitions import SERVICE_PARTS, FieldType, Shape, definition, is_service
+from thymio_sim_ros.portable_ros.messages.message_class import EMPTY_FIELD, Message, message_type
+from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
+
+__all__ = ["deserialize", "serialize", "type_hash"]
+
+_CDR = get_typestore(Stores.EMPTY)
+_HASHES = get_typestore(Stores.EMPTY)
+_EMPTY = (EMPTY_FIELD, (Nodetype.BASE, ("uint8", 0)))
+_ENCAPSULATION = 4
+"""Bytes before the content."""
+
+
+def serialize(message: Message) -> bytes:
+    """The bytes of a message. Raises TypeError for a field that has no value of its type."""
+    name = message.TYPE_NAME
+    _register(name)
+    try:
+        data = bytes(_CDR.serialize_cdr(message, name, little_endian=True))
+    except (AttributeError, IndexError, OverflowError, SerdeError, TypeError, ValueError, struct.error) as error:
+        raise TypeError(f"{name}: {_misfit(message) or error}: found {message!r}") from error
+    return data
+
+
+def deserialize(data: bytes, kind: type[Message]) -> Any:
+    """The message that the bytes stand for. Raises ValueError for bytes that are no such message.
+
+    Bytes after the message are ignored: Fast DDS sends a few, since it allocates by an upper estimate of the size.
+    """
+    name = kind.TYPE_NAME
+    _register(name)
+    codec = _CDR.get_msgdef(name)
+    if data[:1] != b"\0" or data[1:2] not in (b"\0", b"\1"):
+        raise ValueError(f"{name}: found encapsulation {data[:_ENCAPSULATION].hex()!r}, expected plain CDR")
+    read = codec.deserialize_cdr_le if data[1] else codec.deserialize_cdr_be
+    try:
+        message, _ = read(data[_ENCAPSULATION:], 0, codec.cls, _CDR)
+    except (SerdeError, struct.error, ValueError, IndexError) as error:
+        raise ValueError(f"found {len(data)} bytes that are no {name}: {error}") from error
+    return message
+
+
+@functools.cache
+def type_hash(name: str) -> str:
+    """The hash of a message or a service, such as `RIHS01_…`."""
+    if not is_service(name):
+        _describe(name)
+        return _HASHES.hash_rihs01(name)
+    parts = [f"{name}_{part}" for part in SERVICE_PARTS]
+    for part in parts:
+        _describe(part)
+    fields = [(f"{one.lower()}_message", (Nodetype.NAME, f"{name}_{one}")) for one in SERVICE_PARTS]
+    _HASHES.fielddefs[name] = cast(Any, ([], fields))
+    return _HASHES.hash_rihs01(name)
+
+
+@functools.cache
+def _register(name: str) -> None:
+    """Add a message to the store for CDR, with all that it contains."""
+    kind = message_type(name)
+    for member in kind.members:
+        if not member.field.type.is_primitive:
+            _register(member.field.type.base)
+    fields = [(member.wire, _node(member.field.type, is_wire=True)) for member in kind.members]
+    _CDR.fielddefs[name] = cast(Any, ([], fields or [_EMPTY]))
+    _CDR.types[name] = cast(Any, _maker(kind))
+
+
+@functools.cache
+def _describe(name: str) -> None:
+    """Add a message to the store for hashes, with all that it contains."""
+    of = definition(name)
+    for field in of.fields:
+        if not field.type.is_primitive:
+            _describe(field.type.base)
+    _HASHES.fielddefs[name] = cast(Any, ([], [(field.name, _node(field.type)) for field in of.fields] or [_EMPTY]))
+
+
+def _node(of: FieldType, *, is_wire: bool = False) -> Any:
+    """The type of a field as rosbags has it. rosidl has `char` as another name of `uint8`."""
+    inner: tuple[Any, Any]
+    if of.is_primitive:
+        inner = Nodetype.BASE, (PRIMITIVES[of.base].wire if is_wire or of.base == "char" else of.base, of.text_bound)
+    else:
+        inner = Nodetype.NAME, of.base
+    if of.shape is Shape.SCALAR:
+        return inner
+    return Nodetype.ARRAY if of.shape is Shape.ARRAY else Nodetype.SEQUENCE, (inner, of.size)
+
+
+def _maker(kind: type[Message]) -> Callable[..., Message]:
+    """The function that makes a message of the values that rosbags read."""
+    slots = [(member.slot, member.values.from_wire) for member in kind.members]
+
+    def make(*values: Any) -> Message:
+        message = kind.__new__(kind)
+        message._check_fields = False
+        for (slot, convert), value in zip(slots, values, strict=False):
+            setattr(message, slot, value if convert is None else convert(value))
+        return message
+
+    return make
+
+
+def _misfit(message: Message) -> str:
+    """The first sentence about a field whose value is not of its type, empty if there is none."""
+    for member in message.members:
+        try:
+            member.check(getattr(message, member.slot))
+        except AssertionError as error:
+            return str(error)
+    return ""

@@ -1,0 +1,175 @@
+"""The queries of a node about the graph."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from thymio_sim_ros.portable_ros.graph.entity import Handle
+from thymio_sim_ros.portable_ros.graph.graph import Graph, names_and_types
+from thymio_sim_ros.portable_ros.graph.names import expanded
+from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError
+from thymio_sim_ros.portable_ros.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from thymio_sim_ros.portable_ros.rclpy.type_hash import TypeHash
+from thymio_sim_ros.portable_ros.rclpy.validate_full_topic_name import validate_full_topic_name
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.graph.protocols import GraphNode
+    from thymio_sim_ros.portable_ros.rclpy.context import Context
+
+__all__ = ["NodeGraph"]
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+_GID_BYTES = 16
+_HASH_PREFIX = "RIHS01_"
+
+
+class NodeGraph:
+    """The part of a node that looks at the graph."""
+
+    _context: Context
+    _name: str
+    _namespace: str
+    _handle: Handle
+
+    @property
+    def _graph(self) -> Graph:
+        return self._context.graph
+
+    def get_publisher_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """The topics that a node publishes. Raises NodeNameNonExistentError."""
+        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.publishers))
+
+    def get_subscriber_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """The topics that a node subscribes to. Raises NodeNameNonExistentError."""
+        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.subscriptions))
+
+    def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """The services that a node offers. Raises NodeNameNonExistentError."""
+        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.services))
+
+    def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """The services that a node calls. Raises NodeNameNonExistentError."""
+        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.clients))
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
+        """All topics."""
+        with self._handle, self._graph.lock:
+            topics = self._graph.topics.items()
+            published = ((name, end.msg_type) for name, one in topics for end in one.publishers)
+            subscribed = ((name, end.msg_type) for name, one in topics for end in one.subscriptions)
+            return names_and_types((*published, *subscribed))
+
+    def get_service_names_and_types(self) -> NamesAndTypes:
+        """All services."""
+        with self._handle, self._graph.lock:
+            services = (pair for group in self._graph.services.values() for pair in _services(group))
+            clients = (pair for group in self._graph.clients.values() for pair in _services(group))
+            return names_and_types((*services, *clients))
+
+    def get_node_names(self) -> list[str]:
+        """The names of all nodes."""
+        return [name for name, _ in self.get_node_names_and_namespaces()]
+
+    def get_fully_qualified_node_names(self) -> list[str]:
+        """The full names of all nodes."""
+        with self._graph.lock:
+            return [one.get_fully_qualified_name() for one in self._graph.nodes]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Names and namespaces of all nodes."""
+        with self._handle, self._graph.lock:
+            return [(one.get_name(), one.get_namespace()) for one in self._graph.nodes]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Names, namespaces and enclaves of all nodes."""
+        return [(name, namespace, "/") for name, namespace in self.get_node_names_and_namespaces()]
+
+    def count_publishers(self, topic_name: str) -> int:
+        """The number of publishers of a topic."""
+        return len(self._ends(topic_name, "publishers"))
+
+    def count_subscribers(self, topic_name: str) -> int:
+        """The number of subscriptions of a topic."""
+        return len(self._ends(topic_name, "subscriptions"))
+
+    def count_services(self, service_name: str) -> int:
+        """The number of servers of a service."""
+        full = self._full(service_name, is_service=True)
+        with self._handle, self._graph.lock:
+            return len(self._graph.services[full])
+
+    def count_clients(self, service_name: str) -> int:
+        """The number of clients of a service."""
+        full = self._full(service_name, is_service=True)
+        with self._handle, self._graph.lock:
+            return len(self._graph.clients[full])
+
+    def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
+        """The publishers of a topic."""
+        return self._infos(topic_name, "publishers", TopicEndpointTypeEnum.PUBLISHER)
+
+    def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
+        """The subscriptions of a topic."""
+        return self._infos(topic_name, "subscriptions", TopicEndpointTypeEnum.SUBSCRIPTION)
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
+        """Wait for a node; return whether there is one."""
+        wanted = f"/{fully_qualified_node_name.lstrip('/')}"
+        return self._graph.wait_for(lambda: wanted in self.get_fully_qualified_node_names(), timeout)
+
+    def _of_nodes(
+        self, name: str, namespace: str, listed: Callable[[GraphNode], Iterable[tuple[str, Any]]]
+    ) -> NamesAndTypes:
+        with self._handle, self._graph.lock:
+            nodes = [one for one in self._graph.nodes if (one.get_name(), one.get_namespace()) == (name, namespace)]
+            if not nodes:
+                raise NodeNameNonExistentError(
+                    f"Failed to get names and types by node: cannot get {namespace} node: node name not found: {name}"
+                )
+            return names_and_types(pair for one in nodes for pair in listed(one))
+
+    def _full(self, name: str, *, is_service: bool = False) -> str:
+        full = expanded(name, self._name, self._namespace)
+        validate_full_topic_name(full, is_service=is_service)
+        return full
+
+    def _ends(self, topic: str, kind: str) -> list[Any]:
+        full = self._full(topic)
+        with self._handle, self._graph.lock:
+            return list(getattr(self._graph.topics[full], kind)) if full in self._graph.topics else []
+
+    def _infos(self, topic: str, kind: str, of: TopicEndpointTypeEnum) -> list[TopicEndpointInfo]:
+        return [_info(self._owner_of(end, kind), end, of) for end in self._ends(topic, kind)]
+
+    def _owner_of(self, end: Any, kind: str) -> GraphNode:
+        with self._graph.lock:
+            return next(one for one in self._graph.nodes if any(own is end for own in getattr(one, kind)))
+
+
+def _topics(ends: Iterable[Any]) -> Iterable[tuple[str, Any]]:
+    return ((end.topic_name, end.msg_type) for end in ends)
+
+
+def _services(ends: Iterable[Any]) -> Iterable[tuple[str, Any]]:
+    return ((end.service_name, end.srv_type) for end in ends)
+
+
+def _info(node: GraphNode, end: Any, of: TopicEndpointTypeEnum) -> TopicEndpointInfo:
+    name = end.msg_type.TYPE_NAME
+    digest = bytes.fromhex(cdr.type_hash(name).removeprefix(_HASH_PREFIX))
+    return TopicEndpointInfo(
+        node_name=node.get_name(),
+        node_namespace=node.get_namespace(),
+        topic_type=name,
+        topic_type_hash=TypeHash(1, digest),
+        endpoint_type=of,
+        endpoint_gid=list(id(end).to_bytes(_GID_BYTES, "little")),
+        qos_profile=end.qos_profile,
+    )

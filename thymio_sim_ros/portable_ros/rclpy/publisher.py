@@ -1,0 +1,113 @@
+"""Publishers."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
+from thymio_sim_ros.portable_ros.graph.entity import Handle
+from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
+from thymio_sim_ros.portable_ros.rclpy.duration import Duration
+from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, QoSProfile
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.graph.protocols import SubscriptionEnd
+    from thymio_sim_ros.portable_ros.rclpy.context import Context
+
+__all__ = ["Publisher"]
+
+
+class Publisher:
+    """Sends serialized messages to all matched subscriptions."""
+
+    def __init__(
+        self,
+        context: Context,
+        msg_type: Any,
+        topic: str,
+        qos_profile: QoSProfile,
+        events: EndpointEvents,
+        logger_name: str,
+    ) -> None:
+        self._context = context
+        self.msg_type, self.qos_profile, self.events = msg_type, qos_profile, events
+        self._topic, self._logger_name = topic, logger_name
+        self._handle = Handle("Publisher")
+        self._lock = threading.RLock()
+        self.matched: tuple[SubscriptionEnd, ...] = ()
+        self._retained: deque[bytes] | None = None
+        if qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+            self._retained = deque(maxlen=qos_profile.kept)
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+        return self._topic
+
+    @property
+    def handle(self) -> Handle:
+        """The handle."""
+        return self._handle
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the log of the node."""
+        return self._logger_name
+
+    def publish(self, msg: Any) -> None:
+        """Send a message, or the bytes of a serialized one. Raises TypeError for a message of another type."""
+        with self._handle:
+            if isinstance(msg, bytes):
+                data: bytes | None = msg
+            elif isinstance(msg, self.msg_type):
+                # Without subscriptions nobody reads the bytes.
+                data = cdr.serialize(msg) if self.matched or self._retained is not None else None
+            else:
+                raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+            if not self._context.ok():
+                raise RCLError("Failed to publish: publisher's context is invalid")
+            if data is not None:
+                self._send(data)
+
+    def get_subscription_count(self) -> int:
+        """The number of matched subscriptions."""
+        with self._handle:
+            return len(self.matched)
+
+    def assert_liveliness(self) -> None:
+        """Need nothing: a publisher lives as long as its process."""
+
+    def wait_for_all_acked(self, timeout: Duration = Duration(nanoseconds=-1)) -> bool:  # noqa: B008  # as rclpy's
+        """Return at once: messages arrive while they are published."""
+        return True
+
+    def destroy(self) -> None:
+        """Publish no more. Nodes have `destroy_publisher`."""
+        self._handle.destroy_when_not_in_use()
+
+    def match(self, subscription: SubscriptionEnd) -> None:
+        """Send messages to a subscription from now on, after those that are retained for it."""
+        with self._lock:
+            self.matched = (*self.matched, subscription)
+            subscription.add_match(self)
+            if self._retained is not None and subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+                for data in self._retained:
+                    subscription.receive(data)
+        self.events.report_match(1)
+        subscription.events.report_match(1)
+
+    def unmatch(self, subscription: SubscriptionEnd) -> None:
+        """Send no more messages to a subscription."""
+        with self._lock:
+            self.matched = tuple(one for one in self.matched if one is not subscription)
+        self.events.report_match(-1)
+
+    def _send(self, data: bytes) -> None:
+        with self._lock:
+            if self._retained is not None:
+                self._retained.append(data)
+            for subscription in self.matched:
+                subscription.receive(data)

@@ -1,0 +1,76 @@
+"""Services."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from thymio_sim_ros.portable_ros.graph.entity import Entity
+from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
+from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
+from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd
+
+__all__ = ["Service"]
+
+
+class Service(Entity):
+    """Answers requests; each call gets a request of its own and an empty response."""
+
+    def __init__(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[..., Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        logger_name: str,
+    ) -> None:
+        super().__init__(callback_group)
+        self.srv_type, self.srv_name, self.callback = srv_type, srv_name, callback
+        self.qos_profile, self._logger_name = qos_profile, logger_name
+        self._queue: EventQueue[tuple[ClientEnd, int, bytes]] = EventQueue(qos_profile.kept)
+
+    @property
+    def service_name(self) -> str:
+        """The full name."""
+        return self.srv_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the log of the node."""
+        return self._logger_name
+
+    def receive(self, client: ClientEnd, sequence: int, request: bytes) -> None:
+        """Queue a serialized request of a client, which counts them."""
+        if self._queue.put((client, sequence, request)):
+            self.notify()
+
+    def send_response(self, response: Any, header: tuple[ClientEnd, int]) -> None:
+        """Answer a request. Raises TypeError for a response of another type."""
+        with self._handle:
+            if not isinstance(response, self.srv_type.Response):
+                raise TypeError
+            client, sequence = header
+            client.receive(sequence, cdr.serialize(response))
+
+    def pending(self) -> int:
+        """The number of waiting requests."""
+        return len(self._queue)
+
+    def take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        """Take a request."""
+        found = self._queue.get()
+        if found is None:
+            return None
+        client, sequence, data = found
+        return self._answer, (cdr.deserialize(data, self.srv_type.Request), (client, sequence))
+
+    async def _answer(self, request: Any, header: tuple[ClientEnd, int]) -> None:
+        response = self.callback(request, self.srv_type.Response())
+        if hasattr(response, "__await__"):
+            response = await response
+        self.send_response(response, header)

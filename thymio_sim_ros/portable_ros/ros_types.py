@@ -1,0 +1,26 @@
+"""The classes of messages and services that the room itself uses."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.portable_ros.messages.message_class import message_type, service_type
+
+Clock = message_type("rosgraph_msgs/msg/Clock")
+DurationMessage = message_type("builtin_interfaces/msg/Duration")
+FloatingPointRange = message_type("rcl_interfaces/msg/FloatingPointRange")
+IntegerRange = message_type("rcl_interfaces/msg/IntegerRange")
+ListParametersResult = message_type("rcl_interfaces/msg/ListParametersResult")
+Log = message_type("rcl_interfaces/msg/Log")
+ParameterDescriptor = message_type("rcl_interfaces/msg/ParameterDescriptor")
+ParameterEvent = message_type("rcl_interfaces/msg/ParameterEvent")
+ParameterMessage = message_type("rcl_interfaces/msg/Parameter")
+ParameterType = message_type("rcl_interfaces/msg/ParameterType")
+ParameterValue = message_type("rcl_interfaces/msg/ParameterValue")
+SetParametersResult = message_type("rcl_interfaces/msg/SetParametersResult")
+TimeMessage = message_type("builtin_interfaces/msg/Time")
+
+DescribeParameters = service_type("rcl_interfaces/srv/DescribeParameters")
+GetParameterTypes = service_type("rcl_interfaces/srv/GetParameterTypes")
+GetParameters = service_type("rcl_interfaces/srv/GetParameters")
+ListParameters = service_type("rcl_interfaces/srv/ListParameters")
+SetParameters = service_type("rcl_interfaces/srv/SetParameters")
+SetParametersAtomically = service_type("rcl_interfaces/srv/SetParametersAtomically")
