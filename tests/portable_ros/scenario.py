@@ -42,7 +42,7 @@ from std_srvs.srv import SetBool, Trigger
 ARGUMENTS = """--ros-args -r __ns:=/space -r chat:=/talk -r own:other:=elsewhere -p whole:=3 -p real:=1e5
 -p octal:=010 -p hex:=0x10 -p yes:=y -p text:='1' -p point:=.5 -p list:=[1,2] -p words:=[a,b] -p flags:=[true,off]
 -p inf:=-.inf -p under:=1_000 -p plus:=+5 -p date:=2020-01-01 -p big:=99999999999999999999 -p deep.er:=1 -p empty:=''
--p own:mine:=7 -p nobody:theirs:=8 --log-level own:=debug"""
+-p own:mine:=7 -p absent:theirs:=8 --log-level own:=debug"""
 PATIENCE_S = 30.0
 seen: dict[str, Any] = {}
 

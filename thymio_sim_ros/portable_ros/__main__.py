@@ -13,8 +13,9 @@ _USAGE = "usage: python -m thymio_sim_ros.portable_ros [-m MODULE | FILE] [ARGUM
 _WRONG_USAGE = 2
 
 
-def main(words: Sequence[str]) -> int:
-    """Run the program of the words; return the exit code, unless the program ends the process itself."""
+def main(words: Sequence[str] | None = None) -> int:
+    """Run the program of the words, by default those of the process; return the exit code, unless the program ends it."""
+    words = sys.argv[1:] if words is None else list(words)
     if not words or words[0] in ("-h", "--help") or words == ["-m"]:
         print(_USAGE, file=sys.stdout if words[:1] in (["-h"], ["--help"]) else sys.stderr)
         return 0 if words[:1] in (["-h"], ["--help"]) else _WRONG_USAGE
@@ -32,4 +33,4 @@ def main(words: Sequence[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

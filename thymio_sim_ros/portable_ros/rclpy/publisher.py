@@ -63,7 +63,7 @@ class Publisher:
             if isinstance(msg, bytes):
                 data: bytes | None = msg
             elif isinstance(msg, self.msg_type):
-                # Without subscriptions nobody reads the bytes.
+                # Without subscriptions the bytes have no reader.
                 data = cdr.serialize(msg) if self.matched or self._retained is not None else None
             else:
                 raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")

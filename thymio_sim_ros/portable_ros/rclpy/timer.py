@@ -93,7 +93,7 @@ class Timer(Entity):
         return 0
 
     def announce_if_due(self) -> bool:
-        """Return whether a call is due that the executor has not been told about yet, and note that it is now."""
+        """Return whether a call is due that was not announced to the executor, and mark it as announced."""
         if self._is_announced or self._is_canceled or self.is_destroyed:
             return False
         self._is_announced = self._next_ns <= self._clock.now().nanoseconds

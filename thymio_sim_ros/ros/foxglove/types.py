@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib.util
-from pathlib import Path
+import sys
 from typing import Any
 
 from rclpy.type_support import check_for_type_support
@@ -61,5 +61,7 @@ def _has_interfaces(package: str, kind: str) -> bool:
         spec = importlib.util.find_spec(package)
     except ValueError:  # `__main__` has no spec if it is not a file
         return False
-    folders = spec.submodule_search_locations if spec is not None else None
-    return any((Path(folder) / kind / "__init__.py").is_file() for folder in folders or ())
+    if spec is None or spec.submodule_search_locations is None:
+        return False
+    found = (finder.find_spec(f"{package}.{kind}", spec.submodule_search_locations) for finder in sys.meta_path)
+    return any(module is not None and module.origin is not None for module in found)  # a bare folder has none
