@@ -198,3 +198,7 @@ def main(args: Sequence[str] | None = None) -> int:
     """Run the executable `simulator`."""
     with dds_profile.used(dds_profile.ALONE):
         return run_main(lambda context: announce([Simulator(context)]), args)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
