@@ -24,6 +24,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import ClockType
 from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.node import Node
@@ -156,6 +157,44 @@ def topics(node: Node, executor: Any) -> None:
     seen["resolved"] = [node.resolve_topic_name(one) for one in ("chat", "/chat", "other", "~/mine", "free")]
 
 
+def events(node: Node, executor: Any) -> None:
+    """Matches, mismatches, and errors of callbacks."""
+    found: list[tuple[Any, ...]] = []
+    publisher = node.create_publisher(
+        String,
+        "events",
+        QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        event_callbacks=PublisherEventCallbacks(
+            incompatible_qos=lambda info: found.append(("misfit", info.total_count, int(info.last_policy_kind))),
+            matched=lambda info: found.append(
+                ("match", info.total_count, info.current_count, info.current_count_change)
+            ),
+        ),
+    )
+    quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
+    node.create_subscription(String, "events", print, 1, event_callbacks=quiet)
+    spin_until(executor, lambda: len(found) == 1)
+    fitting = node.create_subscription(String, "events", fail, publisher.qos_profile)
+    spin_until(executor, lambda: len(found) == 2)
+    errors: list[str] = []
+    is_raised_at_once = isinstance(executor, SingleThreadedExecutor)
+    if is_raised_at_once:
+        publisher.publish(String(data="error"))
+    while is_raised_at_once and not errors:
+        try:
+            executor.spin_once(timeout_sec=0.1)
+        except ZeroDivisionError as error:
+            errors.append(str(error))
+    node.destroy_subscription(fitting)
+    spin_until(executor, lambda: len(found) == 3)
+    seen["endpoint events"] = found, errors
+
+
+def fail(message: Any) -> None:
+    """Raise an error."""
+    raise ZeroDivisionError(message.data)
+
+
 def services(node: Node, executor: Any) -> None:
     """Calls, coroutines, wrong requests."""
 
@@ -183,8 +222,8 @@ def services(node: Node, executor: Any) -> None:
 
 def parameters(node: Node, executor: Any) -> None:
     """Values of the start, declaration, ranges, callbacks, services, events."""
-    events: list[Any] = []
-    node.create_subscription(ParameterEvent, "/parameter_events", events.append, 100)
+    changes: list[Any] = []
+    node.create_subscription(ParameterEvent, "/parameter_events", changes.append, 100)
     spin_until(executor, lambda: node.count_publishers("/parameter_events") == 1)
     seen["start"] = {name: repr(one.value) for name, one in sorted(node._parameter_overrides.items())}
     whole = ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=10, step=2)])
@@ -240,10 +279,10 @@ def parameters(node: Node, executor: Any) -> None:
         replies.append(repr(future.result()))
     seen["replies"] = replies
     spin_until(
-        executor, lambda: any(one.changed_parameters and one.changed_parameters[0].name == "part" for one in events)
+        executor, lambda: any(one.changed_parameters and one.changed_parameters[0].name == "part" for one in changes)
     )
     seen["events"] = [
-        (one.node, [p.name for p in one.new_parameters], [p.name for p in one.changed_parameters]) for one in events
+        (one.node, [p.name for p in one.new_parameters], [p.name for p in one.changed_parameters]) for one in changes
     ]
 
 
@@ -313,6 +352,7 @@ def main() -> None:
     messages()
     parameters(node, executor)
     topics(node, executor)
+    events(node, executor)
     services(node, executor)
     clocks(node, executor)
     graph(node)
