@@ -10,8 +10,7 @@ import pytest
 
 from tests.bridge.studio import Studio, set_and_answer
 from tests.patience import until
-from tests.processes import free_port
-from tests.processes import Process, wait_for_port
+from tests.processes import Process, free_port, wait_for_port
 from thymio_sim_ros.bridge.protocol import messages as ms
 
 pytestmark = pytest.mark.process

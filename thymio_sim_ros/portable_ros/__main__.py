@@ -14,7 +14,7 @@ _WRONG_USAGE = 2
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Run the program of the words, by default those of the process; return the exit code, unless the program ends it."""
+    """Run the program of the words, by default of the process; return the exit code, unless the program ends it."""
     words = sys.argv[1:] if words is None else list(words)
     if not words or words[0] in ("-h", "--help") or words == ["-m"]:
         print(_USAGE, file=sys.stdout if words[:1] in (["-h"], ["--help"]) else sys.stderr)
