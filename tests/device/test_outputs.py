@@ -19,7 +19,7 @@ class OutputsUnderTest(Outputs):
 
     def __init__(self) -> None:
         self.settings = Settings()
-        self.indicators = Indicators(target().addresses, lambda _address: True)
+        self.indicators = Indicators(target().addresses)
         super().__init__(THYMIO, self.settings, self.indicators)
         self.machine = VirtualMachine(target())
         self.reset(self.machine)
