@@ -29,6 +29,10 @@ class OutputsUnderTest(Outputs):
         self.machine.write_variables(target().addresses[name][0], words)
 
 
+def always_measured(_address: int) -> bool:
+    return True
+
+
 @pytest.fixture
 def outputs() -> OutputsUnderTest:
     return OutputsUnderTest()
@@ -77,7 +81,7 @@ def test_what_was_set_before_a_reset_is_news_after_it(outputs: OutputsUnderTest)
 def test_a_group_that_a_rule_had_lit_is_dark_for_the_robot_from_then_on(outputs: OutputsUnderTest) -> None:
     memory = outputs.machine.variables.words
     outputs.write("temperature", 200)
-    outputs.queue(*outputs.indicators.update(memory))
+    outputs.queue(*outputs.indicators.update(memory, always_measured))
     outputs.pop()
     outputs.send(SetLeds("temperature", (1, 2)))
     assert outputs.pop() == [ShowOnLeds("temperature", (0, 0)), SetLeds("temperature", (1, 2))]
@@ -104,11 +108,11 @@ def test_sound_is_used_from_its_first_command_on(outputs: OutputsUnderTest) -> N
     outputs.send(SetVolume(3))
     assert not outputs.has_used_sound
     outputs.write("button.left", 1)
-    assert touched in outputs.indicators.update(outputs.machine.variables.words)
+    assert touched in outputs.indicators.update(outputs.machine.variables.words, always_measured)
     outputs.send(PlayTone(440, None))
     assert outputs.has_used_sound
     outputs.write("button.right", 1)
-    assert touched not in outputs.indicators.update(outputs.machine.variables.words)
+    assert touched not in outputs.indicators.update(outputs.machine.variables.words, always_measured)
     outputs.reset(outputs.machine)
     assert not outputs.has_used_sound
 

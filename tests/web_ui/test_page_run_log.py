@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from typing import Any
@@ -125,4 +126,4 @@ def test_a_lesson_of_five_minutes_is_repeated_bit_for_bit(suite, page, tmp_path)
     assert found.seconds >= 300
     command = [sys.executable, "-c", WITHOUT_WASMTIME, "replay", str(log)]
     interpreted = subprocess.run(command, capture_output=True, text=True, timeout=PROGRAM_S, check=False)
-    assert (interpreted.returncode, interpreted.stderr) == (0, "")
+    assert (interpreted.returncode, json.loads(interpreted.stdout)["identical"]) == (0, True), interpreted.stderr
