@@ -5,7 +5,8 @@ ARGS ?=
 PAGE := web_ui/dist/index.html
 
 # A sourced ROS installation provides rclpy and the messages. The environment then includes the system packages instead of
-# the ROS wheels, and has a different name, because the two must never mix.
+# the ROS wheels, which exist for Linux x86-64, and has a different name, because the two must never mix. Elsewhere the
+# suite runs on the embedded graph (docs/portable-ros.md).
 ifneq ($(and $(ROS_DISTRO),$(AMENT_PREFIX_PATH)),)
 VENV := .venv-$(ROS_DISTRO)
 VENV_OPTIONS := --system-site-packages
@@ -16,9 +17,6 @@ VENV := .venv
 VENV_OPTIONS :=
 EXTRAS_RUN := [ros]
 EXTRAS_TEST := [ros,test]
-ifneq ($(shell uname -s)-$(shell uname -m),Linux-x86_64)
-NO_ROS := yes
-endif
 endif
 PYTHON := $(VENV)/bin/python
 PIP_VERBOSE := $(PYTHON) -m pip --disable-pip-version-check
@@ -38,12 +36,12 @@ INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && 
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: run check test test-all lint docs web web-test ros2 clean help platform
+.PHONY: run check test test-all lint docs web web-test ros2 clean help
 
-run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
+run: $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
 	@# In a terminal the program gets its own process group (set -m): Ctrl-C then ends the program only, and make
 	@# ends normally, instead of both being interrupted.
-	@read -r _ _ _ _ group _ _ front _ </proc/$$$$/stat; \
+	@{ read -r _ _ _ _ group _ _ front _; } 2>/dev/null </proc/$$$$/stat; \
 	if [ "$$group" = "$$front" ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
 
 # Three tiers of the same tests, selected by their markers (docs/testing.md). Files are shared out among the workers, the
@@ -53,13 +51,13 @@ TEST := $(PYTHON) -m pytest -n $(shell expr $(CORES) + 1) --maxprocesses 4
 check: lint $(VENV)/.ready-test  ## before a commit: lint, and tests without ROS, browser, sockets and other processes
 	@$(TEST) -q -m 'not process and not browser and not ros and not slow' $(ARGS)
 
-test: platform $(VENV)/.ready-test web  ## before a push: a test of everything; ARGS='-n 0 -k name' goes to pytest
+test: $(VENV)/.ready-test web  ## before a push: a test of everything; ARGS='-n 0 -k name' goes to pytest
 	@$(TEST) -m 'not slow' $(ARGS)
 
 ifndef SEED
 SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 endif
-test-all: platform $(VENV)/.ready-test web  ## every night: all tests, also the long ones, with new random examples
+test-all: $(VENV)/.ready-test web  ## every night: all tests, also the long ones, with new random examples
 	@echo "Hypothesis explores with seed $(SEED); make test-all SEED=$(SEED) repeats it."
 	@$(TEST) --hypothesis-profile explore --hypothesis-seed $(SEED) $(ARGS)
 
@@ -81,7 +79,11 @@ ROS2CLI := https://github.com/ros2/ros2cli/archive/refs/tags/0.32.2.tar.gz
 ROSIDL_RUNTIME_PY := https://github.com/ros2/rosidl_runtime_py/archive/refs/tags/0.13.1.tar.gz
 hash := \#
 ROS2_VERBS := ros2interface ros2node ros2param ros2pkg ros2run ros2service ros2topic
-ros2: platform $(VENV)/.ready-run  ## add the command `ros2` to an environment without a ROS installation
+ros2: $(VENV)/.ready-run  ## add the command `ros2` to an environment without a ROS installation
+	@if ! $(PYTHON) -c 'import rclpy' 2>/dev/null; then \
+	    echo "ROS wheels exist for Linux x86-64 only. On this platform install ROS 2 Jazzy (https://docs.ros.org/en/jazzy/Installation.html), source its setup file and repeat." >&2; \
+	    exit 2; \
+	fi
 	@if [ -n "$(EXTRAS_RUN)" ]; then \
 	    $(PIP) install argcomplete importlib_metadata packaging psutil && \
 	    $(PIP) install --no-deps 'rosidl_runtime_py @ $(ROSIDL_RUNTIME_PY)' \
@@ -103,12 +105,6 @@ clean:  ## remove the environments and all build results
 
 help:  ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
-
-platform:
-	@if [ -n "$(NO_ROS)" ]; then \
-	    echo "ROS wheels exist for Linux x86-64 only. On this platform install ROS 2 Jazzy (https://docs.ros.org/en/jazzy/Installation.html), source its setup file and repeat." >&2; \
-	    exit 2; \
-	fi
 
 $(VENV)/.created:
 	@python=; for candidate in python3 python3.13 python3.12 python3.11; do \

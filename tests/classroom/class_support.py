@@ -10,28 +10,24 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import psutil
+
 from tests.patience import PATIENCE_S, until
 from tests.processes import Process, free_port, wait_for_port
-from thymio_sim_ros.testing.ros.domain import reserved
 
 _POLL_S = 0.2
 
 
 class RunningClass:
-    """A class with a folder, on free ports and in domains of its own; `end` gives them back."""
+    """A class with a folder, on free ports."""
 
     def __init__(self, path: Path, names: list[str], *, arguments: tuple[str, ...] = ()) -> None:
-        self._domains = contextlib.ExitStack()
-        domains = [self._domains.enter_context(reserved())]
-        while domains[-len(names) :] != list(range(domains[-1] - len(names) + 1, domains[-1] + 1)):
-            domains.append(self._domains.enter_context(reserved()))
         port = free_port(2 + 2 * len(names))
         self.folder, self.port = path / "class", port
         pupils = path / "names.csv"
         pupils.write_text("\n".join(names))
         given = ["--pupils", str(pupils), "--folder", str(self.folder), "--first-port", str(port)]
-        command = ["class", *given, "--first-domain", str(domains[-len(names)]), *arguments]
-        self.process = Process(path, "thymio_sim_ros.cli.main", *command)
+        self.process = Process(path, "thymio_sim_ros.cli.main", "class", *given, *arguments)
         wait_for_port(port)
 
     def port_of(self, number: int) -> int:
@@ -41,7 +37,14 @@ class RunningClass:
     def end(self) -> None:
         """End the class with all its suites."""
         self.process.end()
-        self._domains.close()
+
+    def suite(self, number: int) -> psutil.Process:
+        """The process of a pupil's suite."""
+        return next(one for one in self.suites() if self.port_of(number) in _listening(one))
+
+    def suites(self) -> list[psutil.Process]:
+        """The processes of all suites that have opened their ports."""
+        return [one for one in psutil.Process(self.process.pid).children(recursive=True) if _listening(one)]
 
     @property
     def known(self) -> Any:
@@ -84,3 +87,9 @@ class RunningClass:
 
         until(is_reached, lambda: f"{found}\n{self.process.output}", every_s=_POLL_S)
         return found[0]
+
+
+def _listening(process: psutil.Process) -> set[int]:
+    with contextlib.suppress(psutil.NoSuchProcess):
+        return {one.laddr.port for one in process.net_connections("tcp") if one.status == psutil.CONN_LISTEN}
+    return set()

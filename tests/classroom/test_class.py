@@ -6,7 +6,6 @@ import asyncio
 import base64
 import io
 import json
-import os
 import signal
 import urllib.error
 import zipfile
@@ -15,15 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-pytest.importorskip("rclpy")
-
 from websockets.asyncio.client import connect
 from websockets.exceptions import WebSocketException
 
 from tests.bridge.peers import Client, run
 from tests.classroom.class_support import RunningClass
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, until
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS
@@ -31,6 +27,7 @@ from thymio_sim_ros.classroom.cdr import read_string
 from thymio_sim_ros.classroom.suite_state import read_state
 from thymio_sim_ros.cli import main as commands
 from thymio_sim_ros.files import resources
+from thymio_sim_ros.testing.ros.domain import reserved
 
 pytestmark = pytest.mark.process
 
@@ -42,7 +39,7 @@ DRAFT = PROGRAM + "motor.right.target ="
 
 @pytest.fixture(scope="module")
 def group(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningClass]:
-    """The class of Ada and Ben."""
+    """The class of Ada and Ben, on embedded graphs."""
     running = RunningClass(tmp_path_factory.mktemp("class"), ["Ada", "Ben"])
     try:
         for pupil in ("ada", "ben"):
@@ -79,13 +76,6 @@ def values_of(group: RunningClass, number: int, name: str, *wanted: str) -> tupl
 
 def notice(group: RunningClass, number: int, name: str) -> Any:
     return values_of(group, number, name, "/web_ui.notice", "/web_ui.notice_link")
-
-
-def suite_pid(port: int) -> int:
-    """The process of the suite with this port of the bridge."""
-    wanted = f"--foxglove-port\0{port}\0".encode()
-    found = [path.parent.name for path in Path("/proc").glob("[0-9]*/cmdline") if wanted in path.read_bytes()]
-    return int(found[0])
 
 
 def test_a_bridge_needs_the_token_of_its_pupil(group: RunningClass) -> None:
@@ -175,7 +165,7 @@ def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: Ru
     group.until("ada", lambda _one: zipped(group) == works)
     plan = group.until("ada", lambda one: one["plan"] != group.pupil("ben")["plan"])["plan"]
     before = group.pupil("ada")
-    os.killpg(suite_pid(group.port_of(ADA)), signal.SIGKILL)
+    group.suite(ADA).kill()
     after = group.until("ada", lambda one: one["restarts"] == 1 and one["phase"] == "running" and one["programs"])
     assert after["reason"] == "ended by SIGKILL"
     assert after["link"] == before["link"]
@@ -187,12 +177,34 @@ def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: Ru
     group.until("ada", lambda _one: notice(group, ADA, "Ada")[0] == "still there")
 
 
+def test_suites_end_when_the_class_is_killed(tmp_path: Path) -> None:
+    running = RunningClass(tmp_path, ["Ada"])
+    running.until("ada", lambda one: one["phase"] == "running")
+    suites = running.suites()
+    assert suites
+    running.process.signal(signal.SIGKILL)
+    running.process.wait()
+    until(lambda: not any(one.is_running() for one in suites), lambda: str(suites))
+
+
+def test_with_ros_each_pupil_has_a_domain(tmp_path: Path) -> None:
+    pytest.importorskip("rclpy")
+    with reserved() as domain:
+        running = RunningClass(tmp_path, ["Ada"], arguments=("--ros", "--first-domain", str(domain)))
+        try:
+            running.until("ada", lambda one: one["phase"] == "running" and one["programs"])
+            assert running.process.output.startswith(f"ROS       ROS_DOMAIN_ID {domain} to {domain}")
+            log = running.folder / "pupils" / "ada" / "suite.log"
+            assert log.read_text().startswith(f"ROS       ROS 2, ROS_DOMAIN_ID {domain}, this computer only")
+        finally:
+            running.end()
+
+
 @pytest.mark.slow
 def test_the_teacher_restarts_a_suite(group: RunningClass) -> None:
-    port = group.port_of(BEN)
-    before = suite_pid(port)
+    before = group.suite(BEN)
     group.request("restart", {"pupils": ["ben"]})
-    group.until("ben", lambda one: one["phase"] == "running" and one["programs"] and suite_pid(port) != before)
+    group.until("ben", lambda one: one["phase"] == "running" and one["programs"] and group.suite(BEN) != before)
     assert group.pupil("ben")["restarts"] == 0
 
 
@@ -206,7 +218,8 @@ def zipped(group: RunningClass) -> dict[str, str]:
     [
         (["--pupils", "missing.csv"], "missing.csv: No such file"),
         (["--pupils", "{names}", "--playground", "nowhere"], "nowhere"),
-        (["--pupils", "{names}", "--first-domain", "232"], "the last domain would be 233"),
+        (["--pupils", "{names}", "--ros", "--first-domain", "232"], "the last domain would be 233"),
+        (["--pupils", "{names}", "--first-domain", "7"], "expected --ros"),
         (["--pupils", "{names}", "--first-port", "65532"], "the last port would be 65536"),
     ],
 )

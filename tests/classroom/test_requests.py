@@ -16,7 +16,7 @@ from thymio_sim_ros.classroom.folder import ClassFolder, Work
 from thymio_sim_ros.classroom.requests import Answer, RefusalError, answer
 from thymio_sim_ros.classroom.suite_process import SuiteOptions
 
-OPTIONS = SuiteOptions("localhost", 21_300, 101, "desk", "welcome")
+OPTIONS = SuiteOptions("localhost", 21_300, "desk", "welcome")
 
 
 class Teacher:

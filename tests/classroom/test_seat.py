@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
-import sys
+from collections.abc import Mapping, Sequence
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import pytest
@@ -13,29 +15,28 @@ from tests.bridge.peers import run
 from tests.classroom.test_requests import OPTIONS
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.classroom import seat as seats
+from thymio_sim_ros.classroom import suite_process
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.folder import ClassFolder
 
 pytestmark = pytest.mark.process
 
-SUITE = """
-import pathlib, signal, sys
-note = pathlib.Path(sys.argv[1])
-def end(*_):
+
+def note_how_it_ends(arguments: Sequence[str], _variables: Mapping[str, str], _log: Path, life: Connection) -> None:
+    """In place of a suite: it notes that it runs, and that it is asked to end."""
+    note = Path(arguments[0])
+    note.write_text("started")
+    with contextlib.suppress(EOFError):
+        life.recv_bytes()
     note.write_text("ended")
-    sys.exit(0)
-signal.signal(signal.SIGINT, end)
-note.write_text("started")
-while True:
-    signal.pause()
-"""
 
 
 @pytest.mark.parametrize("phase", ["starting", "running"])
 def test_a_class_that_ends_lets_its_suites_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, phase: str) -> None:
     note = tmp_path / "note"
     monkeypatch.setattr(os, "cpu_count", lambda: 1)  # one suite starts at a time
-    monkeypatch.setattr(seats, "command", lambda *_: [sys.executable, "-c", SUITE, str(note)])
+    monkeypatch.setattr(suite_process, "_run", note_how_it_ends)
+    monkeypatch.setattr(seats, "command", lambda *_: [str(note)])
     folder = ClassFolder(tmp_path / "class")
     (place,) = folder.places(["Ada"])
 

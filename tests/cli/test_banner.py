@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import ipaddress
-import os
 import re
 import socket
 import sys
@@ -15,7 +14,6 @@ import segno
 from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.cli import banner
 from thymio_sim_ros.names import addresses
-from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.suite_config import SuiteConfig
 
 
@@ -65,7 +63,6 @@ def test_without_page_and_bridge():
     assert text.splitlines() == [
         "Page      none (started without it)",
         "Foxglove  none (started without it)",
-        f"Domain    {describe_domain(os.environ)}",
         "Stop      Ctrl-C",
     ]
 

@@ -116,7 +116,7 @@ def test_help_has_an_example(capsys, command):
 
 def test_without_ros_the_error_says_how_to_install_it(capsys, monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
-    assert "runner" in refused(capsys, "--headless")
+    assert "`thymio-sim runner` work without" in refused(capsys, "--headless", "--ros")
 
 
 @pytest.mark.process
@@ -130,7 +130,7 @@ def test_checking_the_ports_accepts_no_connection(capsys, monkeypatch):
     monkeypatch.setattr(socket, "socket", Socket)
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     ports = ("--port", str(free_port()), "--foxglove-port", str(free_port()))
-    assert "ROS 2 is not installed" in refused(capsys, *ports)
+    assert "ROS 2 is not installed" in refused(capsys, "--ros", *ports)
 
 
 def test_the_runner_repeats_itself_bit_for_bit(capsys):
@@ -371,7 +371,7 @@ def test_the_suite_takes_a_file_with_a_node_for_each_robot(capsys, tmp_path, mon
     program = tmp_path / "two.aesl"
     program.write_text(TWO_NODES.format("red", "blue"))
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
-    line = refused(capsys, "--headless", "--playground", "two_robots", "--program", str(program))
+    line = refused(capsys, "--ros", "--headless", "--playground", "two_robots", "--program", str(program))
     assert "ROS 2 is not installed" in line
 
 

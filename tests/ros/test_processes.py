@@ -63,12 +63,12 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, PATIENCE_S, what="a moving robot")
     ros.until(lambda: len(suite.output.splitlines()) >= 6, PATIENCE_S)
-    page, foxglove, layout, access, domain, stop = suite.output.splitlines()[:6]
+    graph, page, foxglove, layout, access, stop = suite.output.splitlines()[:6]
+    assert graph == f"ROS       ROS 2, ROS_DOMAIN_ID {ros.domain}, this computer only: its nodes see the robots"
     assert str(port) in page
     assert str(foxglove_port) in foxglove
     assert "layout" in layout
     assert "this computer only" in access
-    assert domain == f"Domain    ROS_DOMAIN_ID {ros.domain}, this computer only"
     assert "Ctrl-C" in stop
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
     connection.request("GET", "/config.json")

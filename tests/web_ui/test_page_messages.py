@@ -9,7 +9,15 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.bridge.studio import set_and_answer
-from tests.web_ui.page_support import MARKS, build_playground, choose_playground, drop_file, open_page, open_tab
+from tests.web_ui.page_support import (
+    MARKS,
+    build_playground,
+    choose_playground,
+    drop_file,
+    open_page,
+    open_tab,
+    wait_for_none,
+)
 from tests.web_ui.test_gallery import open_gallery
 from tests.web_ui.test_welcome import visit
 from thymio_sim_ros.bridge.protocol import messages as ms
@@ -30,13 +38,15 @@ DIALOG = """() => {
 }"""
 
 
-IS_SEEN_AND_COVERS_NOTHING = """([selector, text]) => {
+FAULTS_OF_A_NOTE = """([selector, text]) => {
     const note = document.querySelector(selector);
-    if (!note?.checkVisibility()) return false;
+    if (!note?.checkVisibility()) return [`no ${selector} to be seen`];
     const {left, right, top, bottom} = note.getBoundingClientRect();
     const words = note.querySelector(text).getBoundingClientRect();
-    const isSeen = note.contains(document.elementFromPoint(words.left + 5, words.top + 5))
-        && note.contains(document.elementFromPoint(words.left + 5, words.bottom - 5));
+    const nameOf = (one) => one === null ? "nothing"
+        : `${one.localName}#${one.id}.${one.className}: ${one.textContent.trim().slice(0, 40)}`;
+    const above = [words.top + 5, words.bottom - 5].map((y) => document.elementFromPoint(words.left + 5, y))
+        .filter((one) => !note.contains(one)).map((one) => `under ${nameOf(one)}`);
     const needed = [...document.querySelectorAll(
         ".welcome-start, .welcome-watch, .welcome-tour, .views .btn, .placing-hints > *, #trouble, #tray .btn,"
         + " #tray .hand, #time .btn, #work .btn, .build-tool")].filter((one) =>
@@ -45,12 +55,14 @@ IS_SEEN_AND_COVERS_NOTHING = """([selector, text]) => {
         const panel = one.closest(".panel")?.getBoundingClientRect();
         return panel !== undefined && (bottom <= panel.top || top >= panel.bottom);
     };
-    return isSeen && !needed.some((one) => {
+    const covered = needed.filter((one) => {
         const other = one.getBoundingClientRect();
         if (isScrolledOut(one, other)) return false;
         return other.left < right && other.right > left && other.top < bottom && other.bottom > top;
-    });
+    }).map((one) => `over ${nameOf(one)}`);
+    return [...above, ...covered];
 }"""
+"""What is wrong with a note: it is not seen, lies under something, or over something that people need."""
 
 
 TEACHER_NOTE = (".teacher-note", ".teacher-words")
@@ -70,7 +82,7 @@ def test_a_notice_covers_nothing_where_a_tab_takes_the_place_of_the_view(at_rest
         open_tab(page, name)
         page.set_input_files("#playground-file", str(unknown))
         page.locator(".notice", has_text="song.mp3").wait_for()
-        page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=NOTICE)
+        wait_for_none(page, FAULTS_OF_A_NOTE, NOTICE)
         page.locator(".notice").get_by_role("button").click()
 
 
@@ -83,17 +95,17 @@ def test_a_teachers_message_is_seen_in_every_tab_and_covers_nothing(world, page,
         set_and_answer(client, ms.Parameter("/web_ui.notice", "Look at the board now: we compare the first results."))
     visit(page, address, "welcome=on")
     page.locator(".welcome-starts").wait_for()
-    page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=TEACHER_NOTE)
+    wait_for_none(page, FAULTS_OF_A_NOTE, TEACHER_NOTE)
     page.locator("[data-start=drive]").click()
     page.locator(".welcome-starts").wait_for(state="detached")
-    page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=TEACHER_NOTE)
+    wait_for_none(page, FAULTS_OF_A_NOTE, TEACHER_NOTE)
     for name in ("robot", "program", "playground"):
         open_tab(page, name)
-        page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=TEACHER_NOTE)
+        wait_for_none(page, FAULTS_OF_A_NOTE, TEACHER_NOTE)
     build_playground(page)
     page.locator(".build-tool").nth(1).click()
     page.locator(".placing-hints").get_by_role("button").first.wait_for()
-    page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=TEACHER_NOTE)
+    wait_for_none(page, FAULTS_OF_A_NOTE, TEACHER_NOTE)
 
 
 @pytest.mark.slow
@@ -111,8 +123,8 @@ def test_a_fallen_robot_is_put_back_beside_a_long_message_of_the_teacher(world, 
     page.locator("[data-fallen]").wait_for()
     for width, height in (*SMALL, (640, 360), (195, 422), (1366, 768)):
         page.set_viewport_size({"width": width, "height": height})
-        page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=(".fallen", "button"))
-        page.wait_for_function(IS_SEEN_AND_COVERS_NOTHING, arg=TEACHER_NOTE)
+        wait_for_none(page, FAULTS_OF_A_NOTE, (".fallen", "button"))
+        wait_for_none(page, FAULTS_OF_A_NOTE, TEACHER_NOTE)
 
 
 @pytest.mark.slow

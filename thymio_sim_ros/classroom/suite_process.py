@@ -1,29 +1,39 @@
-"""The suite of a pupil as a child process in a session of its own. It ends when the server of the class ends."""
+"""The suite of a pupil as a child process. It ends when the server of the class ends.
+
+On Linux the processes are forked from one that has imported everything (`preload`), so that they start in a fraction of
+the time and share its memory. Elsewhere each imports for itself.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import ctypes
+import multiprocessing
 import os
+import runpy
 import signal
 import sys
-from collections.abc import Mapping
+import threading
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.classroom.folder import Place
 
-__all__ = ["SuiteOptions", "SuiteProcess", "command", "discovery", "environment", "reason_of_end"]
+__all__ = ["SuiteOptions", "SuiteProcess", "command", "discovery", "environment", "preload", "reason_of_end"]
 
 END_S = 6.0
 """Time until a suite that was asked to end is killed; it ends within 5 s."""
 BATCH_TICKS, CLOCK_HZ = 3, 20.0
 """Readings reach programs up to 30 ms later, and a suite takes almost half less of a processor (docs/classroom.md)."""
-_PR_SET_PDEATHSIG = 1
 _LAST_BYTES = 4096
-_LIBC = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
+_PROCESSES = (
+    multiprocessing.get_context("forkserver") if sys.platform == "linux" else multiprocessing.get_context("spawn")
+)
+_reaping = threading.Lock()
+"""Held while exit codes are read: also a start reads those of other processes, and each can be read once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +42,10 @@ class SuiteOptions:
 
     address: str
     first_port: int
-    first_domain: int
     playground: str
     program: str
+    first_domain: int | None = None
+    """ROS domain of the first pupil; None: the embedded graph, which has none."""
 
     def port(self, place: Place) -> int:
         """Port of the page; that of the bridge is the next one. The first port is that of the teacher's page."""
@@ -44,22 +55,21 @@ class SuiteOptions:
         """Port of the bridge."""
         return self.port(place) + 1
 
-    def domain(self, place: Place) -> int:
-        """ROS domain."""
-        return self.first_domain + place.number
+    def domain(self, place: Place) -> int | None:
+        """ROS domain, None on the embedded graph."""
+        return None if self.first_domain is None else self.first_domain + place.number
 
 
 def command(options: SuiteOptions, place: Place, program: str, parameters: Path) -> list[str]:
-    """The command line of a pupil's suite: no servers for other programs, no tokens, which others could read.
+    """The arguments of a pupil's suite: no servers for other programs, no tokens, which are in the environment.
 
     `parameters` is a file of ROS parameters with what the pupil has made.
     """
-    ports = ["--port", str(options.port(place)), "--foxglove-port", str(options.foxglove_port(place))]
-    world = ["--playground", options.playground, "--program", program]
     return [
-        *(sys.executable, "-m", "thymio_sim_ros", "--address", options.address, "--no-aseba", "--no-tdm"),
-        *ports,
-        *world,
+        "--portable" if options.first_domain is None else "--ros",
+        *("--address", options.address, "--no-aseba", "--no-tdm"),
+        *("--port", str(options.port(place)), "--foxglove-port", str(options.foxglove_port(place))),
+        *("--playground", options.playground, "--program", program),
         *("--ros-args", "-p", f"simulator:batch_ticks:={BATCH_TICKS}", "-p", f"simulator:clock_rate:={CLOCK_HZ}"),
         *("--params-file", str(parameters.absolute())),
     ]
@@ -67,17 +77,19 @@ def command(options: SuiteOptions, place: Place, program: str, parameters: Path)
 
 def environment(options: SuiteOptions, place: Place, given: Mapping[str, str]) -> dict[str, str]:
     """The environment of a pupil's suite: its tokens and its domain; discovery on this computer unless given."""
-    own = {
-        TOKEN_VARIABLE: place.token,
-        READ_ONLY_VARIABLE: place.read_only_token,
-        "ROS_DOMAIN_ID": str(options.domain(place)),
-    }
-    return {**discovery(given), **own}
+    domain = options.domain(place)
+    own = {TOKEN_VARIABLE: place.token, READ_ONLY_VARIABLE: place.read_only_token}
+    return {**discovery(given), **own, **({} if domain is None else {"ROS_DOMAIN_ID": str(domain)})}
 
 
 def discovery(given: Mapping[str, str]) -> dict[str, str]:
     """The given variables, with discovery on this computer only unless they say something else."""
     return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **given}
+
+
+def preload(module: str) -> None:
+    """Import a module for all suites that start from now on, where they are forked."""
+    _PROCESSES.set_forkserver_preload([module])
 
 
 def reason_of_end(code: int, log: Path) -> str:
@@ -96,58 +108,75 @@ def reason_of_end(code: int, log: Path) -> str:
 class SuiteProcess:
     """A running suite; its output is in the file `log`."""
 
-    def __init__(self, process: asyncio.subprocess.Process, log: Path) -> None:
-        self._process = process
+    def __init__(self, arguments: Sequence[str], variables: Mapping[str, str], log: Path) -> None:
+        life, self._life = _PROCESSES.Pipe(duplex=False)
+        self._process = _PROCESSES.Process(target=_run, args=(arguments, variables, log, life), daemon=True)
         self._log = log
+        self._ended = asyncio.Event()
 
     @classmethod
-    async def start(cls, arguments: list[str], variables: Mapping[str, str], log: Path) -> SuiteProcess:
+    async def start(cls, arguments: Sequence[str], variables: Mapping[str, str], log: Path) -> SuiteProcess:
         """Start it. The log of the run before is kept as `<log>.1`."""
         with contextlib.suppress(FileNotFoundError):
             os.replace(log, log.with_name(f"{log.name}.1"))
-        with log.open("wb") as output:
+        with log.open("wb"):
             log.chmod(0o600)  # the suite prints its address with the token
-            process = await asyncio.create_subprocess_exec(
-                *arguments,
-                env=dict(variables),
-                stdin=asyncio.subprocess.DEVNULL,
-                stdout=output,
-                stderr=output,
-                start_new_session=True,
-                preexec_fn=_end_with_parent,
-            )
-        return cls(process, log)
+        suite = cls(arguments, variables, log)
+        await asyncio.to_thread(suite._start)
+        threading.Thread(target=suite._follow, args=(asyncio.get_running_loop(),), daemon=True).start()
+        return suite
 
     @property
     def pid(self) -> int:
         """Its process id."""
+        assert self._process.pid is not None
         return self._process.pid
 
     async def wait(self) -> str:
         """Wait until it has ended; return why."""
-        return reason_of_end(await self._process.wait(), self._log)
+        await self._ended.wait()
+        return reason_of_end(self._process.exitcode or 0, self._log)
 
     async def end(self) -> None:
         """End it as Ctrl-C does, by force if it does not end."""
-        if self._process.returncode is not None:
-            return
-        self._signal(signal.SIGINT)
+        self._life.close()
         try:
-            await asyncio.wait_for(self._process.wait(), END_S)
+            await asyncio.wait_for(self._ended.wait(), END_S)
         except TimeoutError:
-            self._signal(signal.SIGKILL)
-            await self._process.wait()
+            self.kill()
+            await self._ended.wait()
 
     def kill(self) -> None:
         """End it by force: it does not answer."""
-        self._signal(signal.SIGKILL)
+        self._process.kill()
 
-    def _signal(self, number: signal.Signals) -> None:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, number)
+    def _start(self) -> None:
+        with _reaping:
+            self._process.start()
+
+    def _follow(self, loop: asyncio.AbstractEventLoop) -> None:
+        wait([self._process.sentinel])
+        with _reaping:
+            self._process.join()
+        with contextlib.suppress(RuntimeError):  # the loop is closed: the class has ended
+            loop.call_soon_threadsafe(self._ended.set)
 
 
-def _end_with_parent() -> None:
-    """In the child: be ended by the kernel when the server of the class is killed. Linux only."""
-    if _LIBC is not None:
-        _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+def _run(arguments: Sequence[str], variables: Mapping[str, str], log: Path, life: Connection) -> None:
+    """Run `thymio-sim` in the new process until it ends, or until the other end of `life` is closed."""
+    if sys.platform != "win32":
+        os.setsid()  # Ctrl-C in the terminal is for the server of the class
+    with log.open("ab") as file:
+        for stream in (1, 2):
+            os.dup2(file.fileno(), stream)
+    os.environ.clear()
+    os.environ.update(variables)
+    threading.Thread(target=_end_with, args=(life,), daemon=True).start()
+    sys.argv = ["thymio-sim", *arguments]
+    runpy.run_module("thymio_sim_ros", run_name="__main__")
+
+
+def _end_with(life: Connection) -> None:
+    with contextlib.suppress(EOFError, OSError):
+        life.recv_bytes()
+    signal.raise_signal(signal.SIGINT)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import io
-import os
 from collections.abc import Sequence
 
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
 from thymio_sim_ros.names.addresses import describe_access, describe_urls, loopback_problem, urls
-from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.network.robot_target import parse_target
 from thymio_sim_ros.suite_config import SuiteConfig
 
@@ -41,7 +39,7 @@ def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = (
         lines.insert(0, f"Network   this computer cannot reach itself ({problem}): switch its interface lo on")
     if suite.robot:
         lines.insert(0, f"Robot     {parse_target(suite.robot)} (real robot: no simulation, no ground truth)")
-    return "\n".join([*lines, f"Domain    {describe_domain(os.environ)}", "Stop      Ctrl-C"])
+    return "\n".join([*lines, "Stop      Ctrl-C"])
 
 
 def qr_code(suite: SuiteConfig) -> str:

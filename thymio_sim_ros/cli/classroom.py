@@ -17,10 +17,11 @@ from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import ClassFolder, Place
 from thymio_sim_ros.classroom.pupils import read_pupils
-from thymio_sim_ros.classroom.suite_process import SuiteOptions, discovery
+from thymio_sim_ros.classroom.suite_process import SuiteOptions, discovery, preload
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.options import check_files, check_ros, path_argument
+from thymio_sim_ros.cli.options import check_files, path_argument
 from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.cli.ros_graph import check_ros
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.files import resources
@@ -29,6 +30,8 @@ from thymio_sim_ros.names.domain import describe_range
 from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["run"]
+
+PRELOADED = "thymio_sim_ros.cli.preload"
 
 FIRST_PORT = 8100
 FIRST_DOMAIN = 1
@@ -47,8 +50,9 @@ def run(argv: Sequence[str]) -> int:
     except ClassError as error:
         raise UsageError(str(error)) from error
     check_files(given.playground, given.program, "", THYMIO)
-    check_ros()
-    options = SuiteOptions(given.address, given.first_port, given.first_domain, given.playground, given.program)
+    options = SuiteOptions(given.address, given.first_port, given.playground, given.program, _first_domain(given))
+    if options.first_domain is None:
+        preload(PRELOADED)
     with contextlib.ExitStack() as stack:
         path = given.folder or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="thymio-class-")))
         try:
@@ -61,6 +65,16 @@ def run(argv: Sequence[str]) -> int:
         _check_ports(options, places)
         asyncio.run(_serve(options, folder, places, is_kept=given.folder is not None))
     return 0
+
+
+def _first_domain(given: argparse.Namespace) -> int | None:
+    """The first ROS domain, None for the embedded graph. Raises UsageError for a missing ROS 2, or a useless domain."""
+    if given.ros:
+        check_ros()
+        return FIRST_DOMAIN if given.first_domain is None else int(given.first_domain)
+    if given.first_domain is not None:
+        raise UsageError("--first-domain: expected --ros with it; without, no robot is in a ROS domain")
+    return None
 
 
 async def _serve(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place], *, is_kept: bool) -> None:
@@ -96,16 +110,19 @@ async def _serve(options: SuiteOptions, folder: ClassFolder, places: Sequence[Pl
 
 
 def _banner(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place], *, is_kept: bool) -> str:
-    first, last = (options.domain(place) for place in (places[0], places[-1]))
     access = "this computer only" if is_loopback(options.address) else "everyone in your network with a link"
     kept = "kept" if is_kept else "lost at the end: keep them with --folder"
-    found = describe_range(discovery(os.environ))
+    if options.first_domain is None:
+        graph = "embedded graphs: no ROS node sees the robots; --ros is for nodes of pupils"
+    else:
+        domains = sorted(options.first_domain + place.number for place in (places[0], places[-1]))
+        graph = f"ROS_DOMAIN_ID {domains[0]} to {domains[1]}, {describe_range(discovery(os.environ))}"
     return "\n".join(
         [
+            f"ROS       {graph}",
             f"Teacher   {describe_urls('http', options.address, options.first_port, '/', folder.teacher_token)}",
             f"Pupils    {len(places)}; their links are on the teacher's page, as a sheet to print",
             f"Access    {access}",
-            f"Domains   ROS_DOMAIN_ID {min(first, last)} to {max(first, last)}, {found}",
             f"Programs  {kept}",
             "Stop      Ctrl-C",
         ]
@@ -117,10 +134,9 @@ def _check_ports(options: SuiteOptions, places: Sequence[Place]) -> None:
     last = max(places, key=lambda place: place.number)
     if options.foxglove_port(last) > LAST_PORT:
         raise UsageError(f"--first-port {options.first_port}: the last port would be {options.foxglove_port(last)}")
-    if options.domain(last) > LAST_DOMAIN:
+    if (domain := options.domain(last)) is not None and domain > LAST_DOMAIN:
         raise UsageError(
-            f"--first-domain {options.first_domain}: the last domain would be {options.domain(last)}, expected at most "
-            f"{LAST_DOMAIN}"
+            f"--first-domain {options.first_domain}: the last domain would be {domain}, expected at most {LAST_DOMAIN}"
         )
     ports = [port for place in places for port in (options.port(place), options.foxglove_port(place))]
     for port in (options.first_port, *ports):
@@ -177,10 +193,15 @@ def _parser() -> argparse.ArgumentParser:
         help="port of the teacher's page; each pupil needs the next two (default: %(default)s)",
     )
     parser.add_argument(
+        "--ros",
+        action="store_true",
+        help="each robot in a ROS domain of its own, for nodes of pupils; needs an installed ROS 2 and twice the "
+        "machine",
+    )
+    parser.add_argument(
         "--first-domain",
         type=_domain_argument,
-        default=FIRST_DOMAIN,
         metavar="ID",
-        help="ROS domain of the first pupil, the others have the next ones (default: %(default)s)",
+        help=f"ROS domain of the first pupil, the others have the next ones (with --ros; default: {FIRST_DOMAIN})",
     )
     return parser

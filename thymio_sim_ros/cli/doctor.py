@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from aseba_vm.cli.output import standard_output
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.options import check_ros
+from thymio_sim_ros.cli.ros_graph import check_ros
 
 if TYPE_CHECKING:
     from thymio_sim_ros.ros.doctor import Examination, TopicUse

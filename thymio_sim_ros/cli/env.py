@@ -11,7 +11,7 @@ from pathlib import Path
 
 from aseba_vm.cli.output import standard_output
 from thymio_sim_ros import course_packages
-from thymio_sim_ros.cli.options import check_ros
+from thymio_sim_ros.cli.ros_graph import check_ros
 from thymio_sim_ros.course_packages import field_checks
 
 __all__ = ["run"]

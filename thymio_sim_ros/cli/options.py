@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 from pathlib import Path
 
 from aseba_vm.targets import THYMIO_II
@@ -28,7 +27,6 @@ __all__ = [
     "add_world_options",
     "check_files",
     "check_robot_program",
-    "check_ros",
     "device_options",
     "number_argument",
     "path_argument",
@@ -176,12 +174,3 @@ def number_argument(text: str, low: float, high: float) -> float:
     if not low <= value <= high:
         raise argparse.ArgumentTypeError(f"'{text}' found, expected a number from {low:g} to {high:g}")
     return value
-
-
-def check_ros() -> None:
-    """Raise UsageError if ROS is not installed."""
-    if importlib.util.find_spec("rclpy") is None:
-        raise UsageError(
-            "ROS 2 is not installed: on Linux x86-64 run `pip install 'thymio_sim_ros[ros]'`, elsewhere source a "
-            "ROS 2 Jazzy installation; `thymio-sim runner` works without ROS"
-        )

@@ -20,13 +20,13 @@ from thymio_sim_ros.cli.options import (
     add_world_options,
     check_files,
     check_robot_program,
-    check_ros,
     device_options,
     number_argument,
     path_argument,
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.cli.ros_graph import add_graph_options, choose_graph, describe_graph
 from thymio_sim_ros.cli.servers import Servers, add_server_options, address_argument, port_argument, select_servers
 from thymio_sim_ros.engine.replay import LoggedRun, last_run
 from thymio_sim_ros.engine.run_log import RunLogError
@@ -69,17 +69,18 @@ def run(argv: Sequence[str]) -> int:
     chosen = select_servers(options, len(robots), suite.tokens or Tokens())
     servers = _without_port_of_robot(chosen, options, suite.robot)
     suite = replace(suite, network=servers.settings)
-    check_ros()
-    if (notice := startup_notice(len(robots))) is not None:
-        print_text(notice)
     # Robots of a classroom stay separate unless the environment says otherwise (docs/spec/ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     from thymio_sim_ros.ros.compat import shm_cleanup
 
     before = shm_cleanup.present()
-    from thymio_sim_ros.ros import combined
-
     try:
+        is_embedded = choose_graph(portable=options.portable, ros=options.ros)
+        print_text(describe_graph(os.environ, is_embedded=is_embedded))
+        if (notice := startup_notice(len(robots))) is not None:
+            print_text(notice)
+        from thymio_sim_ros.ros import combined
+
         return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots, servers.lines))
     finally:
         shm_cleanup.remove_new(before)
@@ -214,6 +215,7 @@ def _parser() -> argparse.ArgumentParser:
         default=SuiteConfig.out_of_range,
         help="range without an obstacle: +inf, or -1 as code written for the ROS driver expects (default: %(default)s)",
     )
+    add_graph_options(parser)
     parser.add_argument("--version", action="version", version=f"thymio-sim {thymio_sim_ros.__version__}")
     return parser
 

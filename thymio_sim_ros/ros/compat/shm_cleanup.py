@@ -15,9 +15,9 @@ it lives: the kernel ends the lock with the process, in whatever way that ends a
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import re
+import sys
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -67,6 +67,10 @@ def remove_incomplete_ports(folder: Path = SHARED_MEMORY) -> list[Path]:
 
 def remove_abandoned_segments(folder: Path = SHARED_MEMORY) -> list[Path]:
     """Remove the segments of this user's processes that have ended, with their locks; return their paths."""
+    if sys.platform == "win32":  # where neither the folder exists nor the locks
+        return []
+    import fcntl
+
     removed = []
     for lock in folder.glob("fast*_el"):
         name = LOCK.fullmatch(lock.name)
