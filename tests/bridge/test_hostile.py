@@ -84,9 +84,10 @@ async def count_until(client: Client, text: str) -> int:
 def test_clients_that_come_and_go_leave_nothing_behind() -> None:
     async def scenario() -> None:
         async with bridge() as server:
+            tasks = len(asyncio.all_tasks())
             await visit(server, 1)
-            await server.until(lambda: server.server.client_count == 0)
-            before, tasks, things = census(), len(asyncio.all_tasks()), len(gc.get_objects())
+            await server.until(lambda: server.server.client_count == 0 and len(asyncio.all_tasks()) == tasks)
+            before, things = census(), len(gc.get_objects())
             for number in range(VISITS):
                 await visit(server, number)
             await server.until(lambda: server.server.client_count == 0 and len(asyncio.all_tasks()) == tasks)

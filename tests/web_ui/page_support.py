@@ -106,6 +106,13 @@ def open_page(page: Any, address: str, *, unfold: bool = True) -> None:
         page.evaluate("() => document.querySelector('#tray[data-folded] #tray-unfold')?.click()")
 
 
+def resize(page: Any, width: int, height: int) -> None:
+    """Resize the window of a page that is open, and wait until the page has the layout for it."""
+    page.set_viewport_size({"width": width, "height": height})
+    page.wait_for_function("([width, height]) => innerWidth === width && innerHeight === height", arg=[width, height])
+    page.evaluate("() => new Promise(requestAnimationFrame)")  # frames begin with the events of a new size
+
+
 def open_tab(page: Any, name: str) -> None:
     """Open a tab of the workspace, on phones in the bar at the bottom: robot, program, playground or class."""
     page.locator(f"#tab-{name}, #bar-{name}").locator("visible=true").click()

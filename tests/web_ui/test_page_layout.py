@@ -14,6 +14,7 @@ from tests.web_ui.page_support import (
     open_menu,
     open_page,
     open_tab,
+    resize,
 )
 from tests.web_ui.test_page_touch import STOP_IN_SIGHT
 
@@ -42,7 +43,7 @@ def test_the_open_tab_and_its_width_are_kept_and_stop_is_visible_at_every_size(w
     page.dblclick("#grip")
     page.wait_for_function(WIDTH, arg=480)
     for width, height in ((1024, 768), (800, 600), (640, 400), (390, 844), (360, 640)):
-        page.set_viewport_size({"width": width, "height": height})
+        resize(page, width, height)
         for tab in ("robot", "program", "playground"):
             open_tab(page, tab)
             page.wait_for_function(STOP_IN_SIGHT)

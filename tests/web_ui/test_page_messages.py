@@ -16,6 +16,7 @@ from tests.web_ui.page_support import (
     drop_file,
     open_page,
     open_tab,
+    resize,
     wait_for_none,
 )
 from tests.web_ui.test_gallery import open_gallery
@@ -122,7 +123,7 @@ def test_a_fallen_robot_is_put_back_beside_a_long_message_of_the_teacher(world, 
     open_page(page, address, unfold=False)
     page.locator("[data-fallen]").wait_for()
     for width, height in (*SMALL, (640, 360), (195, 422), (1366, 768)):
-        page.set_viewport_size({"width": width, "height": height})
+        resize(page, width, height)
         wait_for_none(page, FAULTS_OF_A_NOTE, (".fallen", "button"))
         wait_for_none(page, FAULTS_OF_A_NOTE, TEACHER_NOTE)
 
