@@ -29,13 +29,12 @@ FLAGS = [
 
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Any]:
-    """Chromium; a test is skipped where it, the page's build, Playwright or ROS is missing.
+    """Chromium; a test is skipped where it, the page's build or Playwright is missing.
 
     It ends with the tests of this folder: Playwright leaves a running event loop in the thread, in which
     `asyncio.run` of later tests would fail.
     """
     api = pytest.importorskip("playwright.sync_api")
-    pytest.importorskip("rclpy")
     if CHROMIUM is None:
         pytest.skip("no Chromium on this machine")
     if resources.page() is None:
@@ -48,7 +47,10 @@ def browser() -> Iterator[Any]:
 
 
 class Suites:
-    """The suites of one test. A call with arguments starts one and returns the address of its page."""
+    """The suites of one test, on embedded graphs unless `--ros` is given.
+
+    A call with arguments starts one and returns the address of its page.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -56,7 +58,8 @@ class Suites:
 
     def __call__(self, *arguments: str, ports: tuple[int, int] | None = None) -> str:
         port, foxglove_port = ports or (free_port(), free_port())
-        command = ["--port", str(port), "--foxglove-port", str(foxglove_port), *arguments]
+        graph = () if "--ros" in arguments else ("--portable",)
+        command = [*graph, "--port", str(port), "--foxglove-port", str(foxglove_port), *arguments]
         self._running.append(Process(self._folder, "thymio_sim_ros.cli.main", *command))
         return f"http://127.0.0.1:{port}/"
 
@@ -67,7 +70,7 @@ class Suites:
 
 
 @pytest.fixture
-def suite(ros_domain, tmp_path) -> Iterator[Suites]:
+def suite(tmp_path) -> Iterator[Suites]:
     """Start a suite with arguments, and return the address of its page: for tests of how a suite starts or ends."""
     suites = Suites(tmp_path)
     yield suites

@@ -235,7 +235,8 @@ def wait_for_none(page: Any, finding: str, arg: Any = None) -> None:
 
     with contextlib.suppress(TooLate):
         page.wait_for_function(f"(arg) => ({finding})(arg).length === 0", arg=arg)
-    assert page.evaluate(finding, arg) == []
+    if found := page.evaluate(finding, arg):
+        pytest.fail(f"still found: {found}")
 
 
 def wait_until_still(page: Any, place: str) -> None:

@@ -81,16 +81,13 @@ class SharedWorld:
         self._process = None
 
     def _start(self) -> None:
-        from thymio_sim_ros.testing.ros.domain import reserved
-
         self.end()
         self._ports = port, foxglove_port = free_port(), free_port()
         ports = ("--port", str(port), "--foxglove-port", str(foxglove_port))
-        with reserved():  # until it uses the domain
-            world = ("--playground", "base", "--program", "none")
-            self._process = Process(self._folder, SUITE, *ports, *world, *SLOW_CLOCK)
-            for one in self._ports:
-                wait_for_port(one)
+        world = ("--playground", "base", "--program", "none")
+        self._process = Process(self._folder, SUITE, "--portable", *ports, *world, *SLOW_CLOCK)
+        for one in self._ports:
+            wait_for_port(one)
         with self.client() as client:
             until(lambda: {name.partition(".")[0] for name in _parameters(client)} >= NODES, what="all nodes")
             self._first = _parameters(client)

@@ -56,6 +56,18 @@ def problems_of(page: Any) -> list[str]:
     return problems
 
 
+def origins_of(page: Any) -> set[str]:
+    """The set of the origins of documents that this page has from now on."""
+    origins: set[str] = set()
+
+    def add(frame: Any) -> None:
+        if frame.url.startswith("http"):
+            origins.add("/".join(frame.url.split("/")[:3]))
+
+    page.on("framenavigated", add)
+    return origins
+
+
 def checked_page(browser: Any, **how: Any) -> Iterator[Any]:
     """A page of `new_page`; asserts at the end that there were no problems."""
     page = new_page(browser, **how)
@@ -74,23 +86,23 @@ class Tabs:
 
     def __init__(self, browser: Any) -> None:
         self._browser = browser
-        self._tabs: dict[str, tuple[Any, Any, list[str]]] = {}
-        """Page, its developer session and its problems, by options."""
+        self._tabs: dict[str, tuple[Any, Any, list[str], set[str]]] = {}
+        """Page, its developer session, its problems, and the origins of its documents, by options."""
 
     def lend(self, **options: Any) -> Iterator[Any]:
         """A page with these options of its profile; asserts at the end that there were no problems."""
         name = repr(options)
         if name not in self._tabs:
             page = new_page(self._browser, **options)
-            self._tabs[name] = page, page.context.new_cdp_session(page), problems_of(page)
+            self._tabs[name] = page, page.context.new_cdp_session(page), problems_of(page), origins_of(page)
             page.add_init_script = page.on = page.expose_function = _refuse
-        page, developer, problems = self._tabs[name]
+        page, developer, problems, origins = self._tabs[name]
         yield page
         found = list(problems)
         if page.is_closed():
             del self._tabs[name]
         else:
-            _clear(page, developer)
+            _clear(page, developer, origins)
         problems.clear()
         assert not found
 
@@ -99,7 +111,7 @@ def _refuse(*_: Any) -> None:
     pytest.fail("this would stay for all later tests: take a page of its own (fixture own_page)")
 
 
-def _clear(page: Any, developer: Any) -> None:
+def _clear(page: Any, developer: Any, origins: set[str]) -> None:
     """Leave nothing of a test."""
     for other in page.context.pages:
         if other is not page:
@@ -111,9 +123,8 @@ def _clear(page: Any, developer: Any) -> None:
     page.context.clear_permissions()
     page.emulate_media(**USUAL_MEDIA)
     page.set_viewport_size(SIZE)
-    origin = page.evaluate("() => location.origin")
-    if origin.startswith("http"):
+    if page.url.startswith("http"):
         page.evaluate("() => sessionStorage.clear()")
     page.goto("about:blank")
-    if origin.startswith("http"):
-        developer.send("Storage.clearDataForOrigin", {"origin": origin, "storageTypes": "all"})
+    while origins:
+        developer.send("Storage.clearDataForOrigin", {"origin": origins.pop(), "storageTypes": "all"})

@@ -71,6 +71,36 @@ def test_items_are_dragged_turned_and_edited_as_numbers(at_rest, page):
     assert len(items(page)) == 3, "keys in a field act on the field only"
 
 
+TYPED_AFTER_A_CHANGE = """(input) => {
+    input.value = "-30";
+    input.dispatchEvent(new Event("change"));
+    input.value = "-20";
+}"""
+
+
+@pytest.mark.slow
+def test_what_is_typed_after_a_change_stays_and_is_taken_with_the_next_one(at_rest, page):
+    open_creator(page, at_rest)
+    page.locator("[data-tool=box]").click()
+    click(page, -0.4, 0.3)
+    page.keyboard.press("Escape")
+    click(page, -0.4, 0.3)
+    open_details(page)
+    field = page.locator("[data-field=x_m]")
+    field.evaluate(TYPED_AFTER_A_CHANGE)
+    wait_for_frame(page)
+    assert field.input_value() == "-20"
+    field.dispatch_event("change")
+    page.wait_for_function("window.thymio.built().playground.items.some((one) => one.x_m === -0.2)")
+    undo = page.get_by_role("button", name="Undo")
+    undo.click()
+    playwright.expect(field).to_have_value("-30")
+    field.press("ArrowUp")
+    page.wait_for_function("window.thymio.built().playground.items.every((one) => one.x_m !== -0.3)")
+    undo.click()
+    playwright.expect(field).to_have_value("-30")
+
+
 @pytest.mark.slow
 def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(at_rest, page):
     open_creator(page, at_rest)

@@ -150,9 +150,9 @@ HANDS = {
 
 
 @pytest.fixture(params=HANDS, ids=lambda kind: kind.__name__.lower())
-def hand(request, browser, suite) -> Iterator[Any]:
+def hand(request, browser, ros_domain, suite) -> Iterator[Any]:
     """The page as it is after installation, at its first visit, and a hand that uses it."""
-    address = suite()
+    address = suite("--ros")
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
     for page in checked_page(browser, **HANDS[request.param]):
         page.context.grant_permissions(["clipboard-read", "clipboard-write"])

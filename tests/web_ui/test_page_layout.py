@@ -15,6 +15,7 @@ from tests.web_ui.page_support import (
     open_page,
     open_tab,
     resize,
+    wait_for_frame,
 )
 from tests.web_ui.test_page_touch import STOP_IN_SIGHT
 
@@ -128,3 +129,14 @@ def test_the_names_of_views_follow_the_height_of_the_window_alone(at_rest, page)
     playwright.expect(row).to_have_attribute("data-names", "few")
     page.set_viewport_size({"width": 1280, "height": 640})
     playwright.expect(row).to_have_attribute("data-names", "beside")
+
+
+@pytest.mark.slow
+def test_the_program_tab_begins_with_its_buttons_in_a_low_window(at_rest, page):
+    page.set_viewport_size({"width": 683, "height": 384})
+    for _visit in range(2):  # at the second one, the files of the tab are in the browser's memory
+        open_page(page, at_rest, unfold=False)
+        open_tab(page, "program")
+        page.locator(".program-start .program-card").first.wait_for()
+        wait_for_frame(page)
+        assert page.locator("#panel-program").evaluate("(panel) => panel.scrollTop") == 0

@@ -42,9 +42,17 @@ function labeled({ labels, kind = "", commit }, key, input, unit = "") {
     setText(problem, text ?? "");
     input.setAttribute("aria-invalid", String(text !== null));
   };
+  let shown = input.value;
+  input.addEventListener("change", () => (shown = input.value));
   return {
     element,
     report,
+    /** Show a value, which may be that of an earlier change: what has been typed since stays. @param {string} text */
+    show(text) {
+      if (input.value !== shown) return;
+      input.value = shown = text;
+      report(null);
+    },
     /** Change the value, and show why it was rejected. @param {any} value */
     apply(value) {
       const rejected = commit({ [key]: value });
@@ -57,7 +65,7 @@ function labeled({ labels, kind = "", commit }, key, input, unit = "") {
 export function numberControl(setting, key, field) {
   const { unit, step } = unitOf(field.unit);
   const input = h("input", { type: "number", step: "any", inputmode: "decimal", "data-field": key });
-  const { element, report, apply } = labeled(setting, key, input, unit);
+  const { element, report, show, apply } = labeled(setting, key, input, unit);
   let value = NaN;
   const applyInput = () => {
     const wanted = toFile(input.valueAsNumber, field.unit);
@@ -71,15 +79,14 @@ export function numberControl(setting, key, field) {
     if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
     event.preventDefault(); // the browser's default step is 1 in any unit
     input.value = String(Math.round((input.valueAsNumber + (event.key === "ArrowUp" ? step : -step)) * 1e4) / 1e4);
-    applyInput();
+    input.dispatchEvent(new Event("change"));
   });
   return {
     element,
     update(values) {
       if (values[key] === value) return;
       value = values[key];
-      input.value = value === null || value === undefined ? "" : String(toDisplay(value, field.unit));
-      report(null);
+      show(value === null || value === undefined ? "" : String(toDisplay(value, field.unit)));
     },
   };
 }
@@ -87,7 +94,7 @@ export function numberControl(setting, key, field) {
 /** @param {Setting} setting @param {string} key @param {string} type  of the input element @returns {Control} */
 function textControl(setting, key, type) {
   const input = h("input", { type, "data-field": key, autocomplete: "off", spellcheck: "false" });
-  const { element, report, apply } = labeled(setting, key, input);
+  const { element, show, apply } = labeled(setting, key, input);
   let value = "";
   input.addEventListener("change", () => apply(input.value));
   return {
@@ -95,8 +102,7 @@ function textControl(setting, key, type) {
     update(values) {
       if ((values[key] ?? "") === value) return;
       value = values[key] ?? "";
-      input.value = value;
-      report(null);
+      show(value);
     },
   };
 }

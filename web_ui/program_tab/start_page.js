@@ -74,8 +74,10 @@ export class StartPage {
     this.element.scrollTop = 0;
   }
 
+  /** Focus the first program; the page stays at its start. */
   focus() {
-    /** @type {HTMLElement | null} */ (this.element.querySelector(".program-own-card, .program-card"))?.focus();
+    /** @type {HTMLElement | null} */ const first = this.element.querySelector(".program-own-card, .program-card");
+    first?.focus({ preventScroll: true });
   }
 
   /**

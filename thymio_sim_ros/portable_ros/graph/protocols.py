@@ -113,6 +113,9 @@ class Tasks(Protocol):
     def resume(self, task: Any) -> None:
         """Run a task again."""
 
+    def turn_ended(self, task: Any) -> None:
+        """Called when a task has run, until it was done or waits."""
+
 
 class GraphNode(Protocol):
     """A node, as the graph knows it."""

@@ -1,6 +1,11 @@
-"""The exceptions that the compiled part of rclpy raises."""
+"""What other modules use of the compiled part of rclpy: its exceptions, and the waits of executors."""
 
 from __future__ import annotations
+
+import sys
+import threading
+
+from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
 
 __all__ = [
     "InvalidHandle",
@@ -9,7 +14,11 @@ __all__ = [
     "RCLInvalidROSArgsError",
     "RMWError",
     "UnknownROSArgsError",
+    "WaitSet",
 ]
+
+_LONGEST_WAIT_S = 0.2 if sys.platform == "win32" else threading.TIMEOUT_MAX
+"""Of one wait: Windows handles Ctrl-C between waits."""
 
 
 class RCLError(RuntimeError):
@@ -34,3 +43,17 @@ class NodeNameNonExistentError(RCLError):
 
 class InvalidHandle(RuntimeError):
     """The object is destroyed."""
+
+
+class WaitSet:
+    """All waits of an executor: for an event, which notifies `changed`, or for a timer."""
+
+    def __init__(self) -> None:
+        self.changed = threading.Condition()
+        self.due_s: float | None = None
+        """Seconds until the next timer, None without timers."""
+
+    def wait(self, timeout_nsec: int) -> None:
+        """Wait for an event or a timer, or until the time is over; -1 for no limit. `changed` must be held."""
+        limits = [_LONGEST_WAIT_S if timeout_nsec < 0 else timeout_nsec / S_TO_NS]
+        self.changed.wait(min(limits if self.due_s is None else [*limits, self.due_s]))

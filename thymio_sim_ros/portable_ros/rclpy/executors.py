@@ -6,8 +6,6 @@ All executors have one queue, in which entities and tasks stand in the order in 
 from __future__ import annotations
 
 import os
-import sys
-import threading
 import time
 import weakref
 from collections import deque
@@ -19,14 +17,12 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import WaitSet
 from thymio_sim_ros.portable_ros.rclpy.task import Future, Task
-from thymio_sim_ros.portable_ros.rclpy.utilities import get_default_context
+from thymio_sim_ros.portable_ros.rclpy.utilities import get_default_context, timeout_sec_to_nsec
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context
-
-_LONGEST_WAIT_S = 0.2 if sys.platform == "win32" else threading.TIMEOUT_MAX
-"""Of one wait: Windows handles Ctrl-C between waits."""
 
 
 class TimeoutException(Exception):
@@ -51,13 +47,17 @@ class Executor:
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = context or get_default_context()
         self._nodes: list[Any] = []
-        self._changed = threading.Condition()
+        self._wait_set = WaitSet()
+        self._changed = self._wait_set.changed
         self._ready: deque[Entity | Task] = deque()
         self._held: list[Entity] = []
         """Entities that are ready while another callback of their group runs."""
+        self._round: dict[Entity | Task, Any] | None = None
+        """What the present calls of `wait_for_ready_callbacks` without waiting still return."""
         self._resumable: dict[Task, Entity | None] = {}
         """Coroutines that wait, with the entity whose callback they are."""
-        self._running = 0
+        self._running: list[Entity | Task] = []
+        """What has been handed out and has not yet run."""
         self._is_shutdown = False
         self._context.on_shutdown(self.wake)
 
@@ -135,7 +135,7 @@ class Executor:
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Execute one callback, or none if none is ready in time."""
         with suppress(TimeoutException):
-            self._execute(self._next(timeout_sec, lambda: False))
+            self._execute(self._next(timeout_sec, lambda: False)[0])
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Execute callbacks until a future is done, or until the time is over."""
@@ -150,7 +150,7 @@ class Executor:
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Execute one callback unless a future is done before."""
         with suppress(TimeoutException, ConditionReachedException):
-            self._execute(self._next(timeout_sec, future.done))
+            self._execute(self._next(timeout_sec, future.done)[0])
 
     def can_execute(self, entity: Entity) -> bool:
         """Whether a callback of an entity may start now."""
@@ -164,14 +164,26 @@ class Executor:
     ) -> None:
         self.shutdown()
 
-    def _execute(self, work: Callable[[], None]) -> None:
-        work()
+    def wait_for_ready_callbacks(
+        self, timeout_sec: float | None = None, nodes: object = None, condition: Callable[[], bool] = lambda: False
+    ) -> tuple[Task, Entity | None, Any]:
+        """Wait for a callback that may start, and return the task that runs it, its entity and its node.
 
-    def _next(self, timeout_sec: float | None, is_over: Callable[[], bool]) -> Callable[[], None]:
-        """Wait for a callback that may start, and return what executes it.
-
-        Raises TimeoutException, ConditionReachedException, ShutdownException and ExternalShutdownException.
+        With a time of 0, calls return what was ready at the first of them, each entity once, and then raise
+        TimeoutException, even if more has become ready. `nodes` is not looked at: all nodes of the executor take part.
+        Raises also ConditionReachedException, ShutdownException and ExternalShutdownException.
         """
+        if timeout_sec == 0 and self._round is None:
+            with self._changed:
+                self._announce_timers()
+                self._round = dict.fromkeys(self._ready)
+        try:
+            return self._next(timeout_sec, condition)
+        except TimeoutException:
+            self._round = None
+            raise
+
+    def _next(self, timeout_sec: float | None, condition: Callable[[], bool]) -> tuple[Task, Entity | None, Any]:
         end_s = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
         while True:
             with self._changed:
@@ -179,7 +191,7 @@ class Executor:
                     raise ShutdownException
                 if not self._context.ok():
                     raise ExternalShutdownException
-                if is_over():
+                if condition():
                     raise ConditionReachedException
                 self._announce_timers()
                 found = self._pop()
@@ -187,69 +199,76 @@ class Executor:
                     left_s = None if end_s is None else end_s - time.monotonic()
                     if left_s is not None and left_s <= 0:
                         raise TimeoutException
-                    self._changed.wait(min(self._wait_s(), _LONGEST_WAIT_S if left_s is None else left_s))
+                    self._wait_set.due_s = self._due_s()
+                    self._wait_set.wait(timeout_sec_to_nsec(left_s))
                     continue
-                self._running += 1
-            work = self._work(found)
-            if work is not None:
-                return work
+                self._running.append(found)
+            if isinstance(found, Task):
+                entity = self._resumable.get(found)
+                return found, entity, None if entity is None else entity.node
+            if (task := self._task(found)) is not None:
+                return task, found, found.node
+
+    def _task(self, entity: Entity) -> Task | None:
+        """The task that runs the callback of an entity; None if the entity has nothing."""
+        taken = entity.take()
+        if taken is None:
+            self._release(entity, entity)
+            return None
+        task = Task(taken[0], taken[1], executor=self)
+        self._resumable[task] = entity
+        self._running.append(task)
+        self._running.remove(entity)
+        return task
 
     def _announce_timers(self) -> None:
         for node in self._nodes:
             self._ready.extend(timer for timer in node.timers if timer.announce_if_due())
 
-    def _wait_s(self) -> float:
+    def _due_s(self) -> float | None:
         """Seconds until a timer is due."""
         waits = (timer.wait_s() for node in self._nodes for timer in node.timers)
-        return min((wait_s for wait_s in waits if wait_s is not None), default=_LONGEST_WAIT_S)
+        return min((wait_s for wait_s in waits if wait_s is not None), default=None)
 
     def _pop(self) -> Entity | Task | None:
         """Remove the first entity or task that may start, and begin its execution."""
-        while self._ready:
-            found = self._ready.popleft()
-            if isinstance(found, Task):
-                return found
-            if found.is_destroyed or found.node not in self._nodes:
-                continue
-            if found.callback_group is None or found.callback_group.beginning_execution(found):
-                return found
-            self._held.append(found)
-        return None
-
-    def _work(self, found: Entity | Task) -> Callable[[], None] | None:
-        """Return what executes an entity or a task; None if the entity has nothing."""
-        if isinstance(found, Task):
-            task, entity = found, self._resumable.pop(found, None)
-        else:
-            taken, entity = found.take(), found
-            if taken is None:
-                self._ended(entity)
-                return None
-            task = Task(taken[0], taken[1], executor=self)
-        return lambda: self._run(task, entity)
-
-    def _run(self, task: Task, entity: Entity | None) -> None:
-        """Run a task; raise the exception of a callback."""
-        if entity is not None:
-            self._resumable[task] = entity
+        later: list[Entity | Task] = []
         try:
-            task()
+            while self._ready:
+                found = self._ready.popleft()
+                if self._round is not None and self._round.pop(found, self) is self:
+                    later.append(found)
+                elif isinstance(found, Task):
+                    return found
+                elif not found.is_destroyed and found.node in self._nodes:
+                    if found.callback_group is None or found.callback_group.beginning_execution(found):
+                        return found
+                    self._held.append(found)
+            return None
         finally:
-            is_over = task.done()
-            if is_over:
-                self._resumable.pop(task, None)
-            self._ended(entity if is_over else None)
-        if is_over and (error := task.exception()) is not None:
-            raise error
+            self._ready.extendleft(reversed(later))
 
-    def _ended(self, entity: Entity | None) -> None:
+    def turn_ended(self, task: Task) -> None:
+        """Called when a task has run, until it was done or waits. Thread-safe."""
+        if task not in self._running:
+            return  # the program runs it on its own
+        self._release(task, self._resumable.pop(task, None) if task.done() else None)
+
+    def _release(self, work: Entity | Task, entity: Entity | None) -> None:
+        """End a turn, and the execution of an entity that is over; what had to wait for it may start."""
         if entity is not None and entity.callback_group is not None:
             entity.callback_group.ending_execution(entity)
         with self._changed:
-            self._running -= 1
+            self._running.remove(work)
             self._ready.extendleft(reversed(self._held))
             self._held.clear()
             self._changed.notify_all()
+
+    def _execute(self, task: Task) -> None:
+        """Run a task; raise the exception of a callback."""
+        task()
+        if task.done() and (error := task.exception()) is not None:
+            raise error
 
 
 class SingleThreadedExecutor(Executor):
@@ -271,8 +290,8 @@ class MultiThreadedExecutor(Executor):
         self._pool.shutdown(wait=False)
         return is_over
 
-    def _execute(self, work: Callable[[], None]) -> None:
-        self._futures.append(self._pool.submit(work))
+    def _execute(self, task: Task) -> None:
+        self._futures.append(self._pool.submit(super()._execute, task))
         ended = [one for one in self._futures if one.done()]
         self._futures = [one for one in self._futures if one not in ended]
         for one in ended:

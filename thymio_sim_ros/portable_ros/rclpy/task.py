@@ -132,17 +132,12 @@ class Task(Future):
 
     def __call__(self) -> None:
         """Run the callback, or the coroutine to its next wait."""
-        if self._is_done or not self._is_executing.acquire(blocking=False):
-            return
         try:
-            if self._is_coroutine:
-                self._advance()
-            else:
-                self.set_result(self._handler(*self._args, **self._kwargs))
-        except Exception as error:
-            self.set_exception(error)
+            if not self._is_done and self._is_executing.acquire(blocking=False):
+                self._run()
         finally:
-            self._is_executing.release()
+            if (executor := self._executor()) is not None:
+                executor.turn_ended(self)
 
     def executing(self) -> bool:
         """Whether a thread runs the task now."""
@@ -153,6 +148,17 @@ class Task(Future):
         if self._is_coroutine and not self._is_done and not self.executing():
             self._handler.close()
         super().cancel()
+
+    def _run(self) -> None:
+        try:
+            if self._is_coroutine:
+                self._advance()
+            else:
+                self.set_result(self._handler(*self._args, **self._kwargs))
+        except Exception as error:
+            self.set_exception(error)
+        finally:
+            self._is_executing.release()
 
     def _advance(self) -> None:
         try:
