@@ -65,9 +65,9 @@ def cpu_s(pid: int) -> float:
     return sum(int(task.read_text(encoding="ascii").split()[0]) for task in tasks) / 1e9
 
 
-def status_mb(pid: int, key: str) -> float:
-    """Return a size from the status of a process: VmRSS is its memory now, VmHWM at its highest."""
-    for line in Path(f"/proc/{pid}/status").read_text(encoding="ascii").splitlines():
-        if line.startswith(f"{key}:"):
+def pss_mb(pid: int) -> float:
+    """Return the proportional set size of a process: memory that n processes share counts 1/n."""
+    for line in Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii").splitlines():
+        if line.startswith("Pss:"):
             return int(line.split()[1]) / 1024
     return 0.0

@@ -20,6 +20,8 @@ __all__ = ["MAX_MESSAGE", "MISSING", "WATCHED_S", "Classroom"]
 
 WATCHED_S = 5.0
 """The teacher's page counts as open for this time after its last request."""
+STARTS, STARTS_ROS = 4, 1
+"""Suites that start at the same time for each core, on embedded graphs and with ROS 2: the first ones mostly wait."""
 MAX_MESSAGE = 500
 """Characters of a message."""
 MISSING = "missing.txt"
@@ -32,7 +34,8 @@ class Classroom:
     """The class while it runs. Only for the thread of the event loop."""
 
     def __init__(self, places: Sequence[Place], options: SuiteOptions, folder: ClassFolder) -> None:
-        starting = asyncio.Semaphore(max(1, os.cpu_count() or 1))
+        at_once = STARTS if options.first_domain is None else STARTS_ROS
+        starting = asyncio.Semaphore(at_once * (os.cpu_count() or 1))
         self._folder = folder
         self.seats = {place.id: Seat(place, options, folder, starting) for place in places}
         self._messages: dict[str, str] = {}

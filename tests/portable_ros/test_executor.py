@@ -1,0 +1,62 @@
+"""Rounds of an executor that does not wait, as the fixtures for nodes use them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from thymio_sim_ros.portable_ros.rclpy.context import Context
+from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor, TimeoutException
+from thymio_sim_ros.portable_ros.rclpy.node import Node
+
+
+@pytest.fixture
+def node() -> Iterator[Node]:
+    context = Context()
+    context.init([])
+    made = Node("rounds", context=context, enable_rosout=False, start_parameter_services=False)
+    yield made
+    made.destroy_node()
+    context.shutdown()
+
+
+def round_of(executor: SingleThreadedExecutor) -> list[Any]:
+    """Run what is ready; returns its entities."""
+    entities = []
+    while True:
+        try:
+            task, entity, _ = executor.wait_for_ready_callbacks(timeout_sec=0)
+        except TimeoutException:
+            return entities
+        entities.append(entity)
+        task()
+
+
+def test_a_round_has_what_was_ready_at_its_start_each_entity_once(node: Node) -> None:
+    called: list[str] = []
+
+    def ring() -> None:
+        called.append("first")
+        first.trigger()
+
+    first = node.create_guard_condition(ring)
+    second = node.create_guard_condition(lambda: called.append("second"))
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    first.trigger()
+    second.trigger()
+    assert round_of(executor) == [first, second]
+    assert round_of(executor) == [first], "what a callback makes ready belongs to the next round"
+    assert called == ["first", "second", "first"]
+    assert executor.shutdown(timeout_sec=0), "nothing is running"
+
+
+def test_a_task_that_is_cancelled_before_its_turn_does_not_hold_the_executor(node: Node) -> None:
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    task = executor.create_task(lambda: pytest.fail("it was cancelled"))
+    task.cancel()
+    assert round_of(executor) == [None]
+    assert executor.shutdown(timeout_sec=0)
