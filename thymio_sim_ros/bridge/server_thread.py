@@ -21,6 +21,10 @@ _LOOPBACK = ("127.0.0.1", "::1")
 _NO_ADDRESS = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 """Errors on a machine without IPv6; the other loopback address is enough then."""
 
+_EXCLUSIVE: int = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
+"""Option of a port that has one server at a time, and can be used again as soon as it has closed: on Windows,
+SO_REUSEADDR would give the port of a running server to a second one."""
+
 _TRIES = 20
 """Attempts to find a port that is free on two addresses."""
 
@@ -92,7 +96,7 @@ def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
     except OSError as error:
         raise _named(error, address, port) from error
     try:
-        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        bound.setsockopt(socket.SOL_SOCKET, _EXCLUSIVE, 1)
         bound.bind(endpoint)
         if do_listen:
             detect_lost_peer(bound)
@@ -130,7 +134,7 @@ class ServerThread:
         self._server = BridgeServer(board, sink, settings)
         self.publish: Callable[[int, int, bytes], None] = self._server.publish
         """Send a message of a channel to its subscribers: channel ID, time in ns, payload; from any thread."""
-        self._loop = asyncio.new_event_loop()
+        self._loop = asyncio.SelectorEventLoop()  # the default of Windows cannot wait for a socket of another thread
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="foxglove-server", daemon=True)
         self._is_closed = False

@@ -11,7 +11,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import select
+import selectors
 from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
 from socket import SO_SNDBUF, SOL_SOCKET, socket
@@ -76,7 +76,7 @@ class _Connection(web.RequestHandler):
         descriptor = plain.get_extra_info("socket").fileno()
         self._slot.close = plain.abort
         self._slot.has_pending_io = lambda: _is_ready(
-            descriptor, select.POLLOUT if self._slot.phase is Phase.STALLED else select.POLLIN
+            descriptor, selectors.EVENT_WRITE if self._slot.phase is Phase.STALLED else selectors.EVENT_READ
         )
         super().connection_made(transport)
 
@@ -248,7 +248,7 @@ async def serve_connections(
 
 
 def _is_ready(descriptor: int, events: int) -> bool:
-    """Whether one of these `poll` events is pending for an open socket."""
-    poll = select.poll()
-    poll.register(descriptor, events)
-    return bool(poll.poll(0))
+    """Whether one of these events of `selectors` is pending for an open socket."""
+    with selectors.DefaultSelector() as selector:
+        selector.register(descriptor, events)
+        return bool(selector.select(0))

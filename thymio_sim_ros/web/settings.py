@@ -15,11 +15,11 @@ _MAX_CONNECTIONS = 768
 def max_connections() -> int:
     """Maximum number of connections: at most three quarters of the files that this process may open."""
     try:
-        import resource
-    except ImportError:  # not on this platform
+        from resource import RLIM_INFINITY, RLIMIT_NOFILE, getrlimit
+    except ImportError:  # not on Windows, where a folder of this name may be found instead
         return _MAX_CONNECTIONS
-    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
-    return _MAX_CONNECTIONS if soft == resource.RLIM_INFINITY else max(8, min(_MAX_CONNECTIONS, soft * 3 // 4))
+    soft, _ = getrlimit(RLIMIT_NOFILE)
+    return _MAX_CONNECTIONS if soft == RLIM_INFINITY else max(8, min(_MAX_CONNECTIONS, soft * 3 // 4))
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ def _temporary(monkeypatch, tmp_path):
     ("environment", "folder"),
     [
         ({"HOME": "{}/home"}, "home/.ros/log"),
+        ({"USERPROFILE": "{}/home"}, "home/.ros/log"),
         ({"HOME": "/proc/nowhere", "ROS_HOME": "{}/ros"}, "ros/log"),
         ({"HOME": "/proc/nowhere", "ROS_HOME": "/proc/nowhere", "ROS_LOG_DIR": "{}/log"}, "log"),
     ],

@@ -1,7 +1,7 @@
 """Ensures that rcl can create its log directory, without which it does not start.
 
-rcl uses `ROS_LOG_DIR`, else `log` in `ROS_HOME`, else `.ros/log` in `HOME`. Containers and services may have no `HOME`,
-or one that is not writable.
+rcl uses `ROS_LOG_DIR`, else `log` in `ROS_HOME`, else `.ros/log` in `HOME`, on Windows in `USERPROFILE`. Containers and
+services may have none of these, or one that is not writable.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ def _wanted(environment: MutableMapping[str, str]) -> Path | None:
         return Path(environment["ROS_LOG_DIR"]).expanduser()
     if environment.get("ROS_HOME"):
         return Path(environment["ROS_HOME"]).expanduser() / "log"
-    return Path(environment["HOME"]) / ".ros" / "log" if environment.get("HOME") else None
+    home = environment.get("HOME") or environment.get("USERPROFILE")
+    return Path(home) / ".ros" / "log" if home else None
 
 
 def _problem(folder: Path) -> str:
