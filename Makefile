@@ -36,7 +36,7 @@ INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && 
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: run check test test-all lint docs web web-test ros2 clean help
+.PHONY: run check test test-all windows-test arm64-test lint docs web web-test ros2 clean help
 
 run: $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
 	@# In a terminal the program gets its own process group (set -m): Ctrl-C then ends the program only, and make
@@ -60,6 +60,17 @@ endif
 test-all: $(VENV)/.ready-test web  ## every night: all tests, also the long ones, with new random examples
 	@echo "Hypothesis explores with seed $(SEED); make test-all SEED=$(SEED) repeats it."
 	@$(TEST) --hypothesis-profile explore --hypothesis-seed $(SEED) $(ARGS)
+
+# The suite on another computer, with that computer's Python on this one (docs/platforms.md).
+windows-test: build/platforms/windows/python $(VENV)/.ready-test web  ## the suite with Python for Windows, under Wine
+	@THYMIO_TEST_PYTHON=$< $(TEST) tests/platforms $(ARGS)
+
+arm64-test: build/platforms/arm64/python $(VENV)/.ready-test web  ## the suite with Python for ARM64, under QEMU
+	@THYMIO_TEST_PYTHON=$< $(TEST) tests/platforms $(ARGS)
+
+build/platforms/%/python: .ci/%-python .ci/lib-platforms pyproject.toml
+	@.ci/$*-python build/platforms/$*
+	@touch $@
 
 lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .
@@ -104,7 +115,7 @@ clean:  ## remove the environments and all build results
 	find aseba_vm thymio_sim_ros tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
-	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
+	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
 
 $(VENV)/.created:
 	@python=; for candidate in python3 python3.13 python3.12 python3.11; do \

@@ -20,6 +20,8 @@ _STRIDE = 1009
 _taken = itertools.count()
 
 
+PYTHON = os.environ.get("THYMIO_TEST_PYTHON") or sys.executable
+"""The Python that runs the programs: another one for tests/platforms."""
 SUITE = "thymio_sim_ros.cli.main"
 SERVERS = {"--aseba-port": "--no-aseba", "--tdm-port": "--no-tdm"}
 """Options that switch a server of the suite on, and those that switch it off: many tests run at the same time."""
@@ -44,7 +46,7 @@ class Process:
             arguments = (*(off for on, off in SERVERS.items() if on not in arguments), *arguments)
         self._log = folder / f"{module}.txt"
         main = f"import sys; from {module} import main; sys.exit(main())"
-        command = [*prefix, sys.executable, "-c", main, *arguments]
+        command = [*prefix, PYTHON, "-c", main, *arguments]
         with self._log.open("w") as output:
             self._popen = subprocess.Popen(
                 command,
