@@ -18,6 +18,7 @@ import pytest
 
 from aseba_vm import languages
 from tests.patience import PATIENCE_S
+from thymio_sim_ros.end_signals import END_SIGNALS
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.sim.formats import svg_worker
 
@@ -41,7 +42,7 @@ pytest_plugins = ["pytester", "thymio_sim_ros.pytest_plugin"]
 @pytest.fixture(autouse=True)
 def _signal_handlers() -> Iterator[None]:
     """Restore the handlers: `run_main` ignores signals at its end, and programs of later tests would inherit that."""
-    numbers = (signal.SIGINT, signal.SIGTERM)
+    numbers = END_SIGNALS
     before = [signal.getsignal(number) for number in numbers]
     yield
     for number, handler in zip(numbers, before, strict=True):

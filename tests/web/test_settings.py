@@ -13,7 +13,7 @@ from thymio_sim_ros.web import settings
 def test_without_limits_of_the_system_there_is_a_limit_of_connections(monkeypatch: pytest.MonkeyPatch) -> None:
     folder = types.ModuleType("resource")  # Windows has no such module, and may find a folder of this name
     monkeypatch.setitem(sys.modules, "resource", folder)
-    assert settings.max_connections() == settings.Settings(8765).max_connections
+    assert settings.max_connections() == 384
 
 
 def test_of_few_open_files_the_connections_are_a_part(monkeypatch: pytest.MonkeyPatch) -> None:

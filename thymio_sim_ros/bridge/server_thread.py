@@ -134,7 +134,9 @@ class ServerThread:
         self._server = BridgeServer(board, sink, settings)
         self.publish: Callable[[int, int, bytes], None] = self._server.publish
         """Send a message of a channel to its subscribers: channel ID, time in ns, payload; from any thread."""
-        self._loop = asyncio.SelectorEventLoop()  # the default of Windows cannot wait for a socket of another thread
+        # Not the default loop of Windows: it has no `add_reader` and `add_writer`, and its socket stays the wakeup
+        # descriptor of signals when a thread other than the main thread, which made the loop, closes it.
+        self._loop = asyncio.SelectorEventLoop()
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="foxglove-server", daemon=True)
         self._is_closed = False

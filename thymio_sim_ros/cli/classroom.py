@@ -24,6 +24,7 @@ from thymio_sim_ros.cli.output import print_text
 from thymio_sim_ros.cli.ros_graph import check_ros
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.end_signals import END_SIGNALS
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.names.domain import describe_range
@@ -63,7 +64,8 @@ def run(argv: Sequence[str]) -> int:
         except OSError as error:
             raise UsageError(f"{error.filename}: {error.strerror}; expected a file that can be written") from error
         _check_ports(options, places)
-        asyncio.run(_serve(options, folder, places, is_kept=given.folder is not None))
+        with asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as runner:  # as `ServerThread`
+            runner.run(_serve(options, folder, places, is_kept=given.folder is not None))
     return 0
 
 
@@ -90,8 +92,9 @@ async def _serve(options: SuiteOptions, folder: ClassFolder, places: Sequence[Pl
     ]
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, stop.set)
+    # Not `loop.add_signal_handler`, which Windows does not have: handlers run when the loop wakes there, twice a second
+    for number in END_SIGNALS:
+        signal.signal(number, lambda _number, _frame: loop.call_soon_threadsafe(stop.set))
     print_text(_banner(options, folder, places, is_kept=is_kept))
     if page is None:
         print_text(resources.PAGE_BUILD_HINT)

@@ -35,6 +35,11 @@ FAILED = 1
 WRITE_S = 5.0
 """Time between two tables while submissions are graded."""
 
+_NO_SANDBOX = (
+    "grading needs the sandboxes of Linux (on Windows: WSL 2); here, pytest runs the tests on one submission, in the "
+    "folder with both"
+)
+
 EXAMPLE = """\
 SUBMISSIONS is a folder or zip with a folder, file or zip for each pupil, also as exported by Moodle or Canvas.
 FILE is a pytest file, or a TOML file that names tests, hidden tests, expected files and limits
@@ -52,6 +57,8 @@ example:
 def run(argv: Sequence[str]) -> int:
     """Grade a class; return the exit code. Raises UsageError for input that cannot be used."""
     options = _parser().parse_args(argv)
+    if not sys.platform.startswith("linux"):
+        raise UsageError(_NO_SANDBOX)
     check_dask("grade")
     try:
         assignment = assignments.load(options.assignment)

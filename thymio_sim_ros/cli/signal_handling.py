@@ -1,4 +1,4 @@
-"""Handling of SIGINT and SIGTERM during a headless run: the results so far are kept."""
+"""Handling of the signals that ask for an end during a headless run: the results so far are kept."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from collections.abc import Iterable, Iterator
 from types import FrameType, TracebackType
 from typing import Self, TypeVar
 
+from thymio_sim_ros.end_signals import END_SIGNALS
+
 __all__ = ["StopSignal"]
 
 Step = TypeVar("Step")
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-
 
 class StopSignal:
-    """Context in which the first SIGINT or SIGTERM only sets `number`; a second one has its previous effect."""
+    """Context in which the first of END_SIGNALS only sets `number`; a second one has its previous effect."""
 
     def __init__(self) -> None:
         self.number: int | None = None
@@ -29,7 +29,7 @@ class StopSignal:
                 return
 
     def __enter__(self) -> Self:
-        self._before = {number: signal.signal(number, self._note) for number in _SIGNALS}
+        self._before = {number: signal.signal(number, self._note) for number in END_SIGNALS}
         return self
 
     def __exit__(

@@ -81,7 +81,7 @@ class RobotLink:
     def __init__(self, target: Target, on_event: Callable[[LinkEvent], None], is_full: Callable[[], bool]) -> None:
         """`on_event` must be thread-safe; while `is_full` returns true, nothing is read."""
         self._target, self._on_event, self._is_full = target, on_event, is_full
-        self._loop = asyncio.new_event_loop()
+        self._loop = asyncio.SelectorEventLoop()  # as `ServerThread`
         self._stream: _Stream | None = None
         self._stop = asyncio.Event()
         self._is_closed = False

@@ -56,7 +56,7 @@ class NetworkThread:
         self._settings, self._warn, self._info = settings, warn, info
         self._tokens = tokens or Tokens()
         self._report = ReportLimiter(warn)
-        self._loop = asyncio.SelectorEventLoop()  # the default of Windows has no `add_reader` (`acceptor.py`)
+        self._loop = asyncio.SelectorEventLoop()  # as `ServerThread`
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="network-servers", daemon=True)
         self._is_closed = False

@@ -11,6 +11,7 @@ import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams, RuntimeParams, is_free
@@ -114,10 +115,11 @@ def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
         return
     sections, warnings = _sections(given)
     try:
-        with tempfile.NamedTemporaryFile("w", suffix=".yaml", encoding="utf-8") as file:
-            file.write(_yaml(sections))
-            file.flush()
-            yield [*before, "--params-file", file.name, *after], warnings
+        # Not a NamedTemporaryFile: on Windows a file that is open cannot be opened once more.
+        with tempfile.TemporaryDirectory(prefix="thymio-sim-") as folder:
+            file = Path(folder, "parameters.yaml")
+            file.write_text(_yaml(sections), encoding="utf-8")
+            yield [*before, "--params-file", str(file), *after], warnings
     except OSError as error:
         raise StartError(
             f"cannot write the parameters to a temporary file: {error.strerror} ({error.filename})"

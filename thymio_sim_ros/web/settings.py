@@ -10,6 +10,8 @@ __all__ = ["Settings", "max_connections"]
 
 _MAX_CONNECTIONS = 768
 """Enough for 180 browsers that open the page at the same time."""
+_MAX_CONNECTIONS_WITHOUT_LIMITS = 384
+"""On Windows, where an event loop waits for at most 512 sockets."""
 
 
 def max_connections() -> int:
@@ -17,7 +19,7 @@ def max_connections() -> int:
     try:
         from resource import RLIM_INFINITY, RLIMIT_NOFILE, getrlimit
     except ImportError:  # not on Windows, where a folder of this name may be found instead
-        return _MAX_CONNECTIONS
+        return _MAX_CONNECTIONS_WITHOUT_LIMITS
     soft, _ = getrlimit(RLIMIT_NOFILE)
     return _MAX_CONNECTIONS if soft == RLIM_INFINITY else max(8, min(_MAX_CONNECTIONS, soft * 3 // 4))
 

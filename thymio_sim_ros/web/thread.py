@@ -35,7 +35,7 @@ class PageThread:
         self._report = ReportLimiter(lambda text: warn(f"page: {text} (not repeated for a minute)"))
         self._listeners = listen(address, port)
         self.port = int(self._listeners[0].getsockname()[1])
-        self._loop = asyncio.new_event_loop()
+        self._loop = asyncio.SelectorEventLoop()  # as `ServerThread`
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="page-server", daemon=True)
         self._is_closed = False

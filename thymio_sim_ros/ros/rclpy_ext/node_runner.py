@@ -29,6 +29,7 @@ from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from thymio_sim_ros.end_signals import END_SIGNALS
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat.shm_cleanup import remove_abandoned
 from thymio_sim_ros.ros.rclpy_ext import log_directory
@@ -275,7 +276,7 @@ def run_main(
     executable: str = "",
     on_ready: Callable[[], None] = lambda: None,
 ) -> int:
-    """Run the nodes that `build` yields until SIGINT or SIGTERM and return the exit code.
+    """Run the nodes that `build` yields until one of END_SIGNALS and return the exit code.
 
     Each node gets its thread as soon as it is built; `on_ready` is called when all are running. A `StartError` or a
     non-ROS argument is reported in one line on stderr with exit code 2, and nothing is left running. `LEAVE_S` after a
@@ -304,8 +305,8 @@ def run_main(
 
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     gc.set_threshold(GC_THRESHOLD, *gc.get_threshold()[1:])
-    signal.signal(signal.SIGINT, end)
-    signal.signal(signal.SIGTERM, end)
+    for number in END_SIGNALS:
+        signal.signal(number, end)
     remove_abandoned()
     code = 1
     try:
@@ -322,8 +323,8 @@ def run_main(
         print(f"thymio-sim: {error}", file=sys.stderr)
         code = 2
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        for number in END_SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
         watchdog.start()
         watchdog.code = code
         runner.stop()
