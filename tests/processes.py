@@ -20,7 +20,7 @@ _STRIDE = 1009
 _taken = itertools.count()
 
 
-PYTHON = os.environ.get("THYMIO_TEST_PYTHON") or sys.executable
+PYTHON = os.path.abspath(os.environ.get("THYMIO_TEST_PYTHON") or sys.executable)
 """The Python that runs the programs: another one for tests/platforms."""
 SUITE = "thymio_sim_ros.cli.main"
 SERVERS = {"--aseba-port": "--no-aseba", "--tdm-port": "--no-tdm"}

@@ -29,6 +29,10 @@ def test_it_drives(thymio):
     thymio.run(1)
     assert thymio.speed > 0.02
 """
+NO_SANDBOX = (
+    "thymio-sim: grading needs the sandboxes of Linux",
+    "thymio-sim: this machine isolates no submissions (namespaces: ",
+)
 TEXT = "onevent prox\nmotor.left.target = 100 + prox.horizontal[2] / 100\nmotor.right.target = 100\n"
 
 
@@ -94,18 +98,13 @@ def test_the_tests_of_an_assignment_run_with_pytest(handed_in: Path) -> None:
     assert done.returncode == 0, done.stdout.decode(errors="replace")
 
 
-def test_grading_a_class_works_or_names_what_it_needs(handed_in: Path) -> None:
+def test_grading_a_class_works_or_one_line_says_why_not(handed_in: Path) -> None:
     done = run(PYTHON, "grade", "class", "--assignment", "test_it.py", folder=handed_in)
-    if "linux" in _platform():
-        assert done.returncode == 0, done.stderr
+    if done.returncode:
+        (line,) = done.stderr.splitlines()
+        assert line.startswith(NO_SANDBOX)
     else:
-        assert done.returncode == 2
-        assert done.stderr.startswith("thymio-sim: grading needs the sandboxes of Linux")
-        assert len(done.stderr.splitlines()) == 1
-
-
-def _platform() -> str:
-    return subprocess.check_output([PYTHON, "-c", "import sys; print(sys.platform)"], text=True, timeout=PROGRAM_S)
+        assert "Zoë" in (handed_in / "grades" / "marks.csv").read_text(encoding="utf-8")
 
 
 def _listens(port: int) -> bool:
