@@ -14,7 +14,7 @@ def in_english(monkeypatch):
 def file(tmp_path):
     def write(text, name="robot.aseba"):
         path = tmp_path / name
-        path.write_text(text, encoding="utf-8")
+        path.write_text(text, encoding="utf-8", newline="\n")
         return str(path)
 
     return write

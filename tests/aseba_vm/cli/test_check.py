@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import re
 
 import pytest
@@ -112,7 +113,8 @@ def test_every_file_of_a_folder_is_checked_in_order(folder, capsys):
     assert main(["check", str(folder), str(folder / "b.aesl")]) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    places = re.findall(rf"(?m)^{re.escape(str(folder))}/(\S+?):\d+:\d+: (warning)?", err)
+    places = re.findall(rf"(?m)^{re.escape(str(folder) + os.sep)}(\S+?):\d+:\d+: (warning)?", err)
+    places = [(name.replace(os.sep, "/"), kind) for name, kind in places]
     assert places == [("a.aseba", "warning"), ("b.aesl", ""), ("sub/broken.aesl", ""), ("sub/bytes.aesl", "")]
     assert err.endswith("5 files checked: 3 with errors, 1 with warnings\n")
 

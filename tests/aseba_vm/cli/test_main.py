@@ -8,6 +8,7 @@ import pytest
 from aseba_vm.cli.main import main
 from tests.aseba_vm.cli.samples import AESL
 from tests.patience import PATIENCE_S
+from tests.systems import posix
 
 
 def test_a_missing_file_is_code_2(tmp_path, capsys):
@@ -59,7 +60,8 @@ def test_a_folder_without_programs_is_code_2(tmp_path, capsys):
 
 def test_only_check_and_fmt_accept_a_folder(tmp_path, capsys):
     assert main(["compile", str(tmp_path)]) == 2
-    assert capsys.readouterr().err == f"aseba: {tmp_path}: Is a directory\n"
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"aseba: {tmp_path}: ")  # the text of the system
 
 
 def test_undecodable_bytes_are_reported_with_their_position(tmp_path, capsys):
@@ -95,6 +97,7 @@ def test_every_command_accepts_a_language(command, file, capsys):
     assert "mit dem Zeichen U+24 kann kein Wort beginnen" in capsys.readouterr().err
 
 
+@posix
 @pytest.mark.process
 @pytest.mark.parametrize(
     ("arguments", "closed", "code"),

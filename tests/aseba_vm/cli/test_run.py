@@ -10,6 +10,7 @@ import pytest
 from aseba_vm.cli.main import main
 from tests.aseba_vm.cli.samples import ASCII, ASEBA, GOOD
 from tests.patience import PATIENCE_S
+from tests.systems import posix
 
 
 def test_a_program_is_run(file, capsys):
@@ -80,9 +81,11 @@ def test_a_usage_error_is_one_line_and_code_2(arguments, message, file, capsys):
 @pytest.mark.process
 def test_letters_outside_the_encoding_of_the_output_are_escaped(file):
     command = [*ASEBA, "run", file("var höhe = 3")]
-    assert subprocess.run(command, stdout=subprocess.PIPE, check=True, env=ASCII).stdout == b"h\\xf6he 3\n"
+    printed = subprocess.run(command, stdout=subprocess.PIPE, check=True, env=ASCII).stdout
+    assert printed.splitlines() == [b"h\\xf6he 3"]
 
 
+@posix
 @pytest.mark.process
 def test_ctrl_c_ends_a_run_silently(file):
     command = [*ASEBA, "run", "--limit", "999999999999", "--trace", file("var n\nwhile n == 0 do n = 0 end")]
@@ -103,6 +106,7 @@ def test_definitions_of_the_command_line_obey_the_rules_of_files(arguments, file
     assert "expected" in capsys.readouterr().err
 
 
+@posix
 @pytest.mark.process
 def test_a_closed_output_pipe_causes_no_traceback(file):
     name = file("var a\nwhile a < 30000 do a++ end")

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests import disk
+from tests.systems import posix
 from thymio_sim_ros.device.firmware.settings import PARTS, Settings, SettingsError
 from thymio_sim_ros.sim.commands import MotorTargets
 
@@ -55,6 +56,7 @@ def test_nothing_is_stored_without_flash(tmp_path: Path) -> None:
     assert not file.exists()
 
 
+@posix
 def test_settings_outlive_a_disk_that_is_full(tmp_path: Path) -> None:
     file = tmp_path / "settings.json"
     settings = Settings(file)
