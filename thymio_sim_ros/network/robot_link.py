@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode
 from thymio_sim_ros.bridge.server_thread import detect_lost_peer
 from thymio_sim_ros.network.robot_target import SerialTarget, Target, TcpTarget
+from thymio_sim_ros.network.serial_stream import SerialStream
 
 __all__ = ["LinkEvent", "LinkLost", "LinkOpened", "LinkReceived", "RobotLink"]
 
@@ -57,11 +58,11 @@ LinkEvent = LinkOpened | LinkReceived | LinkLost
 
 @dataclass(frozen=True, slots=True)
 class _Stream:
-    """Both directions of a connection; a serial port has two transports."""
+    """Both directions of a connection, and the serial port at its end, if it is one."""
 
     reader: asyncio.StreamReader
     writer: asyncio.StreamWriter
-    incoming: asyncio.BaseTransport | None = None
+    port: SerialStream | None = None
 
     async def close(self, *, flush: bool) -> None:
         """Close the connection, after what waits to be sent if `flush`."""
@@ -71,8 +72,8 @@ class _Stream:
                     await self.writer.drain()
                 self.writer.close()
                 await self.writer.wait_closed()
-        if self.incoming is not None:
-            self.incoming.close()
+        if self.port is not None:
+            await asyncio.to_thread(self.port.join, CLOSE_S)
 
 
 class RobotLink:
@@ -201,18 +202,9 @@ async def _open(target: Target) -> _Stream:
 
 async def _open_serial(target: SerialTarget) -> _Stream:
     """Open a serial port. Raises OSError."""
-    import serial  # not needed without a serial port, and not on every machine
-
-    port = serial.Serial(target.device or _first_thymio(), BAUD_RATE, timeout=0, exclusive=True)
-    try:
-        read_end, write_end = (os.fdopen(os.dup(port.fileno()), mode, buffering=0) for mode in ("rb", "wb"))
-    finally:
-        port.close()
-    loop = asyncio.get_running_loop()
-    reader, unused = asyncio.StreamReader(), asyncio.StreamReader()
-    incoming, _ = await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), read_end)
-    outgoing, protocol = await loop.connect_write_pipe(lambda: asyncio.StreamReaderProtocol(unused), write_end)
-    return _Stream(reader, asyncio.StreamWriter(outgoing, protocol, None, loop), incoming)
+    port = SerialStream(target.device or _first_thymio(), BAUD_RATE)
+    reader, writer = await asyncio.open_connection(sock=port.socket)
+    return _Stream(reader, writer, port)
 
 
 def _first_thymio() -> str:
