@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from tests.patience import PATIENCE_S, until
 
@@ -25,6 +26,10 @@ PYTHON = os.path.abspath(os.environ.get("THYMIO_TEST_PYTHON") or sys.executable)
 SUITE = "thymio_sim_ros.cli.main"
 SERVERS = {"--aseba-port": "--no-aseba", "--tdm-port": "--no-tdm"}
 """Options that switch a server of the suite on, and those that switch it off: many tests run at the same time."""
+
+_GROUP: dict[str, Any] = (
+    {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP} if sys.platform == "win32" else {"start_new_session": True}
+)
 
 
 class Process:
@@ -47,12 +52,12 @@ class Process:
         self._log = folder / f"{module}.txt"
         main = f"import sys; from {module} import main; sys.exit(main())"
         command = [*prefix, PYTHON, "-c", main, *arguments]
-        with self._log.open("w") as output:
+        with self._log.open("w", encoding="utf-8") as output:
             self._popen = subprocess.Popen(
                 command,
                 stdout=output,
                 stderr=subprocess.STDOUT,
-                start_new_session=True,
+                **_GROUP,
                 restore_signals=True,
                 env={**os.environ, **(variables or {})},
             )
@@ -65,12 +70,19 @@ class Process:
     @property
     def output(self) -> str:
         """Everything printed so far."""
-        return self._log.read_text()
+        return self._log.read_text(encoding="utf-8", errors="replace")
 
     @property
     def is_running(self) -> bool:
         """Whether it has not ended yet."""
         return self._popen.poll() is None
+
+    def interrupt(self) -> None:
+        """Ask for the end as a terminal does: Ctrl-C, on Windows Ctrl-Break, which a group of processes can get."""
+        if sys.platform == "win32":
+            self._popen.send_signal(signal.CTRL_BREAK_EVENT)
+        else:
+            self.signal(signal.SIGINT)
 
     def signal(self, number: int) -> None:
         """Signal the whole group, as a terminal does."""
@@ -84,11 +96,14 @@ class Process:
         """End what still runs as a terminal would, so that it can tidy up; by force when it does not."""
         if not self.is_running:
             return
-        self.signal(signal.SIGINT)
+        self.interrupt()
         try:
             self.wait()
         except subprocess.TimeoutExpired:
-            self.signal(signal.SIGKILL)
+            if sys.platform == "win32":
+                self._popen.kill()
+            else:
+                self.signal(signal.SIGKILL)
             self._popen.wait()
 
 

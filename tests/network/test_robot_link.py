@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-import pty
 import queue
 import socket
 from collections.abc import Iterator
@@ -17,6 +16,7 @@ import pytest
 
 from aseba_vm.protocol import ListNodes, NodePresent, Run, UserMessage, encode
 from tests.patience import PATIENCE_S, until
+from tests.systems import posix
 from thymio_sim_ros.device.remote.remote_robot import RemoteRobot
 from thymio_sim_ros.network import robot_link
 from thymio_sim_ros.network.robot_link import LinkEvent, LinkLost, LinkOpened, LinkReceived, RobotLink
@@ -226,9 +226,10 @@ def test_the_last_message_arrives_when_the_link_is_closed(listener: socket.socke
             assert connection.recv(1) == b""
 
 
+@posix
 def test_a_serial_port_is_a_stream_too() -> None:
     pytest.importorskip("serial", reason="pyserial is not installed")
-    robot, port = pty.openpty()
+    robot, port = os.openpty()
     with linked(SerialTarget(os.ttyname(port))) as (link, events):
         assert events.next() == LinkOpened()
         link.send(encode(ListNodes(0, 9)))

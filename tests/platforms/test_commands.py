@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import signal
 import socket
 import subprocess
 import sys
@@ -73,7 +72,7 @@ def test_a_class_of_two_gets_its_pages_and_ends_with_ctrl_c(tmp_path: Path) -> N
         log = group.folder / "pupils" / "ben" / "suite.log"
         until(log.with_name("suite.log.1").exists, lambda: group.process.output)
         group.until("ben", lambda one: one["phase"] == "running" and one["programs"])
-        group.process.signal(signal.SIGINT)
+        group.process.interrupt()
         assert group.process.wait() == 0, group.process.output
         assert not any(_listens(port) for port in (group.port, group.port_of(1), group.port_of(2)))
     finally:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import signal
 import struct
 import subprocess
 import sys
@@ -139,7 +138,7 @@ def test_ctrl_c_ends_the_suite_with_code_0(tmp_path: Path) -> None:
         with running.client() as client:
             client.subscribe(1, "/odom")
             client.next(ms.MessageData)
-            running.process.signal(signal.SIGINT)
+            running.process.interrupt()
             assert running.process.wait() == 0, running.process.output
     finally:
         running.process.end()
