@@ -58,7 +58,7 @@ def poses(python: str, program: Path) -> Any:
 def test_a_program_of_each_language_drives_as_here_to_the_last_bit(tmp_path: Path, program: str) -> None:
     path = SAMPLES / program
     if not program:
-        path = tmp_path / "größer als 1 €.aesl"
+        path = tmp_path / "größer – 1 €.aesl"
         path.write_text(TEXT, encoding="utf-8")
     assert poses(PYTHON, path) == poses(sys.executable, path)
 
