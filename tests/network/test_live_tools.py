@@ -33,6 +33,9 @@ from tests.network.aseba_client import AsebaClient
 from tests.patience import PATIENCE_S, until
 from tests.processes import free_port, x_display
 from thymio_sim_ros.device.layout import target
+
+pytest.importorskip("rclpy", reason="needs ROS 2")
+
 from thymio_sim_ros.testing.ros.domain import reserved
 
 LOCALE = Path("/usr/lib/locale/C.utf8")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.systems import links
 from thymio_sim_ros.web import Content
 
 
@@ -87,6 +88,7 @@ def test_nothing_else_is_found(content, path):
     assert content.find(path) is None
 
 
+@links
 def test_only_links_of_colcon_lead_out_of_the_folder(tmp_path, folder):
     installed = tmp_path / "install" / "web_ui"
     (installed / "assets").mkdir(parents=True)

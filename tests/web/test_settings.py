@@ -7,6 +7,7 @@ import types
 
 import pytest
 
+from tests.systems import posix
 from thymio_sim_ros.web import settings
 
 
@@ -16,7 +17,7 @@ def test_without_limits_of_the_system_there_is_a_limit_of_connections(monkeypatc
     assert settings.max_connections() == 384
 
 
+@posix
 def test_of_few_open_files_the_connections_are_a_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    resource = pytest.importorskip("resource", reason="this system has no such limits")
-    monkeypatch.setattr(resource, "getrlimit", lambda _kind: (100, 100))
+    monkeypatch.setattr("resource.getrlimit", lambda _kind: (100, 100))
     assert settings.max_connections() == 75
