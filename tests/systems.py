@@ -8,5 +8,5 @@ import pytest
 
 __all__ = ["links", "posix"]
 
-posix = pytest.mark.skipif(sys.platform == "win32", reason="uses a shell, signals, limits or pipes of POSIX")
+posix = pytest.mark.skipif(sys.platform == "win32", reason="uses a shell, signals, limits, pipes or sockets of POSIX")
 links = pytest.mark.skipif(sys.platform == "win32", reason="users may not make links on Windows")

@@ -30,9 +30,12 @@ CHANNEL = ms.Channel(10, "/t", "cdr", "std_msgs/msg/String", "string data", "ros
 
 
 def run(scenario: Coroutine[Any, Any, T]) -> T:
-    """Run a scenario in its own thread and return its result: browser tests leave a running loop in this thread."""
-    with ThreadPoolExecutor(1) as pool:
-        return pool.submit(asyncio.run, scenario).result()
+    """Run a scenario in its own thread and return its result: browser tests leave a running loop in this thread.
+
+    The loop is that of the server on each system.
+    """
+    with ThreadPoolExecutor(1) as pool, asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as runner:
+        return pool.submit(runner.run, scenario).result()
 
 
 class Sink:

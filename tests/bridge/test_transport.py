@@ -13,6 +13,7 @@ import pytest
 
 from tests.bridge.peers import run
 from tests.patience import PATIENCE_S
+from tests.systems import posix
 from thymio_sim_ros.bridge.transport import SharedTransport
 
 CHUNK = struct.Struct("<II992x")
@@ -103,6 +104,7 @@ def test_messages_of_two_threads_arrive_whole_and_in_order() -> None:
     run(scenario())
 
 
+@posix
 def test_bytes_that_the_kernel_does_not_accept_are_buffered_and_counted() -> None:
     async def scenario() -> None:
         async with ends() as pair:
@@ -117,6 +119,7 @@ def test_bytes_that_the_kernel_does_not_accept_are_buffered_and_counted() -> Non
     run(scenario())
 
 
+@posix
 def test_try_write_fails_while_more_than_the_limit_is_buffered() -> None:
     async def scenario() -> None:
         async with ends() as pair:
