@@ -39,7 +39,8 @@ def main(prefix: Path) -> None:
     try:
         assert suite.stdout is not None
         lines = [suite.stdout.readline() for _ in range(3)]
-        assert str(port) in lines[0], lines
+        assert lines[0].startswith("ROS       ROS 2"), lines
+        assert str(port) in lines[1], lines
         page = urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=DEADLINE_S).read().decode()
         assert "<script" in page, page[:300]
         asyncio.run(asyncio.wait_for(see_it_move(foxglove_port), DEADLINE_S))
