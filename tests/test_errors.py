@@ -22,8 +22,9 @@ NEEDED = {
 MODULES = [
     module.name
     for module in pkgutil.walk_packages(thymio_sim_ros.__path__, "thymio_sim_ros.")
-    if not module.name.endswith("__main__")
+    if not module.name.endswith(("__main__", "cli.preload"))
 ]
+"""All that do nothing when they are imported."""
 
 
 def _exceptions(module: str) -> list[type[Exception]]:
