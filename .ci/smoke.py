@@ -38,9 +38,10 @@ def main(prefix: Path) -> None:
     suite = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True)
     try:
         assert suite.stdout is not None
-        lines = [suite.stdout.readline() for _ in range(3)]
-        assert lines[0].startswith("ROS       ROS 2"), lines
-        assert str(port) in lines[1], lines
+        graph = next(line for line in suite.stdout if line.startswith("ROS "))
+        assert "ROS 2" in graph, graph
+        address = next(line for line in suite.stdout if line.startswith("Page "))
+        assert str(port) in address, address
         page = urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=DEADLINE_S).read().decode()
         assert "<script" in page, page[:300]
         asyncio.run(asyncio.wait_for(see_it_move(foxglove_port), DEADLINE_S))

@@ -1,12 +1,16 @@
-"""Command line, environment and end of a pupil's suite, without starting one."""
+"""Command line, environment and end of a pupil's suite."""
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import textwrap
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tests.patience import PROGRAM_S
 from thymio_sim_ros.classroom.folder import Place
 from thymio_sim_ros.classroom.seat import FIRST_WAIT_S, MAX_WAIT_S, STEADY_S, next_wait_s
 from thymio_sim_ros.classroom.suite_process import SuiteOptions, command, environment, reason_of_end
@@ -66,3 +70,25 @@ def test_a_suite_that_ends_again_and_again_is_started_less_often() -> None:
     assert waits == sorted(waits)
     assert waits[-1] == MAX_WAIT_S
     assert next_wait_s(MAX_WAIT_S, STEADY_S) == FIRST_WAIT_S
+
+
+@pytest.mark.process
+@pytest.mark.skipif(sys.platform != "linux", reason="suites are forked on Linux only")
+def test_a_suite_that_cannot_be_forked_is_an_error_of_the_system(tmp_path: Path) -> None:
+    (tmp_path / "no_memory.py").write_text("raise MemoryError\n")
+    program = textwrap.dedent("""\
+        import asyncio
+        from pathlib import Path
+        from thymio_sim_ros.classroom.suite_process import SuiteProcess, preload
+
+        preload("no_memory")
+        try:
+            asyncio.run(SuiteProcess.start(["--headless"], {}, Path("suite.log")))
+        except OSError as error:
+            print(error)
+    """)
+    (tmp_path / "start.py").write_text(program)
+    done = subprocess.run(
+        [sys.executable, "start.py"], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=PROGRAM_S
+    )
+    assert "has ended" in done.stdout, done.stderr

@@ -129,3 +129,8 @@ def test_parameters_with_one_name_in_several_nodes_have_a_rule():
 
 def test_ranges_of_the_driver_are_an_option_of_the_suite():
     assert defaults(SuiteConfig(out_of_range="driver"))[SIMULATOR].out_of_range == "driver"
+
+
+def test_a_file_that_the_nodes_cannot_read_is_not_a_fault_of_the_parameters():
+    with pytest.raises(FileNotFoundError), assigned(["--ros-args", "-p", "seed:=3"]):
+        raise FileNotFoundError("another file")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import multiprocessing
 import os
 import runpy
@@ -152,7 +153,10 @@ class SuiteProcess:
 
     def _start(self) -> None:
         with _reaping:
-            self._process.start()
+            try:
+                self._process.start()
+            except EOFError as error:
+                raise OSError(errno.ECHILD, "the process from which suites are forked has ended") from error
 
     def _follow(self, loop: asyncio.AbstractEventLoop) -> None:
         wait([self._process.sentinel])

@@ -21,7 +21,7 @@ from thymio_sim_ros.classroom.suite_process import SuiteOptions, discovery, prel
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import check_files, path_argument
 from thymio_sim_ros.cli.output import print_text
-from thymio_sim_ros.cli.ros_graph import check_ros
+from thymio_sim_ros.cli.ros_graph import add_graph_options, check_ros
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.end_signals import END_SIGNALS
@@ -195,12 +195,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="PORT",
         help="port of the teacher's page; each pupil needs the next two (default: %(default)s)",
     )
-    parser.add_argument(
-        "--ros",
-        action="store_true",
-        help="each robot in a ROS domain of its own, for nodes of pupils; needs an installed ROS 2 and twice the "
-        "machine",
-    )
+    add_graph_options(parser, default="the embedded graph, which takes half of the machine")
     parser.add_argument(
         "--first-domain",
         type=_domain_argument,

@@ -1,6 +1,7 @@
 """What the suites of a class share in memory: imported once, in the process from which they are forked.
 
-Nothing here starts a thread, and nothing is compiled: threads do not survive a fork.
+Only for that process, because the import changes it: rclpy is that of the embedded graph from then on, and what exists
+is never collected. Nothing here starts a thread, and nothing is compiled: threads do not survive a fork.
 """
 
 import gc

@@ -15,9 +15,11 @@ __all__ = ["add_graph_options", "check_ros", "choose_graph", "describe_graph"]
 
 _ONLY_HERE = "no ROS node of another program sees the robots; page, Foxglove and other servers work as always"
 
+_WHERE_INSTALLED = "ROS 2 where it is installed, else the embedded graph"
 
-def add_graph_options(parser: argparse.ArgumentParser) -> None:
-    """Add `--portable` and `--ros`, which exclude each other."""
+
+def add_graph_options(parser: argparse.ArgumentParser, *, default: str = _WHERE_INSTALLED) -> None:
+    """Add `--portable` and `--ros`, which exclude each other; `default` says what holds without both."""
     graphs = parser.add_mutually_exclusive_group()
     graphs.add_argument(
         "--portable",
@@ -27,7 +29,7 @@ def add_graph_options(parser: argparse.ArgumentParser) -> None:
     graphs.add_argument(
         "--ros",
         action="store_true",
-        help="use an installed ROS 2 and nothing else (default: ROS 2 where it is installed, else the embedded graph)",
+        help=f"use an installed ROS 2 and nothing else (default: {default})",
     )
 
 

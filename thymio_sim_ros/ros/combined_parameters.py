@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -114,16 +114,17 @@ def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
         yield list(words), []
         return
     sections, warnings = _sections(given)
-    try:
-        # Not a NamedTemporaryFile: on Windows a file that is open cannot be opened once more.
-        with tempfile.TemporaryDirectory(prefix="thymio-sim-") as folder:
+    with ExitStack() as stack:
+        try:
+            # Not a NamedTemporaryFile: on Windows a file that is open cannot be opened once more.
+            folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="thymio-sim-"))
             file = Path(folder, "parameters.yaml")
             file.write_text(_yaml(sections), encoding="utf-8")
-            yield [*before, "--params-file", str(file), *after], warnings
-    except OSError as error:
-        raise StartError(
-            f"cannot write the parameters to a temporary file: {error.strerror} ({error.filename})"
-        ) from error
+        except OSError as error:
+            raise StartError(
+                f"cannot write the parameters to a temporary file: {error.strerror} ({error.filename})"
+            ) from error
+        yield [*before, "--params-file", str(file), *after], warnings
 
 
 def _split(words: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
