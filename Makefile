@@ -101,9 +101,10 @@ ros2: $(VENV)/.ready-run  ## add the command `ros2` to an environment without a 
 	        $(foreach part,ros2cli $(ROS2_VERBS),'$(part) @ $(ROS2CLI)$(hash)subdirectory=$(part)'); \
 	fi
 
-web-test: $(VENV)/.created  ## run the tests of the page's modules
+web-test: $(VENV)/.created  ## run the tests of the page's modules, and check their types
 	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)
 	@$(PYTHON) web_ui/build.py --script test
+	@$(PYTHON) web_ui/build.py --script check
 
 web: $(VENV)/.created  ## build the web page if its sources changed
 	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)

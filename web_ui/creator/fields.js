@@ -24,7 +24,7 @@ let serial = 0;
  *
  * @param {Setting} setting
  * @param {string} key
- * @param {HTMLElement} input
+ * @param {HTMLInputElement | HTMLSelectElement} input
  * @param {string} [unit]
  */
 function labeled({ labels, kind = "", commit }, key, input, unit = "") {
