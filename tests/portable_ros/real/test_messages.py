@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import array
 import importlib
+import importlib.util
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,7 +23,8 @@ from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 from thymio_sim_ros.ros.foxglove.schemas import share_folders
 
 NOT_IN_WHEELS = {"tf2_msgs"}
-PACKAGES = sorted(definitions.PACKAGES - NOT_IN_WHEELS)
+OPTIONAL = {one for one in ("test_msgs",) if importlib.util.find_spec(one) is None}
+PACKAGES = sorted(definitions.PACKAGES - NOT_IN_WHEELS - OPTIONAL)
 
 
 def _messages() -> Iterator[str]:

@@ -15,8 +15,10 @@ from typing import Any, cast
 from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys.store import TIDMAP
 
 from thymio_sim_ros.portable_ros.messages.definitions import SERVICE_PARTS, FieldType, Shape, definition, is_service
+from thymio_sim_ros.portable_ros.messages.field_values import WideText
 from thymio_sim_ros.portable_ros.messages.message_class import EMPTY_FIELD, Message, message_type
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 
@@ -24,6 +26,11 @@ __all__ = ["deserialize", "serialize", "type_hash"]
 
 _CDR = get_typestore(Stores.EMPTY)
 _HASHES = get_typestore(Stores.EMPTY)
+_WIDE_TEXT = "embedded/msg/WideText"
+"""The message that stands for a wstring: rosbags does not serialize texts of this type."""
+_CDR.fielddefs[_WIDE_TEXT] = cast(Any, ([], [("units", (Nodetype.SEQUENCE, ((Nodetype.BASE, ("uint32", 0)), 0)))]))
+_CDR.types[_WIDE_TEXT] = cast(Any, WideText)
+TIDMAP.setdefault("wstring", 18)  # as in type_description_interfaces/msg/FieldType
 _EMPTY = (EMPTY_FIELD, (Nodetype.BASE, ("uint8", 0)))
 _ENCAPSULATION = 4
 """Bytes before the content."""
@@ -97,7 +104,9 @@ def _describe(name: str) -> None:
 def _node(of: FieldType, *, is_wire: bool = False) -> Any:
     """The type of a field as rosbags has it. rosidl has `char` as another name of `uint8`."""
     inner: tuple[Any, Any]
-    if of.is_primitive:
+    if of.base == "wstring" and is_wire:
+        inner = Nodetype.NAME, _WIDE_TEXT
+    elif of.is_primitive:
         inner = Nodetype.BASE, (PRIMITIVES[of.base].wire if is_wire or of.base == "char" else of.base, of.text_bound)
     else:
         inner = Nodetype.NAME, of.base

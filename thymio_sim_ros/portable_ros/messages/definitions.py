@@ -158,7 +158,9 @@ def _field(package: str, line: str) -> Field:
     if found["array"]:
         shape = Shape.ARRAY if found["size"] and not found["bounded"] else Shape.SEQUENCE
     of = FieldType(_full(package, base), shape, int(found["size"] or 0), int(found["text_bound"] or 0))
-    return Field(name, of, _value(base, default[0]) if default else None)
+    if not default:
+        return Field(name, of)
+    return Field(name, of, _value(base, default[0]) if shape is Shape.SCALAR else _values(base, default[0]))
 
 
 def _full(package: str, base: str) -> str:
@@ -171,9 +173,14 @@ def _full(package: str, base: str) -> str:
     return f"{owner or package}/msg/{name}"
 
 
+def _values(base: str, text: str) -> tuple[Any, ...]:
+    """The default of an array or a sequence, such as `[1, 2]`."""
+    return tuple(_value(base, one) for one in re.findall(r"\"[^\"]*\"|'[^']*'|[^\[\],\s]+", text))
+
+
 def _value(base: str, text: str) -> Any:
     """A constant or a default, as the value that the Python class has."""
-    if base == "string":
+    if base in ("string", "wstring"):
         return ast.literal_eval(text) if text[:1] in ("'", '"') else text
     if base == "bool":
         return text.lower() in ("true", "1")

@@ -12,9 +12,24 @@ import numpy as np
 from thymio_sim_ros.portable_ros.messages.definitions import Field, Shape
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES, Primitive
 
-__all__ = ["FieldValues", "values_of"]
+__all__ = ["FieldValues", "WideText", "values_of"]
 
 Convert = Callable[[Any], Any]
+
+
+@dataclass(frozen=True, slots=True)
+class WideText:
+    """A text of UTF-16 as Fast CDR has it: each unit in four bytes, without a zero at the end."""
+
+    units: Any
+
+    @classmethod
+    def of(cls, text: str) -> WideText:
+        """The units of a text. Raises UnicodeEncodeError for a text that UTF-16 does not have."""
+        return cls(np.frombuffer(text.encode("utf-16-le"), np.uint16).astype(np.uint32))
+
+    def __str__(self) -> str:
+        return str(self.units.astype(np.uint16).tobytes(), "utf-16-le")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,23 +61,32 @@ def values_of(field: Field, class_of: Callable[[str], type]) -> FieldValues:
         default = primitive.default if field.default is None else field.default
         if primitive.python is bytes:
             return FieldValues(lambda: default, to_wire=lambda value: value[0], from_wire=lambda value: bytes((value,)))
+        if of.base == "wstring":
+            return FieldValues(lambda: default, to_wire=WideText.of, from_wire=str)
         return FieldValues(lambda: default)
-    if primitive is not None and primitive.code:
-        return _of_numbers(primitive, of.size if of.shape is Shape.ARRAY else None)
-    if primitive is not None and primitive.python in (bool, bytes):
-        return _of_flags(primitive, of.size if of.shape is Shape.ARRAY else 0)
     count = of.size if of.shape is Shape.ARRAY else 0
     if primitive is None:
         return FieldValues(lambda: [class_of(of.base)() for _ in range(count)])
-    return FieldValues(lambda: [primitive.default] * count)
-
-
-def _of_numbers(primitive: Primitive, size: int | None) -> FieldValues:
-    """The values of an array of `size` numbers, None for a sequence."""
-    code, dtype = primitive.code, np.dtype(primitive.dtype)
-    if size is not None:
+    values = (primitive.default,) * count if field.default is None else tuple(field.default)
+    if primitive.code:
+        return _of_numbers(primitive, values, is_array=of.shape is Shape.ARRAY)
+    if primitive.python in (bool, bytes):
+        return _of_flags(primitive, values)
+    if of.base == "wstring":
         return FieldValues(
-            lambda: np.zeros(size, dtype),
+            lambda: list(values),
+            to_wire=lambda texts: list(map(WideText.of, texts)),
+            from_wire=lambda texts: list(map(str, texts)),
+        )
+    return FieldValues(lambda: list(values))
+
+
+def _of_numbers(primitive: Primitive, default: tuple[Any, ...], *, is_array: bool) -> FieldValues:
+    """The values of an array or a sequence of numbers."""
+    code, dtype = primitive.code, np.dtype(primitive.dtype)
+    if is_array:
+        return FieldValues(
+            lambda: np.array(default, dtype),
             kept=lambda value: np.array(value, dtype),
             to_wire=lambda value: np.ascontiguousarray(value, dtype),
             from_wire=lambda value: value.copy(),
@@ -75,7 +99,7 @@ def _of_numbers(primitive: Primitive, size: int | None) -> FieldValues:
         return array.array(code, value.tobytes())
 
     return FieldValues(
-        lambda: array.array(code),
+        lambda: array.array(code, default),
         kept=to_array,
         given=to_array,
         to_wire=lambda value: np.asarray(value, dtype),
@@ -83,16 +107,16 @@ def _of_numbers(primitive: Primitive, size: int | None) -> FieldValues:
     )
 
 
-def _of_flags(primitive: Primitive, size: int) -> FieldValues:
+def _of_flags(primitive: Primitive, default: tuple[Any, ...]) -> FieldValues:
     """The values of several booleans or octets, which are lists."""
     if primitive.python is bool:
         return FieldValues(
-            lambda: [False] * size,
+            lambda: list(default),
             to_wire=lambda value: np.asarray(value, np.bool_),
             from_wire=lambda value: value.tolist(),
         )
     return FieldValues(
-        lambda: [b"\0"] * size,
+        lambda: list(default),
         to_wire=lambda value: np.frombuffer(b"".join(value), np.uint8) if len(value) else np.empty(0, np.uint8),
         from_wire=lambda value: [bytes((one,)) for one in value.tolist()],
     )

@@ -29,9 +29,11 @@ from thymio_sim_ros.portable_ros.rosidl_parser.definition import (
     BasicType,
     BoundedSequence,
     BoundedString,
+    BoundedWString,
     NamespacedType,
     UnboundedSequence,
     UnboundedString,
+    UnboundedWString,
 )
 
 __all__ = ["EMPTY_FIELD", "Member", "Message", "Service", "message_type", "service_type"]
@@ -195,6 +197,8 @@ def _nestable(of: FieldType) -> AbstractNestableType:
         return NamespacedType([package, form], short)
     if of.base == "string":
         return BoundedString(of.text_bound) if of.text_bound else UnboundedString()
+    if of.base == "wstring":
+        return BoundedWString(of.text_bound) if of.text_bound else UnboundedWString()
     return BasicType(PRIMITIVES[of.base].idl)
 
 
@@ -210,7 +214,7 @@ def _slot_type(of: FieldType) -> AbstractType:
 def _idl(of: FieldType) -> str:
     """The name of a type in IDL, as `get_fields_and_field_types` has it."""
     if of.is_primitive:
-        inner = f"string<{of.text_bound}>" if of.text_bound else PRIMITIVES[of.base].idl
+        inner = f"{of.base}<{of.text_bound}>" if of.text_bound else PRIMITIVES[of.base].idl
     else:
         package, _, short = of.base.split("/")
         inner = f"{package}/{short}"

@@ -58,5 +58,6 @@ PRIMITIVES = {
     "float32": Primitive("float", float, "float32", "f", "float32"),
     "float64": Primitive("double", float, "float64", "d", "float64"),
     "string": Primitive("string", str, "string"),
+    "wstring": Primitive("wstring", str, "wstring"),
 }
-"""By their names in definitions. Texts of 16-bit characters are not among them: no package here has any."""
+"""By their names in definitions."""

@@ -5,14 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from thymio_sim_ros.portable_ros.messages.message_class import is_message_type, is_service_type
+from thymio_sim_ros.portable_ros.rclpy.exceptions import NoTypeSupportImportedException
 
 __all__ = ["check_for_type_support", "check_is_valid_msg_type", "check_is_valid_srv_type"]
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
-    """Raise AttributeError for a class that is neither a message nor a service."""
+    """Raise AttributeError for a class that is neither a message nor a service.
+
+    Raises NoTypeSupportImportedException for those of an installed ROS, which this graph cannot serialize.
+    """
     if is_message_type(msg_or_srv_type) or is_service_type(msg_or_srv_type):
         return
+    if hasattr(type(msg_or_srv_type), "_TYPE_SUPPORT"):
+        raise NoTypeSupportImportedException
     raise AttributeError(
         f"type object '{type(msg_or_srv_type).__name__}' has no attribute '_TYPE_SUPPORT' This might be a ROS 1 message"
         " type but it should be a ROS 2 message type. Make sure to source your ROS 2 workspace after your ROS 1"

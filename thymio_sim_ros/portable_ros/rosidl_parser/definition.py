@@ -11,13 +11,16 @@ __all__ = [
     "AbstractSequence",
     "AbstractString",
     "AbstractType",
+    "AbstractWString",
     "Array",
     "BasicType",
     "BoundedSequence",
     "BoundedString",
+    "BoundedWString",
     "NamespacedType",
     "UnboundedSequence",
     "UnboundedString",
+    "UnboundedWString",
 ]
 
 
@@ -73,6 +76,26 @@ class BoundedString(AbstractString):
 
 @dataclass(slots=True)
 class UnboundedString(AbstractString):
+    """A text of any length."""
+
+
+class AbstractWString(AbstractGenericString):
+    """A text in UTF-16."""
+
+
+@dataclass(slots=True)
+class BoundedWString(AbstractWString):
+    """A text of limited length."""
+
+    maximum_size: int
+
+    def has_maximum_size(self) -> bool:
+        """Whether the length is limited."""
+        return True
+
+
+@dataclass(slots=True)
+class UnboundedWString(AbstractWString):
     """A text of any length."""
 
 

@@ -1,0 +1,50 @@
+"""Fields that only the messages for tests have: defaults of several values, and texts of UTF-16."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.messages.message_class import message_type
+from thymio_sim_ros.portable_ros.rclpy.exceptions import NoTypeSupportImportedException
+from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type
+
+WStrings = message_type("test_msgs/msg/WStrings")
+
+
+def test_arrays_and_sequences_have_their_defaults_each_message_its_own() -> None:
+    for name in ("Arrays", "BoundedSequences", "UnboundedSequences"):
+        kind = message_type(f"test_msgs/msg/{name}")
+        one, other = kind(), kind()
+        assert list(one.bool_values_default) == [False, True, False]
+        assert list(one.byte_values_default) == [b"\0", b"\1", b"\xff"]
+        assert list(one.int16_values_default) == [0, 32767, -32768]
+        assert list(one.float64_values_default) == [3.1415, 0.0, -3.1415]
+        assert list(one.string_values_default) == ["", "max value", "min value"]
+        one.int16_values_default[0] = 5
+        assert other.int16_values_default[0] == 0
+
+
+def test_a_wide_text_has_four_bytes_for_each_unit() -> None:
+    message = WStrings(wstring_value="a\U0001f600b")
+    data = cdr.serialize(message)
+    # Measured with Fast DDS.
+    assert data.hex().startswith("0001000004000000610000003dd8000000de000062000000")
+    message.unbounded_sequence_of_wstrings = ["", "ハロー"]
+    assert cdr.deserialize(cdr.serialize(message), WStrings) == message
+
+
+def test_a_text_that_utf_16_does_not_have_is_refused() -> None:
+    with pytest.raises(TypeError, match="surrogates not allowed"):
+        cdr.serialize(WStrings(wstring_value="\udcc3"))
+
+
+def test_a_class_of_an_installed_ros_has_no_type_support_here() -> None:
+    class Metaclass(type):
+        _TYPE_SUPPORT = None
+
+    class Foreign(metaclass=Metaclass):
+        pass
+
+    with pytest.raises(NoTypeSupportImportedException):
+        check_is_valid_msg_type(Foreign)
