@@ -7,7 +7,7 @@ import sys
 import threading
 from contextlib import suppress
 
-__all__ = ["LEVELS", "effective_level", "level_of", "number", "print_line", "set_level"]
+__all__ = ["LEVELS", "clear", "effective_level", "level_of", "number", "print_line", "set_level"]
 
 LEVELS = {"UNSET": 0, "DEBUG": 10, "INFO": 20, "WARN": 30, "ERROR": 40, "FATAL": 50}
 _NAMES = {level: name for name, level in LEVELS.items()}
@@ -32,6 +32,12 @@ def set_level(name: str, level: int) -> None:
     _levels[name] = level
 
 
+def clear() -> None:
+    """Forget all levels that were set."""
+    _levels.clear()
+    _levels[""] = LEVELS["INFO"]
+
+
 def level_of(name: str) -> int:
     """The level that was set for a log, 0 if none was."""
     return _levels.get(name, 0)
@@ -39,12 +45,11 @@ def level_of(name: str) -> int:
 
 def effective_level(name: str) -> int:
     """The level of a log: its own or that of the nearest log above it."""
-    while True:
+    while name:
         if level := _levels.get(name):
             return level
-        if not name:
-            return LEVELS["INFO"]
         name = name.rpartition(".")[0]
+    return _levels[""]
 
 
 def print_line(name: str, level: int, message: str, time_ns: int, place: tuple[str, str, int]) -> None:

@@ -11,20 +11,40 @@ from thymio_sim_ros.portable_ros.rclpy.impl.rcutils_logger import RcutilsLogger
 
 __all__ = [
     "LoggingSeverity",
+    "clear_config",
     "get_logger",
     "get_logger_effective_level",
     "get_logger_level",
     "get_logging_directory",
     "get_logging_severity_from_string",
+    "initialize",
     "set_logger_level",
+    "shutdown",
 ]
+
+_root_logger = RcutilsLogger()
 
 
 def get_logger(name: str) -> RcutilsLogger:
     """The log of a name. Raises ValueError for an empty one."""
     if not name:
         raise ValueError("Logger name must not be empty.")
-    return RcutilsLogger(name)
+    return _root_logger.get_child(name)
+
+
+def initialize() -> None:
+    """Need nothing: logs work from the start."""
+
+
+def shutdown() -> None:
+    """Forget all levels that were set."""
+    log_levels.clear()
+
+
+def clear_config() -> None:
+    """Forget all levels that were set."""
+    shutdown()
+    initialize()
 
 
 def set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:

@@ -5,20 +5,32 @@ from __future__ import annotations
 import inspect
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from thymio_sim_ros.portable_ros.graph import log_levels
-from thymio_sim_ros.portable_ros.rclpy.clock import Clock
+from thymio_sim_ros.portable_ros.rclpy.impl.log_filters import LogFilter, check_options, filters_of
 from thymio_sim_ros.portable_ros.rclpy.impl.logging_severity import LoggingSeverity
-from thymio_sim_ros.portable_ros.rclpy.time import Time
 
 __all__ = ["RcutilsLogger"]
 
 Sink = Callable[[str, int, str, int, tuple[str, str, int]], None]
 """Gets name, level, text, time in nanoseconds and place of a line."""
 
+CallPlace = tuple[tuple[str, str, int], int]
+"""File, function and line of a call, and its index in the bytecode: a line may have several."""
+
 _sinks: dict[str, Sink] = {}
-_OPTIONS = frozenset({"throttle_duration_sec", "throttle_time_source_type", "skip_first", "once"})
+
+
+@dataclass(frozen=True, slots=True)
+class _Call:
+    """A line of a program that logs: what its first call asked for."""
+
+    level: LoggingSeverity
+    name: str
+    options: dict[str, Any]
+    filters: tuple[LogFilter, ...]
 
 
 def add_sink(name: str, sink: Sink) -> None:
@@ -36,7 +48,7 @@ class RcutilsLogger:
 
     def __init__(self, name: str = "") -> None:
         self.name = name
-        self._calls: dict[tuple[str, int], dict[str, Any]] = {}
+        self._calls: dict[CallPlace, _Call] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
         """The log below this one. Raises ValueError for an empty name."""
@@ -57,7 +69,10 @@ class RcutilsLogger:
         return log_levels.effective_level(self.name) <= LoggingSeverity(severity)
 
     def log(self, message: str, severity: int, **kwargs: Any) -> bool:
-        """Log a line; return whether it was logged."""
+        """Log a line; return whether it was logged. Raises TypeError and ValueError for wrong or changed options."""
+        level = LoggingSeverity(severity)
+        if not self.is_enabled_for(level):
+            return False
         frame = inspect.currentframe()
         while frame is not None and frame.f_code.co_filename == __file__:
             frame = frame.f_back
@@ -65,10 +80,7 @@ class RcutilsLogger:
             return False
         place = frame.f_code.co_filename, frame.f_code.co_name, frame.f_lineno
         name = kwargs.pop("name", self.name)
-        level = LoggingSeverity(severity)
-        if not self._passes((place[0], frame.f_lasti), level, kwargs):
-            return False
-        if log_levels.effective_level(name) > level:
+        if not self._has_passed((place, frame.f_lasti), level, name, kwargs):
             return False
         now_ns = time.time_ns()
         log_levels.print_line(name, level, str(message), now_ns, place)
@@ -101,34 +113,29 @@ class RcutilsLogger:
         """Log a line of the level FATAL."""
         return self.log(message, LoggingSeverity.FATAL, **kwargs)
 
-    def _passes(self, call: tuple[str, int], level: LoggingSeverity, options: dict[str, Any]) -> bool:
-        """Whether the filters of a call let its line pass. Raises TypeError or ValueError for wrong options."""
-        if unknown := options.keys() - _OPTIONS:
-            name = min(unknown)
-            raise TypeError(f"parameter '{name}' is not one of the recognized logging options '{sorted(_OPTIONS)}'")
-        known = self._calls.setdefault(call, {"level": level})
-        if known["level"] != level:
+    def _has_passed(self, call: CallPlace, level: LoggingSeverity, name: str, options: dict[str, Any]) -> bool:
+        """Whether the filters of a call let its line pass.
+
+        Raises TypeError for wrong options, and ValueError if a call changes its level, name or options.
+        """
+        check_options(options)
+        known = self._calls.get(call)
+        if known is None:
+            known = self._calls[call] = _Call(level, name, options, filters_of(options))
+        if level != known.level:
             raise ValueError("Logger severity cannot be changed between calls.")
-        if not options:
-            return True
-        count = known["count"] = known.get("count", 0) + 1
-        if options.get("skip_first") and count == 1:
-            return False
-        if options.get("once"):
-            was_logged, known["logged"] = known.get("logged", False), True
-            return not was_logged
-        seconds = options.get("throttle_duration_sec")
-        return seconds is None or _is_due(known, seconds, options.get("throttle_time_source_type"))
+        if name != known.name:
+            raise ValueError("Logger name cannot be changed between calls.")
+        if _wanted(options) != _wanted(known.options):
+            raise ValueError("Requested logging filters cannot be changed between calls.")
+        if options != known.options:
+            raise ValueError("Logging filter parameters cannot be changed between calls.")
+        return all(one.passes() for one in known.filters)
 
 
-def _is_due(known: dict[str, Any], seconds: float, clock: Clock | None) -> bool:
-    """Whether so much time has passed since the last line of a call."""
-    now = known.setdefault("clock", clock or Clock()).now()
-    last: Time | None = known.get("last")
-    if last is not None and now >= last and (now - last).nanoseconds < seconds * 1e9:
-        return False
-    known["last"] = now
-    return True
+def _wanted(options: dict[str, Any]) -> set[str]:
+    """The options that ask for a filter."""
+    return {name for name, value in options.items() if value}
 
 
 def _above(name: str) -> list[str]:
