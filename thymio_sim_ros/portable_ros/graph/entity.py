@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import weakref
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -19,9 +20,15 @@ __all__ = ["Entity", "Handle"]
 class Handle:
     """Stands for the resources of an object; a `with` block raises InvalidHandle once they are released."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, owner: Entity | None = None) -> None:
         self.name = name
         self.is_valid = True
+        self.owner = (lambda: None) if owner is None else weakref.ref(owner)
+        self._release: Callable[[], None] = lambda: None
+
+    def on_release(self, release: Callable[[], None]) -> None:
+        """Call back once when the resources are released."""
+        self._release = release
 
     def __enter__(self) -> Handle:
         if not self.is_valid:
@@ -35,10 +42,12 @@ class Handle:
 
     def destroy_when_not_in_use(self) -> None:
         """Release the resources."""
+        if self.is_valid:
+            self._release()
         self.is_valid = False
 
 
-class Entity:
+class Entity(ABC):
     """Has events, which its executor takes one by one.
 
     Invariant: the executor of the node, if there is one, was notified once for each event that has not been taken.
@@ -46,7 +55,7 @@ class Entity:
 
     def __init__(self, callback_group: CallbackGroup | None) -> None:
         self.callback_group = callback_group
-        self._handle = Handle(type(self).__name__)
+        self._handle = Handle(type(self).__name__, self)
         self._node: Callable[[], Any] = lambda: None
 
     @property
@@ -79,10 +88,10 @@ class Entity:
         if executor is not None:
             executor.enqueue(self, count)
 
+    @abstractmethod
     def pending(self) -> int:
         """The number of events that have not been taken."""
-        raise NotImplementedError
 
+    @abstractmethod
     def take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         """Take an event: what to call with which arguments; None if there is none."""
-        raise NotImplementedError

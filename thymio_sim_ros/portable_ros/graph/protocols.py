@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind, QoSProfile
+
+
+class Sample(NamedTuple):
+    """A serialized message: when it was published, in ns of wall time, and which one of its publisher it is."""
+
+    data: bytes
+    source_timestamp: int
+    sequence_number: int
 
 
 class EndEvents(Protocol):
@@ -16,6 +24,9 @@ class EndEvents(Protocol):
 
     def report_incompatible(self, policy: QoSPolicyKind) -> None:
         """Report an endpoint that does not fit because of a policy."""
+
+    def report_other_type(self) -> None:
+        """Report an endpoint that has another type."""
 
 
 class SubscriptionEnd(Protocol):
@@ -42,7 +53,7 @@ class SubscriptionEnd(Protocol):
     def unmatch(self, publisher: PublisherEnd) -> None:
         """Expect no more messages of a publisher."""
 
-    def receive(self, data: bytes) -> None:
+    def receive(self, sample: Sample) -> None:
         """Queue a serialized message."""
 
 
@@ -104,11 +115,15 @@ class TimerEnd(Protocol):
         """Plan the next call."""
 
 
-class Tasks(Protocol):
+class TaskCreator(Protocol):
     """An executor, as futures need it."""
 
     def create_task(self, callback: Callable[..., Any], *args: Any) -> Any:
         """Run a callback."""
+
+
+class Scheduler(Protocol):
+    """The executor that has handed a task out."""
 
     def resume(self, task: Any) -> None:
         """Run a task again."""
@@ -121,8 +136,8 @@ class GraphNode(Protocol):
     """A node, as the graph knows it."""
 
     @property
-    def publishers(self) -> Iterable[PublisherEnd]:
-        """The publishers."""
+    def all_publishers(self) -> Iterable[PublisherEnd]:
+        """The publishers, with that of the log."""
 
     @property
     def subscriptions(self) -> Iterable[SubscriptionEnd]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import time
+import warnings
 import weakref
 from collections import deque
 from collections.abc import Callable, Coroutine
@@ -69,6 +70,7 @@ class Executor:
     def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
         """Run a callback or a coroutine when all that is ready now has been executed. Thread-safe."""
         task = Task(callback, args, kwargs, executor=self)
+        task.belong_to(self)
         self.resume(task)
         return task
 
@@ -108,8 +110,8 @@ class Executor:
             if node in self._nodes:
                 self._nodes.remove(node)
                 self._ready = deque(one for one in self._ready if isinstance(one, Task) or one.node is not node)
-                for timer in node.timers:
-                    timer.forget_announcement()
+                for one in node.polled():
+                    one.forget_announcement()
         self.wake()
 
     def get_nodes(self) -> list[Any]:
@@ -133,15 +135,14 @@ class Executor:
             self.spin_once()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Execute one callback, or none if none is ready in time."""
-        with suppress(TimeoutException):
-            self._execute(self._next(timeout_sec, lambda: False)[0])
+        """Execute one callback, or none if none is ready in time. Raises ExternalShutdownException."""
+        self._spin_once(timeout_sec, lambda: False)
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Execute callbacks until a future is done, or until the time is over."""
         future.add_done_callback(lambda _: self.wake())
         end_s = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
-        while self._context.ok() and not future.done() and not self._is_shutdown:
+        while self._context.ok() and future._pending() and not self._is_shutdown:
             left_s = None if end_s is None else end_s - time.monotonic()
             if left_s is not None and left_s < 0:
                 return
@@ -149,8 +150,12 @@ class Executor:
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Execute one callback unless a future is done before."""
-        with suppress(TimeoutException, ConditionReachedException):
-            self._execute(self._next(timeout_sec, future.done)[0])
+        future.add_done_callback(lambda _: self.wake())
+        self._spin_once(timeout_sec, lambda: not future._pending())
+
+    def _spin_once(self, timeout_sec: float | None, condition: Callable[[], bool]) -> None:
+        with suppress(TimeoutException, ConditionReachedException, ShutdownException):
+            self._execute(self._next(timeout_sec, condition)[0])
 
     def can_execute(self, entity: Entity) -> bool:
         """Whether a callback of an entity may start now."""
@@ -175,7 +180,7 @@ class Executor:
         """
         if timeout_sec == 0 and self._round is None:
             with self._changed:
-                self._announce_timers()
+                self._poll()
                 self._round = dict.fromkeys(self._ready)
         try:
             return self._next(timeout_sec, condition)
@@ -193,7 +198,7 @@ class Executor:
                     raise ExternalShutdownException
                 if condition():
                     raise ConditionReachedException
-                self._announce_timers()
+                self._poll()
                 found = self._pop()
                 if found is None:
                     left_s = None if end_s is None else end_s - time.monotonic()
@@ -216,14 +221,16 @@ class Executor:
             self._release(entity, entity)
             return None
         task = Task(taken[0], taken[1], executor=self)
+        task.belong_to(self)
         self._resumable[task] = entity
         self._running.append(task)
         self._running.remove(entity)
         return task
 
-    def _announce_timers(self) -> None:
+    def _poll(self) -> None:
+        """Enqueue the timers that are due and the waitables that are ready."""
         for node in self._nodes:
-            self._ready.extend(timer for timer in node.timers if timer.announce_if_due())
+            self._ready.extend(one for one in node.polled() if one.announce_if_due())
 
     def _due_s(self) -> float | None:
         """Seconds until a timer is due."""
@@ -252,7 +259,7 @@ class Executor:
         """Called when a task has run, until it was done or waits. Thread-safe."""
         if task not in self._running:
             return  # the program runs it on its own
-        self._release(task, self._resumable.pop(task, None) if task.done() else None)
+        self._release(task, None if task._pending() else self._resumable.pop(task, None))
 
     def _release(self, work: Entity | Task, entity: Entity | None) -> None:
         """End a turn, and the execution of an entity that is over; what had to wait for it may start."""
@@ -279,19 +286,31 @@ class MultiThreadedExecutor(Executor):
     """Executes callbacks on several threads."""
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        """`num_threads`: by default, the number of processors that the process may use."""
         super().__init__(context=context)
-        self._pool = ThreadPoolExecutor(num_threads or os.cpu_count() or 2)
+        if num_threads is None:
+            num_threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 2
+        if num_threads == 1:
+            warnings.warn(
+                "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
+                stacklevel=2,
+            )
+        self._executor = ThreadPoolExecutor(num_threads)
         self._futures: list[PoolFuture[None]] = []
-        weakref.finalize(self, self._pool.shutdown, wait=False)
+        weakref.finalize(self, self._executor.shutdown, wait=False)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Start no more callbacks and wait for those that run; return whether all have ended in time."""
         is_over = super().shutdown(timeout_sec)
-        self._pool.shutdown(wait=False)
+        self._executor.shutdown(wait=False)
         return is_over
 
+    def _spin_once(self, timeout_sec: float | None, condition: Callable[[], bool]) -> None:
+        with suppress(ExternalShutdownException):
+            super()._spin_once(timeout_sec, condition)
+
     def _execute(self, task: Task) -> None:
-        self._futures.append(self._pool.submit(super()._execute, task))
+        self._futures.append(self._executor.submit(super()._execute, task))
         ended = [one for one in self._futures if one.done()]
         self._futures = [one for one in self._futures if one not in ended]
         for one in ended:

@@ -3,50 +3,68 @@
 from __future__ import annotations
 
 import inspect
+import sys
 import threading
 import warnings
 import weakref
 from collections.abc import Callable, Coroutine, Generator, Mapping, Sequence
+from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.portable_ros.graph.protocols import Tasks
+    from thymio_sim_ros.portable_ros.graph.protocols import Scheduler, TaskCreator
 
 __all__ = ["Future", "Task"]
+
+
+class FutureState(Enum):
+    """The states of a future."""
+
+    PENDING = "PENDING"
+    CANCELLED = "CANCELLED"
+    FINISHED = "FINISHED"
 
 
 class Future:
     """A value, an exception or a cancellation that comes later."""
 
-    def __init__(self, *, executor: Tasks | None = None) -> None:
+    def __init__(self, *, executor: TaskCreator | None = None) -> None:
         self._lock = threading.RLock()
-        self._is_done = self._is_cancelled = self._is_raised = False
+        self._state = FutureState.PENDING
+        self._is_raised = False
         self._result: Any = None
         self._exception: BaseException | None = None
         self._callbacks: list[Callable[[Any], Any]] = []
-        self._executor: Callable[[], Tasks | None] = lambda: None
+        self._executor: Callable[[], TaskCreator | None] = lambda: None
         self._set_executor(executor)
 
     def __del__(self) -> None:
         if self._exception is not None and not self._is_raised:
-            warnings.warn(f"The following exception was never retrieved: {self._exception}", stacklevel=2)
+            print(f"The following exception was never retrieved: {self._exception}", file=sys.stderr)
 
     def __await__(self) -> Generator[Future, None, Any]:
-        while not self._is_done:
+        while self._pending():
             yield self
         return self.result()
 
     def cancel(self) -> None:
         """Cancel, unless it is done."""
-        self._end(is_cancelled=True)
+        with self._lock:
+            if not self._pending():
+                return
+        self._end(FutureState.CANCELLED)
 
     def cancelled(self) -> bool:
         """Whether it was cancelled."""
-        return self._is_cancelled
+        return self._state is FutureState.CANCELLED
 
     def done(self) -> bool:
-        """Whether there is a result, an exception or a cancellation."""
-        return self._is_done
+        """Whether there is a result or an exception, which there is not after a cancellation."""
+        return self._state is FutureState.FINISHED
+
+    def _pending(self) -> bool:
+        """Whether there is neither a result nor an exception nor a cancellation."""
+        return self._state is FutureState.PENDING
 
     def result(self) -> Any:
         """The result, None before it is there. Raises the exception if there is one."""
@@ -61,55 +79,56 @@ class Future:
 
     def set_result(self, result: Any) -> None:
         """Set the result and call all callbacks."""
-        self._end(result=result)
+        self._result = result
+        self._end(FutureState.FINISHED)
 
     def set_exception(self, exception: BaseException) -> None:
         """Set the exception and call all callbacks."""
-        self._is_raised = False
-        self._end(exception=exception)
+        self._exception, self._is_raised = exception, False
+        self._end(FutureState.FINISHED)
 
     def add_done_callback(self, callback: Callable[[Any], Any]) -> None:
-        """Call the callback with the future once it is done; at once if it is done already."""
+        """Call the callback with the future once it is done; at once, with its exceptions, if it is done already."""
         with self._lock:
-            if not self._is_done:
+            if self._pending():
                 self._callbacks.append(callback)
                 return
-        self._invoke(callback)
+            executor = self._executor()
+        if executor is not None:
+            executor.create_task(callback, self)
+        else:
+            callback(self)
 
     def remove_done_callback(self, callback: Callable[[Any], Any]) -> bool:
         """Remove a callback; return whether there was one."""
         with self._lock:
-            count = len(self._callbacks)
-            self._callbacks = [one for one in self._callbacks if one != callback]
-            return len(self._callbacks) < count
+            if callback not in self._callbacks:
+                return False
+            self._callbacks.remove(callback)
+            return True
 
     def _retrieved(self, exception: BaseException) -> BaseException:
         self._is_raised = True
         return exception
 
-    def _set_executor(self, executor: Tasks | None) -> None:
+    def _set_executor(self, executor: TaskCreator | None) -> None:
         """Set the executor that runs the callbacks."""
         self._executor = weakref.ref(executor) if executor is not None else lambda: None
 
-    def _end(self, *, result: Any = None, exception: BaseException | None = None, is_cancelled: bool = False) -> None:
+    def _end(self, state: FutureState) -> None:
+        """Enter a final state and call all callbacks."""
         with self._lock:
-            if is_cancelled and self._is_done:
-                return
-            self._result, self._exception = result, exception
-            self._is_done, self._is_cancelled = True, is_cancelled
+            self._state = state
+            executor = self._executor()
             callbacks, self._callbacks = self._callbacks, []
         for callback in callbacks:
-            self._invoke(callback)
-
-    def _invoke(self, callback: Callable[[Any], Any]) -> None:
-        executor = self._executor()
-        if executor is not None:
-            executor.create_task(callback, self)
-            return
-        try:
-            callback(self)
-        except Exception as error:
-            warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
+            if executor is not None:
+                executor.create_task(callback, self)
+                continue
+            try:
+                callback(self)
+            except Exception as error:
+                warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
 
 class Task(Future):
@@ -120,7 +139,7 @@ class Task(Future):
         handler: Callable[..., Any] | Coroutine[Any, Any, Any],
         args: Sequence[Any] | None = None,
         kwargs: Mapping[str, Any] | None = None,
-        executor: Tasks | None = None,
+        executor: TaskCreator | None = None,
     ) -> None:
         super().__init__(executor=executor)
         self._args, self._kwargs = tuple(args or ()), dict(kwargs or {})
@@ -129,15 +148,20 @@ class Task(Future):
         if inspect.iscoroutinefunction(handler):
             self._handler, self._is_coroutine = handler(*self._args, **self._kwargs), True
         self._is_executing = threading.Lock()
+        self._scheduler: Callable[[], Scheduler | None] = lambda: None
+
+    def belong_to(self, scheduler: Scheduler) -> None:
+        """Make an executor the one that runs the task whenever it can proceed."""
+        self._scheduler = weakref.ref(scheduler)
 
     def __call__(self) -> None:
         """Run the callback, or the coroutine to its next wait."""
         try:
-            if not self._is_done and self._is_executing.acquire(blocking=False):
+            if self._pending() and self._is_executing.acquire(blocking=False):
                 self._run()
         finally:
-            if (executor := self._executor()) is not None:
-                executor.turn_ended(self)
+            if (scheduler := self._scheduler()) is not None:
+                scheduler.turn_ended(self)
 
     def executing(self) -> bool:
         """Whether a thread runs the task now."""
@@ -145,7 +169,7 @@ class Task(Future):
 
     def cancel(self) -> None:
         """Cancel, unless it is done."""
-        if self._is_coroutine and not self._is_done and not self.executing():
+        if self._is_coroutine and self._pending() and not self.executing():
             self._handler.close()
         super().cancel()
 
@@ -166,10 +190,10 @@ class Task(Future):
         except StopIteration as end:
             self.set_result(end.value)
             return
-        executor = self._executor()
-        if executor is None:
+        scheduler = self._scheduler()
+        if scheduler is None:
             return
         if isinstance(awaited, Future):
-            awaited.add_done_callback(lambda _: executor.resume(self))
+            awaited.add_done_callback(lambda _: scheduler.resume(self))
         else:
-            executor.resume(self)
+            scheduler.resume(self)

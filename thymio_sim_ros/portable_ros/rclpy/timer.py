@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
-from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import InvalidHandle
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import InvalidHandle, RCLError
 from thymio_sim_ros.portable_ros.rclpy.exceptions import ROSInterruptException
 
 if TYPE_CHECKING:
@@ -31,6 +31,9 @@ class Timer(Entity):
         context: Context | None = None,
         autostart: bool = True,
     ) -> None:
+        """Raises RCLError for a negative period."""
+        if timer_period_ns < 0:
+            raise RCLError("failed to create timer: timer period must be non-negative")
         super().__init__(callback_group)
         self.callback = callback
         self._clock = clock
@@ -139,27 +142,44 @@ class Rate:
     """Sleeps until the next period of a timer. Another thread must spin the node."""
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
-        self.timer, self._context = timer, context
-        self._period = threading.Event()
-        self._is_destroyed = False
-        timer.callback = self._period.set
-        context.on_shutdown(self._period.set)
+        self._timer = timer
+        self._is_shutdown = self._is_destroyed = False
+        self._event = threading.Event()
+        self._lock = threading.Lock()
+        self._num_sleepers = 0
+        timer.callback = self._event.set
+        context.on_shutdown(self._on_shutdown)
 
     def destroy(self) -> None:
         """Wake all sleepers, and sleep no more."""
         self._is_destroyed = True
-        self.timer.cancel()
-        self._period.set()
+        self._event.set()
 
     def sleep(self) -> None:
-        """Wait for the next period. Raises ROSInterruptException after a shutdown of the context."""
+        """Wait for the next period, together with all threads that sleep.
+
+        Raises ROSInterruptException after a shutdown of the context, RuntimeError for a rate that is destroyed and
+        InvalidHandle if its timer is.
+        """
+        if self._is_shutdown:
+            raise ROSInterruptException
         if self._is_destroyed:
             raise RuntimeError("Rate cannot sleep because it has been destroyed")
-        if not self._context.ok():
+        if self._timer.is_destroyed:
+            self.destroy()
+            raise InvalidHandle("Rate cannot sleep because the timer has been destroyed")
+        with self._lock:
+            self._num_sleepers += 1
+        try:
+            self._event.wait()
+        finally:
+            with self._lock:
+                self._num_sleepers -= 1
+                if not self._num_sleepers:
+                    self._event.clear()
+        if self._is_shutdown:
             raise ROSInterruptException
-        self._period.clear()
-        self._period.wait()
-        if self._is_destroyed:
-            raise InvalidHandle("Rate has been destroyed")
-        if not self._context.ok():
-            raise ROSInterruptException
+
+    def _on_shutdown(self) -> None:
+        self._is_shutdown = True
+        self.destroy()
