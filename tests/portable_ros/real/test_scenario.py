@@ -1,4 +1,4 @@
-"""The scenario on rclpy and on the embedded graph: a process each, and the same results."""
+"""The scenarios on rclpy and on the embedded graph: a process each, and the same results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from tests.patience import PATIENCE_S
 
-SCENARIO = Path(__file__).parent.parent / "scenario.py"
+FOLDER = Path(__file__).parent.parent
 HERE = ("-m", "thymio_sim_ros.portable_ros")
 
 
@@ -25,8 +25,10 @@ def _seen(*words: str) -> dict[str, Any]:
 
 @pytest.mark.process
 @pytest.mark.parametrize("executor", ["single", "multi"])
-def test_the_embedded_graph_does_what_rclpy_does(executor: str, ros_domain: object) -> None:
-    real, ours = _seen(str(SCENARIO), executor), _seen(*HERE, str(SCENARIO), executor)
+@pytest.mark.parametrize("scenario", ["scenario.py", "scenario_details.py"])
+def test_the_embedded_graph_does_what_rclpy_does(scenario: str, executor: str, ros_domain: object) -> None:
+    file = str(FOLDER / scenario)
+    real, ours = _seen(file, executor), _seen(*HERE, file, executor)
     assert ours.keys() == real.keys()
     for part, found in real.items():
         assert ours[part] == found, part

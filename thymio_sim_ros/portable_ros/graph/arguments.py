@@ -11,7 +11,7 @@ from typing import Any
 from thymio_sim_ros.portable_ros.graph import log_levels
 from thymio_sim_ros.portable_ros.graph.names import expanded, namespace_problem, node_problem
 from thymio_sim_ros.portable_ros.graph.yaml_values import TextValueError, file_values, text_value
-from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError, UnknownROSArgsError
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLInvalidROSArgsError, UnknownROSArgsError
 
 __all__ = ["Arguments", "parse", "without_ros_arguments"]
 
@@ -99,21 +99,27 @@ def without_ros_arguments(words: Sequence[str]) -> list[str]:
 def parse(words: Sequence[str] | None) -> Arguments:
     """Parse arguments, None: those of the process.
 
-    Raises UnknownROSArgsError for words that are no arguments of ROS and RCLError for wrong values.
+    Raises UnknownROSArgsError for words that are no arguments of ROS, RCLInvalidROSArgsError for wrong values, and
+    UnicodeEncodeError for words that are no text.
     """
     made, unknown = Arguments(), []
-    remaining = _ros_words(sys.argv[1:] if words is None else words)
+    words = sys.argv[1:] if words is None else words
+    for word in words:
+        word.encode()
+    remaining = _ros_words(words)
     for word in remaining:
         switch = re.fullmatch(r"--(enable|disable)-(.*)", word)
         if word in _FLAGS:
             kind = _FLAGS[word]
             value = next(remaining, None)
             if value is None:
-                raise _error(f"Couldn't parse trailing {word} flag. No {_WHAT[kind]} found.")
+                raise RCLInvalidROSArgsError(f"Couldn't parse trailing {word} flag. No {_WHAT[kind]} found.")
             try:
                 _add(made, kind, value)
             except ValueError as error:
-                raise _error(f"Couldn't parse {_WHAT[kind]}: '{word} {value}'. Error: {error}") from error
+                raise RCLInvalidROSArgsError(
+                    f"Couldn't parse {_WHAT[kind]}: '{word} {value}'. Error: {error}"
+                ) from error
         elif switch and switch[2] in _SWITCHES:
             if switch[2] == "rosout-logs":
                 made.has_rosout = switch[1] == "enable"
@@ -124,10 +130,6 @@ def parse(words: Sequence[str] | None) -> Arguments:
     if unknown:
         raise UnknownROSArgsError(str(unknown))
     return made
-
-
-def _error(reason: str) -> RCLError:
-    return RCLError(f"failed to initialize rcl: {reason}")
 
 
 def _ros_words(words: Sequence[str]) -> Iterator[str]:

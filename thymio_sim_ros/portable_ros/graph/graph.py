@@ -130,8 +130,9 @@ class Graph:
 
     def _meet(self, publisher: PublisherEnd, subscription: SubscriptionEnd) -> None:
         """Match two endpoints of a topic, or report to both why they do not match."""
-        kinds = {publisher.msg_type.TYPE_NAME, subscription.msg_type.TYPE_NAME}
-        if len(kinds) > 1:
+        if publisher.msg_type.TYPE_NAME != subscription.msg_type.TYPE_NAME:
+            publisher.events.report_other_type()
+            subscription.events.report_other_type()
             return
         wrong = incompatibilities(publisher.qos_profile, subscription.qos_profile)
         if wrong:

@@ -98,7 +98,14 @@ def node_problem(name: str) -> NameProblem:
 
 
 def expanded(name: str, node: str, namespace: str) -> str:
-    """The full name of a topic or service of a node. Raises ValueError for an unknown substitution."""
+    """The full name of a topic or service of a node.
+
+    Raises TypeError for a name that is no text, and ValueError for one that is not valid.
+    """
+    if not isinstance(name, str):
+        raise TypeError(f"topic name: found {name!r}, expected a str")
+    if problem := topic_problem(name):
+        raise ValueError(f"topic name '{name}' is invalid: {problem[0]}")
     space = namespace if namespace.endswith("/") else f"{namespace}/"
     known = {"node": f"{space}{node}", "ns": namespace, "namespace": namespace}
 

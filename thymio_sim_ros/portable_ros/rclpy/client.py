@@ -7,11 +7,10 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
-from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
-from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
+from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
 from thymio_sim_ros.portable_ros.rclpy.task import Future
 
 if TYPE_CHECKING:
@@ -20,44 +19,24 @@ if TYPE_CHECKING:
 __all__ = ["Client"]
 
 
-class Client(Entity):
+class Client(ServiceEntity):
     """Calls a service."""
 
-    def __init__(
-        self,
-        context: Context,
-        srv_type: Any,
-        srv_name: str,
-        qos_profile: QoSProfile,
-        callback_group: CallbackGroup,
-        logger_name: str,
-    ) -> None:
-        super().__init__(callback_group)
-        self.context, self.srv_type, self.srv_name = context, srv_type, srv_name
-        self.qos_profile, self._logger_name = qos_profile, logger_name
-        self._requests: dict[int, Future] = {}
+    def __init__(self, context: Context, of: ServiceDescription) -> None:
+        super().__init__(of)
+        self.context = context
+        self._pending_requests: dict[int, Future] = {}
         self._numbers = itertools.count(1)
         self._lock = threading.Lock()
-        self._queue: EventQueue[tuple[int, bytes]] = EventQueue(qos_profile.kept)
-
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        return self.srv_name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the log of the node."""
-        return self._logger_name
+        self._queue: EventQueue[tuple[int, bytes]] = EventQueue(of.qos_profile.kept)
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
-        """Call and wait for the response; another thread must spin the node. Raises TimeoutError when time is over."""
+        """Call and wait for the response, None when time is over; another thread must spin the node."""
         answered = threading.Event()
         future = self.call_async(request)
         future.add_done_callback(lambda _: answered.set())
         if not answered.wait(None if timeout_sec is None or timeout_sec < 0 else timeout_sec):
             self.remove_pending_request(future)
-            raise TimeoutError
         return future.result()
 
     def call_async(self, request: Any) -> Future:
@@ -68,7 +47,7 @@ class Client(Entity):
             data, future = cdr.serialize(request), Future()
             with self._lock:
                 sequence = next(self._numbers)
-                self._requests[sequence] = future
+                self._pending_requests[sequence] = future
             future.add_done_callback(self.remove_pending_request)
             for service in self.context.graph.services_for(self):
                 service.receive(self, sequence, data)
@@ -77,22 +56,26 @@ class Client(Entity):
     def get_pending_request(self, sequence_number: int) -> Future:
         """The future of a request. Raises KeyError if it is answered."""
         with self._lock:
-            return self._requests[sequence_number]
+            return self._pending_requests[sequence_number]
 
     def remove_pending_request(self, future: Future) -> None:
         """Ignore the response to a request."""
         with self._lock:
-            self._requests = {number: one for number, one in self._requests.items() if one is not future}
+            self._pending_requests = {
+                number: one for number, one in self._pending_requests.items() if one is not future
+            }
 
     def service_is_ready(self) -> bool:
-        """Whether there is a service."""
+        """Whether there is a service. Raises RCLError after a shutdown of the context."""
         with self._handle:
+            if not self.context.ok():
+                raise RCLError("failed to check service availability: rcl node's context is invalid")
             return bool(self.context.graph.services_for(self))
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait for a service; return whether there is one."""
         self.context.on_shutdown(self.context.graph.notify)
-        self.context.graph.wait_for(lambda: self.service_is_ready() or not self.context.ok(), timeout_sec)
+        self.context.graph.wait_for(lambda: not self.context.ok() or self.service_is_ready(), timeout_sec)
         return self.service_is_ready()
 
     def receive(self, sequence: int, response: bytes) -> None:
@@ -110,8 +93,8 @@ class Client(Entity):
         if found is None:
             return None
         with self._lock:
-            future = self._requests.get(found[0])
-        if future is None or future.done():
+            future = self._pending_requests.get(found[0])
+        if future is None or not future._pending():
             return None
         future._set_executor(None if self.node is None else self.node.executor)
         return future.set_result, (cdr.deserialize(found[1], self.srv_type.Response),)

@@ -12,6 +12,7 @@ from typing import Any
 from thymio_sim_ros.portable_ros.graph.arguments import Arguments, parse
 from thymio_sim_ros.portable_ros.graph.entity import Handle
 from thymio_sim_ros.portable_ros.graph.graph import Graph, graph_of
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError
 from thymio_sim_ros.portable_ros.rclpy.exceptions import NotInitializedException
 
 __all__ = ["Context"]
@@ -52,7 +53,10 @@ class Context:
                 raise RuntimeError("Context.init() must only be called once")
             if domain_id is not None and domain_id < 0:
                 raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
-            self.arguments = parse(args)
+            try:
+                self.arguments = parse(args)
+            except RCLInvalidROSArgsError as error:
+                raise RCLError(f"failed to initialize rcl: {error}") from error
             self._graph = graph_of(_default_domain() if domain_id is None else domain_id)
             self._handle, self._is_ok = Handle("Context"), True
             if initialize_logging:

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from thymio_sim_ros.portable_ros.graph.entity import Handle
-from thymio_sim_ros.portable_ros.graph.graph import Graph, names_and_types
+from thymio_sim_ros.portable_ros.graph.graph import names_and_types
 from thymio_sim_ros.portable_ros.graph.names import expanded
 from thymio_sim_ros.portable_ros.messages import cdr
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError
+from thymio_sim_ros.portable_ros.rclpy.duration import Duration, Infinite
+from thymio_sim_ros.portable_ros.rclpy.node_base import NodeBase
+from thymio_sim_ros.portable_ros.rclpy.qos import LivelinessPolicy, QoSProfile
 from thymio_sim_ros.portable_ros.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from thymio_sim_ros.portable_ros.rclpy.type_hash import TypeHash
 from thymio_sim_ros.portable_ros.rclpy.validate_full_topic_name import validate_full_topic_name
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import GraphNode
-    from thymio_sim_ros.portable_ros.rclpy.context import Context
 
 __all__ = ["NodeGraph"]
 
@@ -26,23 +27,14 @@ _GID_BYTES = 16
 _HASH_PREFIX = "RIHS01_"
 
 
-class NodeGraph:
+class NodeGraph(NodeBase):
     """The part of a node that looks at the graph."""
-
-    _context: Context
-    _name: str
-    _namespace: str
-    _handle: Handle
-
-    @property
-    def _graph(self) -> Graph:
-        return self._context.graph
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """The topics that a node publishes. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.publishers))
+        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.all_publishers))
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -113,11 +105,17 @@ class NodeGraph:
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """The publishers of a topic."""
-        return self._infos(topic_name, "publishers", TopicEndpointTypeEnum.PUBLISHER)
+        return [
+            _info(node, end, TopicEndpointTypeEnum.PUBLISHER)
+            for node, end in self._owned_ends(topic_name, "publishers", lambda one: one.all_publishers)
+        ]
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """The subscriptions of a topic."""
-        return self._infos(topic_name, "subscriptions", TopicEndpointTypeEnum.SUBSCRIPTION)
+        return [
+            _info(node, end, TopicEndpointTypeEnum.SUBSCRIPTION)
+            for node, end in self._owned_ends(topic_name, "subscriptions", lambda one: one.subscriptions)
+        ]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait for a node; return whether there is one."""
@@ -145,12 +143,13 @@ class NodeGraph:
         with self._handle, self._graph.lock:
             return list(getattr(self._graph.topics[full], kind)) if full in self._graph.topics else []
 
-    def _infos(self, topic: str, kind: str, of: TopicEndpointTypeEnum) -> list[TopicEndpointInfo]:
-        return [_info(self._owner_of(end, kind), end, of) for end in self._ends(topic, kind)]
-
-    def _owner_of(self, end: Any, kind: str) -> GraphNode:
+    def _owned_ends(
+        self, topic: str, kind: str, ends_of: Callable[[GraphNode], Iterable[Any]]
+    ) -> list[tuple[GraphNode, Any]]:
+        """The endpoints of a topic, each with its node."""
         with self._graph.lock:
-            return next(one for one in self._graph.nodes if any(own is end for own in getattr(one, kind)))
+            owners = {id(end): node for node in self._graph.nodes for end in ends_of(node)}
+            return [(owners[id(end)], end) for end in self._ends(topic, kind)]
 
 
 def _topics(ends: Iterable[Any]) -> Iterable[tuple[str, Any]]:
@@ -171,5 +170,24 @@ def _info(node: GraphNode, end: Any, of: TopicEndpointTypeEnum) -> TopicEndpoint
         topic_type_hash=TypeHash(1, digest),
         endpoint_type=of,
         endpoint_gid=list(id(end).to_bytes(_GID_BYTES, "little")),
-        qos_profile=end.qos_profile,
+        qos_profile=_discovered(end.qos_profile, of),
+    )
+
+
+def _discovered(profile: QoSProfile, of: TopicEndpointTypeEnum) -> QoSProfile:
+    """A profile as others see it: with what takes the place of default values."""
+
+    def of_duration(duration: Duration) -> Duration:
+        return Infinite if duration == Duration() else duration
+
+    is_default = profile.liveliness == LivelinessPolicy.SYSTEM_DEFAULT
+    return QoSProfile(
+        history=profile.history,
+        depth=profile.depth,
+        reliability=profile.reliability,
+        durability=profile.durability,
+        lifespan=of_duration(profile.lifespan) if of is TopicEndpointTypeEnum.PUBLISHER else Infinite,
+        deadline=of_duration(profile.deadline),
+        liveliness=LivelinessPolicy.AUTOMATIC if is_default else profile.liveliness,
+        liveliness_lease_duration=of_duration(profile.liveliness_lease_duration),
     )

@@ -15,6 +15,7 @@ from thymio_sim_ros.portable_ros.rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
+from thymio_sim_ros.portable_ros.rclpy.node_base import NodeBase
 from thymio_sim_ros.portable_ros.rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from thymio_sim_ros.portable_ros.rclpy.parameter_declaration import declared
 from thymio_sim_ros.portable_ros.rclpy.parameter_ranges import range_problem, type_problem
@@ -30,7 +31,7 @@ _EMPTY_LIST = (
 )
 
 
-class NodeParameters:
+class NodeParameters(NodeBase):
     """The part of a node that has the parameters."""
 
     _parameter_event_publisher: Publisher
@@ -41,9 +42,9 @@ class NodeParameters:
         self._descriptors: dict[str, Any] = {}
         self._parameter_overrides = dict(overrides)
         self._allow_undeclared_parameters = is_undeclared_allowed
-        self._pre_set_callbacks: list[Callable[[list[Parameter]], list[Parameter]]] = []
-        self._on_set_callbacks: list[Callable[[list[Parameter]], Any]] = []
-        self._post_set_callbacks: list[Callable[[list[Parameter]], None]] = []
+        self._pre_set_parameters_callbacks: list[Callable[[list[Parameter]], list[Parameter]]] = []
+        self._on_set_parameters_callbacks: list[Callable[[list[Parameter]], Any]] = []
+        self._post_set_parameters_callbacks: list[Callable[[list[Parameter]], None]] = []
 
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
@@ -139,7 +140,12 @@ class NodeParameters:
 
     def list_parameters(self, prefixes: list[str], depth: int) -> Any:
         """The names of all parameters, or of those with a prefix; `depth` limits the dots, 0 stands for any number."""
-        _require_texts(prefixes)
+        if not isinstance(prefixes, list):
+            raise TypeError("The prefixes argument must be a list")
+        if not all(isinstance(one, str) for one in prefixes):
+            raise TypeError("All prefixes must be instances of type str")
+        if not isinstance(depth, int):
+            raise TypeError("The depth must be instance of type int")
         if depth < 0:
             raise ValueError("The depth must be greater than or equal to zero")
 
@@ -156,27 +162,27 @@ class NodeParameters:
 
     def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
         """Let a callback change the list before parameters are checked."""
-        self._pre_set_callbacks.insert(0, callback)
+        self._pre_set_parameters_callbacks.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
         """Let a callback accept or reject new values."""
-        self._on_set_callbacks.insert(0, callback)
+        self._on_set_parameters_callbacks.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
         """Call back after parameters were set."""
-        self._post_set_callbacks.insert(0, callback)
+        self._post_set_parameters_callbacks.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
         """Undo `add_pre_set_parameters_callback`. Raises ValueError for an unknown callback."""
-        self._pre_set_callbacks.remove(callback)
+        self._pre_set_parameters_callbacks.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
         """Undo `add_on_set_parameters_callback`. Raises ValueError for an unknown callback."""
-        self._on_set_callbacks.remove(callback)
+        self._on_set_parameters_callbacks.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
         """Undo `add_post_set_parameters_callback`. Raises ValueError for an unknown callback."""
-        self._post_set_callbacks.remove(callback)
+        self._post_set_parameters_callbacks.remove(callback)
 
     def describe_parameter(self, name: str) -> Any:
         """The descriptor of a parameter. Raises ParameterNotDeclaredException."""
@@ -211,8 +217,8 @@ class NodeParameters:
         return parameter.get_parameter_value()
 
     def _set_atomically(self, parameters: list[Parameter]) -> Any:
-        if self._pre_set_callbacks:
-            parameters = [one for callback in self._pre_set_callbacks for one in callback(parameters)]
+        if self._pre_set_parameters_callbacks:
+            parameters = [one for callback in self._pre_set_parameters_callbacks for one in callback(parameters)]
             if not parameters:
                 return ros_types.SetParametersResult(successful=False, reason=_EMPTY_LIST)
         if not all(isinstance(one, Parameter) for one in parameters):
@@ -243,7 +249,7 @@ class NodeParameters:
                 reason = f"Trying to set a read-only parameter: {parameter.name}."
             if reason:
                 return ros_types.SetParametersResult(successful=False, reason=reason)
-        for callback in list(self._on_set_callbacks):
+        for callback in list(self._on_set_parameters_callbacks):
             result = callback(parameters)
             if not isinstance(result, ros_types.SetParametersResult):
                 warnings.warn("Callback returned an invalid type, it should return SetParameterResult.", stacklevel=2)
@@ -257,7 +263,7 @@ class NodeParameters:
         rejection = self._rejection(parameters, descriptors)
         if rejection is not None:
             return rejection
-        event = ros_types.ParameterEvent(node=self.get_fully_qualified_name())  # type: ignore[attr-defined]  # of Node
+        event = ros_types.ParameterEvent(node=self.get_fully_qualified_name())
         for parameter in parameters:
             if descriptors is None and parameter.type_ is Parameter.Type.NOT_SET:
                 self._parameters.pop(parameter.name, None)
@@ -273,9 +279,9 @@ class NodeParameters:
                 dynamic = ros_types.ParameterDescriptor(dynamic_typing=True)
                 self._descriptors.setdefault(parameter.name, dynamic)
             self._parameters[parameter.name] = parameter
-        event.stamp = self.get_clock().now().to_msg()  # type: ignore[attr-defined]  # of Node
+        event.stamp = self.get_clock().now().to_msg()
         self._parameter_event_publisher.publish(event)
-        for callback in list(self._post_set_callbacks):
+        for callback in list(self._post_set_parameters_callbacks):
             callback(parameters)
         return ros_types.SetParametersResult(successful=True)
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
 from thymio_sim_ros.portable_ros.graph.entity import Handle
+from thymio_sim_ros.portable_ros.graph.protocols import Sample
 from thymio_sim_ros.portable_ros.messages import cdr
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
@@ -28,24 +30,29 @@ class Publisher:
         context: Context,
         msg_type: Any,
         topic: str,
+        topic_name: str,
         qos_profile: QoSProfile,
         events: EndpointEvents,
         logger_name: str,
     ) -> None:
+        """`topic` is the name that the program gave, `topic_name` the full one."""
         self._context = context
-        self.msg_type, self.qos_profile, self.events = msg_type, qos_profile, events
-        self._topic, self._logger_name = topic, logger_name
+        self.msg_type, self.topic, self.qos_profile = msg_type, topic, qos_profile
+        self.events, self.event_handlers = events, events.handlers
+        self._topic_name, self._logger_name = topic_name, logger_name
         self._handle = Handle("Publisher")
         self._lock = threading.RLock()
+        self._count = 0
         self.matched: tuple[SubscriptionEnd, ...] = ()
-        self._retained: deque[bytes] | None = None
+        self._retained: deque[Sample] | None = None
         if qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
             self._retained = deque(maxlen=qos_profile.kept)
 
     @property
     def topic_name(self) -> str:
         """The full name of the topic."""
-        return self._topic
+        with self._handle:
+            return self._topic_name
 
     @property
     def handle(self) -> Handle:
@@ -55,7 +62,8 @@ class Publisher:
     @property
     def logger_name(self) -> str:
         """The name of the log of the node."""
-        return self._logger_name
+        with self._handle:
+            return self._logger_name
 
     def publish(self, msg: Any) -> None:
         """Send a message, or the bytes of a serialized one. Raises TypeError for a message of another type."""
@@ -69,8 +77,7 @@ class Publisher:
                 raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
             if not self._context.ok():
                 raise RCLError("Failed to publish: publisher's context is invalid")
-            if data is not None:
-                self._send(data)
+            self._send(data)
 
     def get_subscription_count(self) -> int:
         """The number of matched subscriptions."""
@@ -86,6 +93,8 @@ class Publisher:
 
     def destroy(self) -> None:
         """Publish no more. Nodes have `destroy_publisher`."""
+        for handler in self.event_handlers:
+            handler.destroy()
         self._handle.destroy_when_not_in_use()
 
     def match(self, subscription: SubscriptionEnd) -> None:
@@ -94,8 +103,8 @@ class Publisher:
             self.matched = (*self.matched, subscription)
             subscription.add_match(self)
             if self._retained is not None and subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
-                for data in self._retained:
-                    subscription.receive(data)
+                for sample in self._retained:
+                    subscription.receive(sample)
         self.events.report_match(1)
         subscription.events.report_match(1)
 
@@ -105,9 +114,13 @@ class Publisher:
             self.matched = tuple(one for one in self.matched if one is not subscription)
         self.events.report_match(-1)
 
-    def _send(self, data: bytes) -> None:
+    def _send(self, data: bytes | None) -> None:
         with self._lock:
+            self._count += 1
+            if data is None:
+                return
+            sample = Sample(data, time.time_ns(), self._count)
             if self._retained is not None:
-                self._retained.append(data)
+                self._retained.append(sample)
             for subscription in self.matched:
-                subscription.receive(data)
+                subscription.receive(sample)

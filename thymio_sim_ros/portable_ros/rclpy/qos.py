@@ -4,31 +4,20 @@ from __future__ import annotations
 
 import warnings
 from enum import Enum, IntEnum
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar
 
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
-
-P = TypeVar("P", bound="QoSPolicyEnum")
-
-
-class QoSPolicyKind(IntEnum):
-    """A policy of a profile."""
-
-    INVALID = 1 << 0
-    DURABILITY = 1 << 1
-    DEADLINE = 1 << 2
-    LIVELINESS = 1 << 3
-    RELIABILITY = 1 << 4
-    HISTORY = 1 << 5
-    LIFESPAN = 1 << 6
-    DEPTH = 1 << 7
-    LIVELINESS_LEASE_DURATION = 1 << 8
-    AVOID_ROS_NAMESPACE_CONVENTIONS = 1 << 9
-
-
-def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
-    """The name of a policy."""
-    return QoSPolicyKind(policy_kind).name
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import DurabilityPolicy as DurabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import HistoryPolicy as HistoryPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import LivelinessPolicy as LivelinessPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSDurabilityPolicy as QoSDurabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSHistoryPolicy as QoSHistoryPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSLivelinessPolicy as QoSLivelinessPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSPolicyEnum as QoSPolicyEnum
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSPolicyKind as QoSPolicyKind
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSReliabilityPolicy as QoSReliabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import ReliabilityPolicy as ReliabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy.qos_policies import qos_policy_name_from_kind as qos_policy_name_from_kind
 
 
 class InvalidQoSProfileException(Exception):
@@ -38,74 +27,15 @@ class InvalidQoSProfileException(Exception):
         super().__init__("Invalid QoSProfile", *args)
 
 
-class QoSPolicyEnum(IntEnum):
-    """The values of a policy."""
-
-    @classmethod
-    def short_keys(cls) -> list[str]:
-        """The names of all values, in lower case."""
-        return [name.lower() for name in cls.__members__]
-
-    @classmethod
-    def get_from_short_key(cls: type[P], name: str) -> int:
-        """The number of the value of a name, in any case."""
-        return cls[name.upper()].value
-
-    @property
-    def short_key(self) -> str:
-        """The name of the value, in lower case."""
-        return self.name.lower()
-
-
-class HistoryPolicy(QoSPolicyEnum):
-    """Which messages wait."""
-
-    SYSTEM_DEFAULT = 0
-    KEEP_LAST = 1
-    KEEP_ALL = 2
-    UNKNOWN = 3
-
-
-class ReliabilityPolicy(QoSPolicyEnum):
-    """Whether lost messages are sent again."""
-
-    SYSTEM_DEFAULT = 0
-    RELIABLE = 1
-    BEST_EFFORT = 2
-    UNKNOWN = 3
-    BEST_AVAILABLE = 4
-
-
-class DurabilityPolicy(QoSPolicyEnum):
-    """Whether late subscriptions get earlier messages."""
-
-    SYSTEM_DEFAULT = 0
-    TRANSIENT_LOCAL = 1
-    VOLATILE = 2
-    UNKNOWN = 3
-    BEST_AVAILABLE = 4
-
-
-class LivelinessPolicy(QoSPolicyEnum):
-    """How a publisher shows that it lives."""
-
-    SYSTEM_DEFAULT = 0
-    AUTOMATIC = 1
-    MANUAL_BY_TOPIC = 3
-    UNKNOWN = 4
-    BEST_AVAILABLE = 5
-
-
-QoSHistoryPolicy = HistoryPolicy
-QoSReliabilityPolicy = ReliabilityPolicy
-QoSDurabilityPolicy = DurabilityPolicy
-QoSLivelinessPolicy = LivelinessPolicy
-
 _BEST_AVAILABLE_NS = 2**63 - 2
 DeadlineBestAvailable = Duration(nanoseconds=_BEST_AVAILABLE_NS)
 LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=_BEST_AVAILABLE_NS)
 
 _DEFAULT_DEPTH = 10
+_ZERO_DEPTH = (
+    "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. This will be interpreted as"
+    " SYSTEM_DEFAULT"
+)
 _POLICIES: dict[str, type[Any]] = {
     "history": HistoryPolicy,
     "depth": int,
@@ -141,12 +71,6 @@ class QoSProfile:
         history = kwargs.get("history", HistoryPolicy.KEEP_LAST)
         if history == HistoryPolicy.KEEP_LAST and "depth" not in kwargs:
             raise InvalidQoSProfileException("History set to KEEP_LAST without a depth setting.")
-        if history == HistoryPolicy.KEEP_LAST and kwargs["depth"] == 0:
-            warnings.warn(
-                "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. This will be interpreted as"
-                " SYSTEM_DEFAULT",
-                stacklevel=2,
-            )
         self.history = history
         self.depth = kwargs.get("depth", _DEFAULT_DEPTH)
         self.reliability = kwargs.get("reliability", ReliabilityPolicy.RELIABLE)
@@ -180,6 +104,8 @@ def _policy(name: str, kind: type[Any]) -> property:
         is_enum = issubclass(kind, IntEnum)
         if not isinstance(value, (kind, int) if is_enum else kind):
             raise AssertionError(f"{name}: found {value!r}, expected {kind.__name__}")
+        if name == "depth" and value == 0 and profile.history == HistoryPolicy.KEEP_LAST:
+            warnings.warn(_ZERO_DEPTH, stacklevel=2)
         object.__setattr__(profile, slot, kind(value) if is_enum else value)
 
     return property(lambda profile: getattr(profile, slot), assign, doc=f"The policy {name}.")

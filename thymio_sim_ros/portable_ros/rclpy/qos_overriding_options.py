@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from enum import IntEnum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
 from thymio_sim_ros.portable_ros.rclpy.exceptions import ParameterAlreadyDeclaredException
+from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind, QoSProfile
+from thymio_sim_ros.portable_ros.rclpy.subscription import Subscription
 
-__all__ = ["InvalidQosOverridesError", "QoSOverridingOptions"]
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.rclpy.node_parameters import NodeParameters
+
+__all__ = ["InvalidQosOverridesError", "QoSOverridingOptions", "QosCallbackResult", "QosCallbackType"]
+
+QosCallbackResult = ros_types.SetParametersResult
+QosCallbackType = Callable[[QoSProfile], Any]
 
 
 class InvalidQosOverridesError(Exception):
@@ -25,54 +33,77 @@ class QoSOverridingOptions:
         self,
         policy_kinds: Iterable[QoSPolicyKind],
         *,
-        callback: Callable[[QoSProfile], Any] | None = None,
+        callback: QosCallbackType | None = None,
         entity_id: str | None = None,
     ) -> None:
         """`callback` checks the profile, `entity_id` distinguishes endpoints of one topic."""
-        self.policy_kinds, self.callback, self.entity_id = tuple(policy_kinds), callback, entity_id
+        self._policy_kinds, self._callback, self._entity_id = policy_kinds, callback, entity_id
+
+    @property
+    def policy_kinds(self) -> Iterable[QoSPolicyKind]:
+        """The policies."""
+        return self._policy_kinds
+
+    @property
+    def callback(self) -> QosCallbackType | None:
+        """The check of the profile."""
+        return self._callback
+
+    @property
+    def entity_id(self) -> str | None:
+        """The part of the parameters' names that distinguishes endpoints of one topic."""
+        return self._entity_id
 
     @classmethod
     def with_default_policies(
-        cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
+        cls, *, callback: QosCallbackType | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
         """History, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
 
-def override(kind: str, node: Any, topic: str, profile: QoSProfile, options: QoSOverridingOptions) -> None:
+def _declare_qos_parameters(
+    entity_type: type[Publisher | Subscription],
+    node: NodeParameters,
+    topic_name: str,
+    qos: QoSProfile,
+    options: QoSOverridingOptions,
+) -> None:
     """Declare the parameters of an endpoint, and change the profile as they say.
 
-    `kind` is `publisher` or `subscription`. Raises RuntimeError for a wrong value and InvalidQosOverridesError.
+    Raises RuntimeError for a wrong value and InvalidQosOverridesError.
     """
+    kind = "publisher" if issubclass(entity_type, Publisher) else "subscription"
     suffix = "" if options.entity_id is None else f"_{options.entity_id}"
-    about = f"for {kind} `{topic}` with id `{options.entity_id}`"
+    about = f"for {kind} `{topic_name}` with id `{options.entity_id}`"
     for policy in options.policy_kinds:
         if kind == "subscription" and policy == QoSPolicyKind.LIFESPAN:
             continue
         field = policy.name.lower()
-        name = f"qos_overrides.{topic}.{kind}{suffix}.{field}"
+        name = f"qos_overrides.{topic_name}.{kind}{suffix}.{field}"
         descriptor = ros_types.ParameterDescriptor(description=f"{field} {about}", read_only=True)
-        present = getattr(profile, field)
         try:
-            value = node.declare_parameter(name, _plain(present), descriptor).value
+            value = node.declare_parameter(name, _get_qos_policy_parameter(qos, policy), descriptor).value
         except ParameterAlreadyDeclaredException:
             value = node.get_parameter(name).value
-        setattr(profile, field, _policy(field, value, present))
+        setattr(qos, field, _policy(field, value, getattr(qos, field)))
     if options.callback is not None:
-        result = options.callback(profile)
+        result = options.callback(qos)
         if not result.successful:
             raise InvalidQosOverridesError(f"Provided QoS overrides {about}, are not valid: {result.reason}")
 
 
-def _plain(value: Any) -> Any:
+def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> str | int | bool:
+    """The value of the parameter that stands for a policy. Raises ValueError for an unknown policy."""
+    value = getattr(qos, policy.name.lower())
     if isinstance(value, Duration):
         return value.nanoseconds
     if isinstance(value, IntEnum):
         if value.name == "UNKNOWN":
             raise ValueError("User provided QoS profile is invalid")
         return value.name.lower()
-    return value
+    return value  # type: ignore[no-any-return]  # a depth or a switch
 
 
 def _policy(field: str, value: Any, like: Any) -> Any:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
-from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
-from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
+from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd
@@ -17,32 +15,13 @@ if TYPE_CHECKING:
 __all__ = ["Service"]
 
 
-class Service(Entity):
+class Service(ServiceEntity):
     """Answers requests; each call gets a request of its own and an empty response."""
 
-    def __init__(
-        self,
-        srv_type: Any,
-        srv_name: str,
-        callback: Callable[..., Any],
-        callback_group: CallbackGroup,
-        qos_profile: QoSProfile,
-        logger_name: str,
-    ) -> None:
-        super().__init__(callback_group)
-        self.srv_type, self.srv_name, self.callback = srv_type, srv_name, callback
-        self.qos_profile, self._logger_name = qos_profile, logger_name
-        self._queue: EventQueue[tuple[ClientEnd, int, bytes]] = EventQueue(qos_profile.kept)
-
-    @property
-    def service_name(self) -> str:
-        """The full name."""
-        return self.srv_name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the log of the node."""
-        return self._logger_name
+    def __init__(self, of: ServiceDescription, callback: Callable[..., Any]) -> None:
+        super().__init__(of)
+        self.callback = callback
+        self._queue: EventQueue[tuple[ClientEnd, int, bytes]] = EventQueue(of.qos_profile.kept)
 
     def receive(self, client: ClientEnd, sequence: int, request: bytes) -> None:
         """Queue a serialized request of a client, which counts them."""

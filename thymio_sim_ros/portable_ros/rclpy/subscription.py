@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
@@ -14,7 +15,7 @@ from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
-    from thymio_sim_ros.portable_ros.graph.protocols import PublisherEnd
+    from thymio_sim_ros.portable_ros.graph.protocols import PublisherEnd, Sample
 
 __all__ = ["Subscription"]
 
@@ -22,10 +23,17 @@ __all__ = ["Subscription"]
 class Subscription(Entity):
     """Receives the messages of all matched publishers; each call gets a message of its own."""
 
+    class CallbackType(Enum):
+        """What a callback gets: a message, or a message and facts about it."""
+
+        MessageOnly = 0
+        WithMessageInfo = 1
+
     def __init__(
         self,
         msg_type: Any,
         topic: str,
+        topic_name: str,
         callback: Callable[..., Any],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
@@ -33,42 +41,59 @@ class Subscription(Entity):
         events: EndpointEvents,
         logger_name: str,
     ) -> None:
+        """`topic` is the name that the program gave, `topic_name` the full one."""
         super().__init__(callback_group)
-        self.msg_type, self.topic, self.raw = msg_type, topic, raw
-        self.qos_profile, self.events = qos_profile, events
-        self._logger_name = logger_name
+        self.msg_type, self.topic, self.qos_profile, self.raw = msg_type, topic, qos_profile, raw
+        self.events, self.event_handlers = events, events.handlers
+        self._topic_name, self._logger_name = topic_name, logger_name
         self.matched: tuple[PublisherEnd, ...] = ()
-        self._queue: EventQueue[bytes] = EventQueue(qos_profile.kept)
+        self._queue: EventQueue[Sample] = EventQueue(qos_profile.kept)
         self.callback = callback
 
     @property
     def topic_name(self) -> str:
         """The full name of the topic."""
-        return self.topic
+        with self._handle:
+            return self._topic_name
 
     @property
     def logger_name(self) -> str:
         """The name of the log of the node."""
-        return self._logger_name
+        with self._handle:
+            return self._logger_name
 
     @property
     def callback(self) -> Callable[..., Any]:
-        """What is called for each message."""
+        """What is called for each message. Raises RuntimeError for a function that takes neither one nor two values."""
         return self._callback
 
     @callback.setter
     def callback(self, value: Callable[..., Any]) -> None:
         self._callback = value
-        self._has_info = _accepts(value, 2) and not _accepts(value, 1)
+        if _accepts(value, 1):
+            self._callback_type = Subscription.CallbackType.MessageOnly
+        elif _accepts(value, 2):
+            self._callback_type = Subscription.CallbackType.WithMessageInfo
+        else:
+            raise RuntimeError(
+                "Subscription.__init__(): callback should be either be callable with one argument(to get only the"
+                " message) or two (to get message and message info)"
+            )
+
+    def destroy(self) -> None:
+        """Receive no more. Nodes have `destroy_subscription`."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        super().destroy()
 
     def get_publisher_count(self) -> int:
         """The number of matched publishers."""
         with self._handle:
             return len(self.matched)
 
-    def receive(self, data: bytes) -> None:
+    def receive(self, sample: Sample) -> None:
         """Queue a serialized message."""
-        if self._queue.put(data):
+        if self._queue.put(sample):
             self.notify()
 
     def add_match(self, publisher: PublisherEnd) -> None:
@@ -86,11 +111,19 @@ class Subscription(Entity):
 
     def take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         """Take a message."""
-        data = self._queue.get()
-        if data is None:
+        sample = self._queue.get()
+        if sample is None:
             return None
-        message = data if self.raw else cdr.deserialize(data, self.msg_type)
-        return self._callback, ((message, {}) if self._has_info else (message,))
+        message = sample.data if self.raw else cdr.deserialize(sample.data, self.msg_type)
+        if self._callback_type is Subscription.CallbackType.MessageOnly:
+            return self._callback, (message,)
+        info = {
+            "source_timestamp": sample.source_timestamp,
+            "received_timestamp": sample.source_timestamp,
+            "publication_sequence_number": sample.sequence_number,
+            "reception_sequence_number": None,
+        }
+        return self._callback, (message, info)
 
 
 def _accepts(callback: Callable[..., Any], count: int) -> bool:

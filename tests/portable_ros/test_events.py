@@ -1,0 +1,42 @@
+"""Events of endpoints that rclpy has between processes only."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.portable_ros.messages.message_class import message_type
+from thymio_sim_ros.portable_ros.rclpy.context import Context
+from thymio_sim_ros.portable_ros.rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
+from thymio_sim_ros.portable_ros.rclpy.node import Node
+
+String, Int32 = message_type("std_msgs/msg/String"), message_type("std_msgs/msg/Int32")
+
+
+def test_endpoints_of_another_type_are_reported_to_both_and_logged_by_default(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    context = Context()
+    context.init([])
+    node = Node("types", context=context, enable_rosout=False, start_parameter_services=False)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    found: list[tuple[str, int]] = []
+    publisher = node.create_publisher(
+        String,
+        "topic",
+        1,
+        event_callbacks=PublisherEventCallbacks(
+            incompatible_type=lambda info: found.append(("publisher", info.total_count))
+        ),
+    )
+    noted = SubscriptionEventCallbacks(incompatible_type=lambda info: found.append(("subscription", info.total_count)))
+    node.create_subscription(Int32, "topic", print, 1, event_callbacks=noted)
+    node.create_subscription(Int32, "topic", print, 1)
+    for _ in range(6):
+        executor.spin_once(timeout_sec=0)
+    assert sorted(found) == [("publisher", 1), ("publisher", 2), ("subscription", 1)]
+    assert publisher.get_subscription_count() == 0
+    assert "Incompatible type on topic '/topic', no messages will be sent to it." in capsys.readouterr().err
+    node.destroy_node()
+    context.shutdown()

@@ -1,0 +1,316 @@
+"""What a node has: publishers, subscriptions, clients, services, timers, guard conditions, waitables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
+
+from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
+from thymio_sim_ros.portable_ros.graph.entity import Entity
+from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from thymio_sim_ros.portable_ros.rclpy.client import Client
+from thymio_sim_ros.portable_ros.rclpy.clock import Clock
+from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
+from thymio_sim_ros.portable_ros.rclpy.event_handler import (
+    EventHandler,
+    PublisherEventCallbacks,
+    SubscriptionEventCallbacks,
+)
+from thymio_sim_ros.portable_ros.rclpy.guard_condition import GuardCondition
+from thymio_sim_ros.portable_ros.rclpy.node_parameters import NodeParameters
+from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
+from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_services_default
+from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
+from thymio_sim_ros.portable_ros.rclpy.service import Service
+from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription
+from thymio_sim_ros.portable_ros.rclpy.subscription import Subscription
+from thymio_sim_ros.portable_ros.rclpy.timer import Rate, Timer
+from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from thymio_sim_ros.portable_ros.rclpy.waitable import Waitable, WaitableEntity
+
+__all__ = ["NodeEndpoints"]
+
+E = TypeVar("E", bound=Entity)
+
+_KINDS = (Publisher, Subscription, Client, Service, Timer, GuardCondition, EventHandler, WaitableEntity)
+
+
+class NodeEndpoints(NodeParameters):
+    """The part of a node that makes and removes what executors execute."""
+
+    def _prepare_endpoints(self) -> None:
+        """Start without endpoints."""
+        self._endpoints: dict[type, list[Any]] = {kind: [] for kind in _KINDS}
+        self._log_publisher: Publisher | None = None
+        self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
+
+    @property
+    def publishers(self) -> Iterator[Publisher]:
+        """The publishers, without that of the log."""
+        yield from (one for one in self.all_publishers if one is not self._log_publisher)
+
+    @property
+    def all_publishers(self) -> Iterator[Publisher]:
+        """The publishers, with that of the log."""
+        yield from list(self._endpoints[Publisher])
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription]:
+        """The subscriptions."""
+        yield from list(self._endpoints[Subscription])
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        """The clients."""
+        yield from list(self._endpoints[Client])
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """The services."""
+        yield from list(self._endpoints[Service])
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        """The timers."""
+        yield from list(self._endpoints[Timer])
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        """The guard conditions."""
+        yield from list(self._endpoints[GuardCondition])
+
+    @property
+    def waitables(self) -> Iterator[Waitable | EventHandler]:
+        """The handlers of events, and the waitables that were added."""
+        yield from [*self._endpoints[EventHandler], *(one.waitable for one in self._endpoints[WaitableEntity])]
+
+    def polled(self) -> list[Timer | WaitableEntity]:
+        """What becomes ready without a notification of the executor."""
+        return [*self._endpoints[Timer], *self._endpoints[WaitableEntity]]
+
+    def entities(self) -> list[Entity]:
+        """All that an executor executes."""
+        kinds = (kind for kind in self._endpoints if kind is not Publisher)
+        return [entity for kind in kinds for entity in self._endpoints[kind]]
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """The group of all callbacks for which no other is given."""
+        return self._default_callback_group
+
+    def create_publisher(
+        self,
+        msg_type: Any,
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        publisher_class: type[Publisher] = Publisher,
+    ) -> Publisher:
+        """Publish a topic. Raises InvalidTopicNameException and errors about type and profile."""
+        profile = _profile(qos_profile)
+        full = self._endpoint_name(topic)
+        _declare_qos_parameters(Publisher, self, full, profile, qos_overriding_options or QoSOverridingOptions(()))
+        check_is_valid_msg_type(msg_type)
+        self._require_context("create publisher")
+        group = callback_group or self._default_callback_group
+        events = self._events(event_callbacks or PublisherEventCallbacks(), group, full)
+        made = publisher_class(self._context, msg_type, topic, full, profile, events, self._logger.name)
+        self._endpoints[Publisher].append(made)
+        made.handle.on_release(lambda: self._graph.remove_publisher(made))
+        self._graph.add_publisher(made)
+        return made
+
+    def create_subscription(
+        self,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+    ) -> Subscription:
+        """Subscribe to a topic; `raw`: the callback gets bytes. Raises as `create_publisher`."""
+        profile = _profile(qos_profile)
+        full = self._endpoint_name(topic)
+        _declare_qos_parameters(Subscription, self, full, profile, qos_overriding_options or QoSOverridingOptions(()))
+        check_is_valid_msg_type(msg_type)
+        self._require_context("create subscription")
+        group = callback_group or self._default_callback_group
+        events = self._events(event_callbacks or SubscriptionEventCallbacks(), group, full)
+        made = Subscription(msg_type, topic, full, callback, group, profile, raw, events, self._logger.name)
+        self._owned(made)
+        made.handle.on_release(lambda: self._graph.remove_subscription(made))
+        self._graph.add_subscription(made)
+        return made
+
+    def create_client(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Client:
+        """Call a service. Raises InvalidServiceNameException and errors about the type."""
+        made = self._owned(
+            Client(self._context, self._service_description(srv_type, srv_name, qos_profile, callback_group))
+        )
+        made.handle.on_release(lambda: self._graph.remove_client(made))
+        self._graph.add_client(made)
+        return made
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[..., Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service:
+        """Offer a service. Raises InvalidServiceNameException and errors about the type."""
+        made = self._owned(
+            Service(self._service_description(srv_type, srv_name, qos_profile, callback_group), callback)
+        )
+        made.handle.on_release(lambda: self._graph.remove_service(made))
+        self._graph.add_service(made)
+        return made
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
+        autostart: bool = True,
+    ) -> Timer:
+        """Call back periodically, by the clock of the node unless another one is given."""
+        period_ns = int(float(timer_period_sec) * S_TO_NS)
+        group = callback_group or self._default_callback_group
+        made = self._owned(
+            Timer(callback, group, period_ns, clock or self._clock, context=self._context, autostart=autostart)
+        )
+        self._wake_executor()
+        return made
+
+    def create_guard_condition(
+        self, callback: Callable[..., Any], callback_group: CallbackGroup | None = None
+    ) -> GuardCondition:
+        """Call back when it is triggered."""
+        return self._owned(GuardCondition(callback, callback_group or self._default_callback_group, self._context))
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Sleep so many times per second. Raises ValueError for a frequency that is not positive."""
+        if frequency <= 0:
+            raise ValueError("frequency must be > 0")
+        # A group of its own: other callbacks do not delay it.
+        timer = self.create_timer(1.0 / frequency, None, MutuallyExclusiveCallbackGroup(), clock)
+        return Rate(timer, context=self._context)
+
+    def add_waitable(self, waitable: Waitable) -> None:
+        """Execute a waitable from now on."""
+        self._owned(WaitableEntity(waitable))
+        self._wake_executor()
+
+    def remove_waitable(self, waitable: Waitable) -> None:
+        """Undo `add_waitable`. Raises ValueError for an unknown waitable."""
+        found = [one for one in self._endpoints[WaitableEntity] if one.waitable is waitable]
+        if not found:
+            raise ValueError(f"found {waitable!r}, expected a waitable of the node")
+        self._remove(found[0])
+
+    def destroy_publisher(self, publisher: Publisher) -> bool:
+        """Remove a publisher; return whether it was one of this node."""
+        return self._remove_with_events(publisher)
+
+    def destroy_subscription(self, subscription: Subscription) -> bool:
+        """Remove a subscription; return whether it was one of this node."""
+        return self._remove_with_events(subscription)
+
+    def destroy_client(self, client: Client) -> bool:
+        """Remove a client; return whether it was one of this node."""
+        return self._remove(client)
+
+    def destroy_service(self, service: Service) -> bool:
+        """Remove a service; return whether it was one of this node."""
+        return self._remove(service)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        """Remove a timer; return whether it was one of this node."""
+        return self._remove(timer)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        """Remove a guard condition; return whether it was one of this node."""
+        return self._remove(guard)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """Remove a rate and its timer."""
+        is_own = self.destroy_timer(rate._timer)
+        rate.destroy()
+        return is_own
+
+    def _service_description(
+        self, srv_type: Any, srv_name: str, qos_profile: QoSProfile, callback_group: CallbackGroup | None
+    ) -> ServiceDescription:
+        """What a client or a service is made of. Raises InvalidServiceNameException and errors about the type."""
+        check_is_valid_srv_type(srv_type)
+        full = self._endpoint_name(srv_name, is_service=True)
+        group = callback_group or self._default_callback_group
+        return ServiceDescription(srv_type, srv_name, full, qos_profile, group, self._logger.name)
+
+    def _events(
+        self, callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks, group: CallbackGroup, topic: str
+    ) -> EndpointEvents:
+        """The events of a new endpoint, whose handlers belong to this node."""
+        handlers = callbacks.handlers(group, topic, self._logger.warning)
+        for handler in handlers.values():
+            self._owned(handler)
+        return EndpointEvents(handlers)
+
+    def _wake_executor(self) -> None:
+        if self.executor is not None:
+            self.executor.wake()
+
+    def _owned(self, entity: E) -> E:
+        """Make this node the owner of a new entity."""
+        entity.belong_to(self)
+        if entity.callback_group is not None:
+            entity.callback_group.add_entity(entity)
+        self._endpoints[_kind(entity)].append(entity)
+        return entity
+
+    def _remove_with_events(self, end: Publisher | Subscription) -> bool:
+        is_own = self._remove(end)
+        for handler in end.event_handlers:
+            self._remove(handler)
+        return is_own
+
+    def _remove(self, end: Any) -> bool:
+        kind = _kind(end)
+        ends = self._endpoints[kind]
+        if not any(one is end for one in ends):
+            return False
+        self._endpoints[kind] = [one for one in ends if one is not end]
+        end.destroy()
+        return True
+
+
+def _kind(end: Entity | Publisher) -> type:
+    """The class of an endpoint without its subclasses."""
+    return next(one for one in _KINDS if isinstance(end, one))
+
+
+def _profile(qos_or_depth: QoSProfile | int) -> QoSProfile:
+    if isinstance(qos_or_depth, QoSProfile):
+        return qos_or_depth
+    if not isinstance(qos_or_depth, int):
+        raise TypeError(f"Expected QoSProfile or int, but received {type(qos_or_depth)!r}")
+    if qos_or_depth < 0:
+        raise ValueError("history depth must be greater than or equal to zero")
+    return QoSProfile(depth=qos_or_depth)
