@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from enum import Enum
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -145,20 +145,19 @@ def get_parameter_value(string_value: str) -> Any:
         value = yaml.safe_load(string_value)
     except yaml.parser.ParserError:
         value = string_value
-    kind, found = Type.STRING, string_value if value is None else value
-    for one, python in _SCALARS.items():
-        if isinstance(value, python):
-            kind = one
-            break
-    else:
-        if isinstance(value, list):
-            kinds = [one for one in _ARRAYS if one is not Type.BYTE_ARRAY]
-            fits: Callable[[Type], bool] = lambda one: all(isinstance(item, _ARRAYS[one]) for item in value)  # noqa: E731
-            kind = next(filter(fits, kinds), Type.STRING)
-            found = string_value if kind is Type.STRING else value
+    kind = _yaml_type(value)
+    found = string_value if value is None or (kind is Type.STRING and isinstance(value, list)) else value
     message = ParameterValue(type=kind.value)
     setattr(message, _FIELDS[kind.value], found)
     return message
+
+
+def _yaml_type(value: Any) -> Type:
+    """The type of the parameter for a value of YAML, STRING for all that is none of the others."""
+    if not isinstance(value, list):
+        return next((kind for kind, python in _SCALARS.items() if isinstance(value, python)), Type.STRING)
+    kinds = (kind for kind in _ARRAYS if kind is not Type.BYTE_ARRAY)
+    return next((kind for kind in kinds if all(isinstance(one, _ARRAYS[kind]) for one in value)), Type.STRING)
 
 
 def parameter_value_to_python(parameter_value: Any) -> Any:
