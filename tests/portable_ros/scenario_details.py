@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+import warnings
 from typing import Any
 
 import rclpy
@@ -27,6 +28,8 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.task import Future, Task
 from rclpy.time import Time
 from rclpy.time_source import TimeSource
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+from rclpy.type_hash import TypeHash
 from rclpy.waitable import NumberOfEntities
 from scenario import attempt, seen, spin_until
 from std_msgs.msg import String
@@ -108,6 +111,38 @@ def futures() -> None:
         task()
         states.append(task.done())
     seen["task"] = states, task.result(), len(bare.tasks)
+
+
+def records() -> None:
+    """Facts about endpoints, hashes and profiles: what they show and refuse."""
+    info = TopicEndpointInfo()
+    changes: Any = (
+        ("node_name", 1),
+        ("topic_type_hash", {"version": 1, "value": bytes(32)}),
+        ("topic_type_hash", 1),
+        ("endpoint_type", 2),
+        ("endpoint_type", 9),
+        ("endpoint_gid", ["a"]),
+        ("endpoint_gid", [1, 2]),
+        ("qos_profile", {"history": 1, "depth": 3}),
+        ("qos_profile", 1),
+    )
+    seen["changes of a record"] = [attempt(setattr, info, *one).partition(": ")[::2][:1] for one in changes]
+    seen["record"] = str(info), str(TopicEndpointInfo()), info == TopicEndpointInfo(), str(TypeHash(1, b"1"))
+    seen["unknown field"] = attempt(TopicEndpointInfo, foo=1).partition(": ")[0]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        profile = QoSProfile(depth=0)
+        profile.depth = 1
+        profile.depth = 0
+        MultiThreadedExecutor(1, context=rclpy.get_default_context()).shutdown()
+    seen["warnings"] = [str(one.message) for one in caught]
+    wrong: Any = ({"history": 7}, {"history": "x"}, {"depth": 1, "deadline": 1}, {"foo": 1})
+    seen["wrong profiles"] = [attempt(QoSProfile, **one).partition(": ")[0] for one in wrong]
+    context = rclpy.Context()
+    with context:
+        seen["twice"] = context.ok(), attempt(context.__enter__)
+    seen["shut down"] = context.ok(), attempt(context.shutdown), attempt(rclpy.Context().shutdown)
 
 
 def names_of_node(node: Node) -> None:
@@ -254,6 +289,7 @@ def main() -> None:
     rclpy.init(args=[])
     logs()
     futures()
+    records()
     node = rclpy.create_node("own")
     executor: Any = MultiThreadedExecutor(2) if "multi" in sys.argv else SingleThreadedExecutor()
     executor.add_node(node)

@@ -37,6 +37,6 @@ def test_endpoints_of_another_type_are_reported_to_both_and_logged_by_default(
         executor.spin_once(timeout_sec=0)
     assert sorted(found) == [("publisher", 1), ("publisher", 2), ("subscription", 1)]
     assert publisher.get_subscription_count() == 0
-    assert "Incompatible type on topic '/topic', no messages will be sent to it." in capsys.readouterr().err
+    assert "Incompatible type on topic 'topic', no messages will be sent to it." in capsys.readouterr().err
     node.destroy_node()
     context.shutdown()

@@ -88,6 +88,10 @@ class JumpHandle:
     ) -> None:
         if pre_callback is None and post_callback is None:
             raise ValueError("One of pre_callback or post_callback must be callable")
+        if pre_callback is not None and not callable(pre_callback):
+            raise ValueError("pre_callback must be callable if given")
+        if post_callback is not None and not callable(post_callback):
+            raise ValueError("post_callback must be callable if given")
         self.threshold, self.pre_callback, self.post_callback = threshold, pre_callback, post_callback
         self._clock = weakref.ref(clock)
         clock._jumps.append(self)

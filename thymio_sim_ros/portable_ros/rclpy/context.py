@@ -76,7 +76,7 @@ class Context:
             if self._handle is None:
                 raise RuntimeError("Context must be initialized before it can be shutdown")
             if not self._is_ok:
-                raise RuntimeError("failed to shutdown: rcl_shutdown already called on the given context")
+                raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
             self._is_ok = False
             callbacks, self._callbacks = self._callbacks, []
         for callback in callbacks:
@@ -106,8 +106,7 @@ class Context:
         return self._graph.domain_id
 
     def __enter__(self) -> Context:
-        if self._handle is None:
-            self.init()
+        self.init()
         return self
 
     def __exit__(

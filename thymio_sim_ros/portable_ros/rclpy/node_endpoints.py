@@ -17,6 +17,7 @@ from thymio_sim_ros.portable_ros.rclpy.event_handler import (
     SubscriptionEventCallbacks,
 )
 from thymio_sim_ros.portable_ros.rclpy.guard_condition import GuardCondition
+from thymio_sim_ros.portable_ros.rclpy.logging import get_logger
 from thymio_sim_ros.portable_ros.rclpy.node_parameters import NodeParameters
 from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_services_default
@@ -116,7 +117,7 @@ class NodeEndpoints(NodeParameters):
         check_is_valid_msg_type(msg_type)
         self._require_context("create publisher")
         group = callback_group or self._default_callback_group
-        events = self._events(event_callbacks or PublisherEventCallbacks(), group, full)
+        events = self._events(event_callbacks or PublisherEventCallbacks(), group, topic)
         made = publisher_class(self._context, msg_type, topic, full, profile, events, self._logger.name)
         self._endpoints[Publisher].append(made)
         made.handle.on_release(lambda: self._graph.remove_publisher(made))
@@ -142,7 +143,7 @@ class NodeEndpoints(NodeParameters):
         check_is_valid_msg_type(msg_type)
         self._require_context("create subscription")
         group = callback_group or self._default_callback_group
-        events = self._events(event_callbacks or SubscriptionEventCallbacks(), group, full)
+        events = self._events(event_callbacks or SubscriptionEventCallbacks(), group, topic)
         made = Subscription(msg_type, topic, full, callback, group, profile, raw, events, self._logger.name)
         self._owned(made)
         made.handle.on_release(lambda: self._graph.remove_subscription(made))
@@ -268,7 +269,7 @@ class NodeEndpoints(NodeParameters):
         self, callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks, group: CallbackGroup, topic: str
     ) -> EndpointEvents:
         """The events of a new endpoint, whose handlers belong to this node."""
-        handlers = callbacks.handlers(group, topic, self._logger.warning)
+        handlers = callbacks.handlers(group, topic, get_logger(self._logger.name).warn)
         for handler in handlers.values():
             self._owned(handler)
         return EndpointEvents(handlers)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from enum import Enum, IntEnum
 from typing import Any, ClassVar
 
+from thymio_sim_ros.portable_ros.rclpy.checked_field import checked_field
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
 from thymio_sim_ros.portable_ros.rclpy.qos_policies import DurabilityPolicy as DurabilityPolicy
 from thymio_sim_ros.portable_ros.rclpy.qos_policies import HistoryPolicy as HistoryPolicy
@@ -81,6 +83,11 @@ class QoSProfile:
         self.liveliness_lease_duration = kwargs.get("liveliness_lease_duration", Duration())
         self.avoid_ros_namespace_conventions = kwargs.get("avoid_ros_namespace_conventions", False)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name == "depth" and value == 0 and self.history == HistoryPolicy.KEEP_LAST:
+            warnings.warn(_ZERO_DEPTH, stacklevel=2)
+        super().__setattr__(name, value)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, QoSProfile) and all(getattr(self, one) == getattr(other, one) for one in _POLICIES)
 
@@ -97,22 +104,15 @@ class QoSProfile:
         return self.depth if self.depth > 0 else 1
 
 
-def _policy(name: str, kind: type[Any]) -> property:
-    slot = f"_{name}"
-
-    def assign(profile: QoSProfile, value: Any) -> None:
-        is_enum = issubclass(kind, IntEnum)
-        if not isinstance(value, (kind, int) if is_enum else kind):
-            raise AssertionError(f"{name}: found {value!r}, expected {kind.__name__}")
-        if name == "depth" and value == 0 and profile.history == HistoryPolicy.KEEP_LAST:
-            warnings.warn(_ZERO_DEPTH, stacklevel=2)
-        object.__setattr__(profile, slot, kind(value) if is_enum else value)
-
-    return property(lambda profile: getattr(profile, slot), assign, doc=f"The policy {name}.")
+def _converted(kind: type[Any]) -> Callable[[Any], Any]:
+    """The conversion of what is assigned to a policy: the values of policies may be given as numbers."""
+    if issubclass(kind, IntEnum):
+        return lambda value: kind(value) if isinstance(value, int) else value
+    return lambda value: value
 
 
 for _name, _kind in _POLICIES.items():
-    setattr(QoSProfile, _name, _policy(_name, _kind))
+    setattr(QoSProfile, _name, checked_field(_name, _kind, _converted(_kind)))
 
 
 def _last(depth: int, **policies: Any) -> QoSProfile:

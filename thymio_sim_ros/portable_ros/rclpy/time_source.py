@@ -26,7 +26,7 @@ class TimeSource:
     """The source of time of a node and of clocks that are attached."""
 
     def __init__(self, *, node: NodeEndpoints | None = None) -> None:
-        self._associated_clocks: weakref.WeakSet[ROSClock] = weakref.WeakSet()
+        self._associated_clocks: set[ROSClock] = set()
         self._node_weak_ref: weakref.ref[NodeEndpoints] | None = None
         self._clock_sub: Subscription | None = None
         self._last_time_set = Time(clock_type=ClockType.ROS_TIME)
