@@ -145,6 +145,34 @@ def records() -> None:
     seen["shut down"] = context.ok(), attempt(context.shutdown), attempt(rclpy.Context().shutdown)
 
 
+def tasks(executor: Any) -> None:
+    """The order of tasks, and coroutines that wait for others."""
+    order: list[str] = []
+
+    async def first() -> str:
+        order.append("first")
+        return "result"
+
+    async def second() -> str:
+        order.append("second waits")
+        found: str = await waited
+        order.append("second proceeds")
+        return found
+
+    waited = executor.create_task(first)
+    waiting = executor.create_task(second)
+    for _ in range(3):
+        executor.spin_once(timeout_sec=1)
+    seen["tasks"] = order, waiting.done(), waiting.result()
+    future = Future(executor=executor)
+    called: list[int] = []
+    for number in range(3):
+        future.add_done_callback(lambda _, number=number: called.append(number))  # type: ignore[misc]
+    future.set_result(None)
+    spin_until(executor, lambda: len(called) == 3)
+    seen["done callbacks"] = called
+
+
 def names_of_node(node: Node) -> None:
     """Wrong names in queries, and names before and after expansion."""
     wrong = ("42", "a b", "", "a{b", "{x}")
@@ -275,6 +303,13 @@ def ends(node: Node) -> None:
         ended = kind()
         ended.shutdown()
         seen[f"shutdown of {kind.__name__}"] = attempt(ended.spin_once), attempt(ended.wait_for_ready_callbacks)
+    for kind in (SingleThreadedExecutor, MultiThreadedExecutor):
+        ending = kind()
+        ending.add_node(node)
+        stop = node.create_guard_condition(lambda ending=ending: ending.shutdown())  # type: ignore[misc]
+        stop.trigger()
+        ending.spin()
+        node.destroy_guard_condition(stop)
     rclpy.shutdown()
     seen["after the shutdown"] = [
         attempt(node.create_publisher, String, "late", 1),
@@ -293,6 +328,8 @@ def main() -> None:
     node = rclpy.create_node("own")
     executor: Any = MultiThreadedExecutor(2) if "multi" in sys.argv else SingleThreadedExecutor()
     executor.add_node(node)
+    if isinstance(executor, SingleThreadedExecutor):
+        tasks(executor)
     names_of_node(node)
     endpoints(node, executor)
     timers(node)

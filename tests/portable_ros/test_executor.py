@@ -60,3 +60,20 @@ def test_a_task_that_is_cancelled_before_its_turn_does_not_hold_the_executor(nod
     task.cancel()
     assert round_of(executor) == [None]
     assert executor.shutdown(timeout_sec=0)
+
+
+def test_a_task_that_creates_another_one_each_time_does_not_stop_entities(node: Node) -> None:
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    called: list[str] = []
+
+    def again() -> None:
+        executor.create_task(again)
+
+    executor.create_task(again)
+    guard = node.create_guard_condition(lambda: called.append("guard"))
+    for _ in range(3):
+        guard.trigger()
+        for _ in range(4):
+            executor.spin_once(timeout_sec=0)
+    assert called == ["guard"] * 3

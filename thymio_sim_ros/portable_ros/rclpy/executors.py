@@ -1,6 +1,6 @@
 """Executors: run the callbacks of nodes, on one thread or on several.
 
-All executors have one queue, in which entities and tasks stand in the order in which they became ready.
+All executors have one queue (`graph/ready_queue.py`), into which entities and tasks come when they are ready.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import os
 import time
 import warnings
 import weakref
-from collections import deque
 from collections.abc import Callable, Coroutine
 from concurrent.futures import Future as PoolFuture
 from concurrent.futures import ThreadPoolExecutor
@@ -18,6 +17,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
+from thymio_sim_ros.portable_ros.graph.ready_queue import ReadyQueue
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import WaitSet
 from thymio_sim_ros.portable_ros.rclpy.task import Future, Task
 from thymio_sim_ros.portable_ros.rclpy.utilities import get_default_context, timeout_sec_to_nsec
@@ -50,11 +50,7 @@ class Executor:
         self._nodes: list[Any] = []
         self._wait_set = WaitSet()
         self._changed = self._wait_set.changed
-        self._ready: deque[Entity | Task] = deque()
-        self._held: list[Entity] = []
-        """Entities that are ready while another callback of their group runs."""
-        self._round: dict[Entity | Task, Any] | None = None
-        """What the present calls of `wait_for_ready_callbacks` without waiting still return."""
+        self._queue = ReadyQueue()
         self._resumable: dict[Task, Entity | None] = {}
         """Coroutines that wait, with the entity whose callback they are."""
         self._running: list[Entity | Task] = []
@@ -68,23 +64,25 @@ class Executor:
         return self._context
 
     def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
-        """Run a callback or a coroutine when all that is ready now has been executed. Thread-safe."""
+        """Run a callback or a coroutine, before tasks that were created earlier. Thread-safe."""
         task = Task(callback, args, kwargs, executor=self)
         task.belong_to(self)
-        self.resume(task)
+        with self._changed:
+            self._queue.add_created(task)
+            self._changed.notify_all()
         return task
 
     def resume(self, task: Task) -> None:
         """Run a task again. Thread-safe."""
         with self._changed:
-            self._ready.append(task)
+            self._queue.extend((task,))
             self._changed.notify_all()
 
     def enqueue(self, entity: Entity, count: int = 1) -> None:
         """Execute so many events of an entity, if its node is one of these. Thread-safe."""
         with self._changed:
             if count and entity.node in self._nodes:
-                self._ready.extend([entity] * count)
+                self._queue.extend([entity] * count)
                 self._changed.notify_all()
 
     def wake(self) -> None:
@@ -109,7 +107,7 @@ class Executor:
         with self._changed:
             if node in self._nodes:
                 self._nodes.remove(node)
-                self._ready = deque(one for one in self._ready if isinstance(one, Task) or one.node is not node)
+                self._queue.forget(node)
                 for one in node.polled():
                     one.forget_announcement()
         self.wake()
@@ -119,15 +117,19 @@ class Executor:
         return list(self._nodes)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Start no more callbacks and wait for those that run; return whether all have ended in time."""
+        """Start no more callbacks and wait for others that run; return whether all have ended in time."""
         with self._changed:
             self._is_shutdown = True
             self._changed.notify_all()
-            is_over = self._changed.wait_for(lambda: not self._running, timeout_sec)
+            is_over = self._changed.wait_for(lambda: not self._others_run(), timeout_sec)
             if is_over:
                 self._nodes.clear()
-                self._ready.clear()
+                self._queue.clear()
         return is_over
+
+    def _others_run(self) -> bool:
+        """Whether callbacks run, apart from one that calls this."""
+        return any(not isinstance(one, Task) or not one.runs_here() for one in self._running)
 
     def spin(self) -> None:
         """Execute callbacks until the context or the executor is shut down. Raises what a callback raises."""
@@ -178,14 +180,14 @@ class Executor:
         TimeoutException, even if more has become ready. `nodes` is not looked at: all nodes of the executor take part.
         Raises also ConditionReachedException, ShutdownException and ExternalShutdownException.
         """
-        if timeout_sec == 0 and self._round is None:
+        if timeout_sec == 0:
             with self._changed:
                 self._poll()
-                self._round = dict.fromkeys(self._ready)
+                self._queue.begin_round()
         try:
             return self._next(timeout_sec, condition)
         except TimeoutException:
-            self._round = None
+            self._queue.end_round()
             raise
 
     def _next(self, timeout_sec: float | None, condition: Callable[[], bool]) -> tuple[Task, Entity | None, Any]:
@@ -199,7 +201,7 @@ class Executor:
                 if condition():
                     raise ConditionReachedException
                 self._poll()
-                found = self._pop()
+                found = self._queue.pop(self._nodes)
                 if found is None:
                     left_s = None if end_s is None else end_s - time.monotonic()
                     if left_s is not None and left_s <= 0:
@@ -230,30 +232,12 @@ class Executor:
     def _poll(self) -> None:
         """Enqueue the timers that are due and the waitables that are ready."""
         for node in self._nodes:
-            self._ready.extend(one for one in node.polled() if one.announce_if_due())
+            self._queue.extend(one for one in node.polled() if one.announce_if_due())
 
     def _due_s(self) -> float | None:
         """Seconds until a timer is due."""
         waits = (timer.wait_s() for node in self._nodes for timer in node.timers)
         return min((wait_s for wait_s in waits if wait_s is not None), default=None)
-
-    def _pop(self) -> Entity | Task | None:
-        """Remove the first entity or task that may start, and begin its execution."""
-        later: list[Entity | Task] = []
-        try:
-            while self._ready:
-                found = self._ready.popleft()
-                if self._round is not None and self._round.pop(found, self) is self:
-                    later.append(found)
-                elif isinstance(found, Task):
-                    return found
-                elif not found.is_destroyed and found.node in self._nodes:
-                    if found.callback_group is None or found.callback_group.beginning_execution(found):
-                        return found
-                    self._held.append(found)
-            return None
-        finally:
-            self._ready.extendleft(reversed(later))
 
     def turn_ended(self, task: Task) -> None:
         """Called when a task has run, until it was done or waits. Thread-safe."""
@@ -267,8 +251,7 @@ class Executor:
             entity.callback_group.ending_execution(entity)
         with self._changed:
             self._running.remove(work)
-            self._ready.extendleft(reversed(self._held))
-            self._held.clear()
+            self._queue.release()
             self._changed.notify_all()
 
     def _execute(self, task: Task) -> None:

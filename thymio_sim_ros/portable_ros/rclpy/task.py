@@ -35,6 +35,7 @@ class Future:
         self._result: Any = None
         self._exception: BaseException | None = None
         self._callbacks: list[Callable[[Any], Any]] = []
+        self._waiting: list[Task] = []
         self._executor: Callable[[], TaskCreator | None] = lambda: None
         self._set_executor(executor)
 
@@ -115,12 +116,23 @@ class Future:
         """Set the executor that runs the callbacks."""
         self._executor = weakref.ref(executor) if executor is not None else lambda: None
 
+    def _resume_when_done(self, task: Task) -> None:
+        """Resume a task that waits for this future."""
+        with self._lock:
+            if self._pending():
+                self._waiting.append(task)
+                return
+        task._resume()
+
     def _end(self, state: FutureState) -> None:
-        """Enter a final state and call all callbacks."""
+        """Enter a final state, resume all tasks that wait and call all callbacks."""
         with self._lock:
             self._state = state
             executor = self._executor()
             callbacks, self._callbacks = self._callbacks, []
+            waiting, self._waiting = self._waiting, []
+        for task in waiting:
+            task._resume()
         for callback in callbacks:
             if executor is not None:
                 executor.create_task(callback, self)
@@ -148,6 +160,7 @@ class Task(Future):
         if inspect.iscoroutinefunction(handler):
             self._handler, self._is_coroutine = handler(*self._args, **self._kwargs), True
         self._is_executing = threading.Lock()
+        self._thread_id = 0
         self._scheduler: Callable[[], Scheduler | None] = lambda: None
 
     def belong_to(self, scheduler: Scheduler) -> None:
@@ -158,6 +171,7 @@ class Task(Future):
         """Run the callback, or the coroutine to its next wait."""
         try:
             if self._pending() and self._is_executing.acquire(blocking=False):
+                self._thread_id = threading.get_ident()
                 self._run()
         finally:
             if (scheduler := self._scheduler()) is not None:
@@ -166,6 +180,10 @@ class Task(Future):
     def executing(self) -> bool:
         """Whether a thread runs the task now."""
         return self._is_executing.locked()
+
+    def runs_here(self) -> bool:
+        """Whether the calling thread runs the task now."""
+        return self.executing() and self._thread_id == threading.get_ident()
 
     def cancel(self) -> None:
         """Cancel, unless it is done."""
@@ -194,6 +212,11 @@ class Task(Future):
         if scheduler is None:
             return
         if isinstance(awaited, Future):
-            awaited.add_done_callback(lambda _: scheduler.resume(self))
+            awaited._resume_when_done(self)
         else:
+            scheduler.resume(self)
+
+    def _resume(self) -> None:
+        """Let the coroutine proceed after a wait."""
+        if (scheduler := self._scheduler()) is not None:
             scheduler.resume(self)
