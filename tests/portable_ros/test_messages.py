@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.messages import cdr, definitions
 from thymio_sim_ros.portable_ros.messages.message_class import message_type
 from thymio_sim_ros.portable_ros.rclpy.exceptions import NoTypeSupportImportedException
 from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type
+from thymio_sim_ros.portable_ros.test_msgs.message_fixtures import get_test_msg
 
 WStrings = message_type("test_msgs/msg/WStrings")
 
@@ -23,6 +24,20 @@ def test_arrays_and_sequences_have_their_defaults_each_message_its_own() -> None
         assert list(one.string_values_default) == ["", "max value", "min value"]
         one.int16_values_default[0] = 5
         assert other.int16_values_default[0] == 0
+
+
+@pytest.mark.parametrize("name", list(definitions.names("test_msgs", "msg")))
+def test_samples_of_messages_are_the_same_after_a_journey(name: str) -> None:
+    samples = get_test_msg(name)
+    for sample in samples:
+        assert cdr.deserialize(cdr.serialize(sample), type(sample)) == sample
+    has_values = bool(samples[0].get_fields_and_field_types())
+    assert (samples[1] != samples[2]) == has_values
+
+
+def test_there_are_no_samples_of_other_messages() -> None:
+    with pytest.raises(NotImplementedError):
+        get_test_msg("String")
 
 
 def test_a_wide_text_has_four_bytes_for_each_unit() -> None:

@@ -21,6 +21,8 @@ __all__ = ["MixedInstallationError", "install", "is_served"]
 _ROOM = __package__
 _APIS = ("rclpy", "rosidl_parser")
 _FORMS = ("msg", "srv")
+_MODULES = ("test_msgs.message_fixtures",)
+"""What packages of messages have beside their messages."""
 
 
 class MixedInstallationError(ThymioSimError, ImportError):
@@ -66,7 +68,7 @@ class _Finder(MetaPathFinder):
     ) -> ModuleSpec | None:
         """The spec of a module, None for others."""
         top, _, rest = fullname.partition(".")
-        if top in _APIS:
+        if top in _APIS or fullname in _MODULES:
             own = importlib.util.find_spec(f"{_ROOM}.{fullname}")
             if own is None:
                 return None
