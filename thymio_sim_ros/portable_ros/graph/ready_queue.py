@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Container, Iterable
+from collections.abc import Container
 from typing import Any
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
@@ -34,9 +34,9 @@ class ReadyQueue:
         """Add a new task."""
         self._created.append(task)
 
-    def extend(self, ready: Iterable[Entity | Task]) -> None:
+    def append(self, ready: Entity | Task) -> None:
         """Append what has become ready."""
-        self._ready.extend(ready)
+        self._ready.append(ready)
 
     def forget(self, node: Any) -> None:
         """Remove the entities of a node."""
@@ -60,30 +60,31 @@ class ReadyQueue:
     def pop(self, nodes: Container[Any]) -> Entity | Task | None:
         """Remove the first entity of one of the nodes, or task, that may start, and begin its execution."""
         self._take_created()
-        later: list[Entity | Task] = []
-        try:
-            while self._ready:
-                found = self._ready.popleft()
-                self._left -= 1
-                if self._round is not None and found not in self._round:
-                    later.append(found)
-                    continue
-                if self._round is not None:
-                    del self._round[found]
-                if isinstance(found, Task):
+        while (found := self._next_of_round()) is not None:
+            self._left -= 1
+            if isinstance(found, Task):
+                return found
+            if not found.is_destroyed and found.node in nodes:
+                if found.callback_group is None or found.callback_group.beginning_execution(found):
                     return found
-                if not found.is_destroyed and found.node in nodes:
-                    if found.callback_group is None or found.callback_group.beginning_execution(found):
-                        return found
-                    self._held.append(found)
-            return None
-        finally:
-            self._ready.extendleft(reversed(later))
+                self._held.append(found)
+        return None
 
     def release(self) -> None:
         """Make ready again what had to wait for the end of a callback."""
-        self._ready.extendleft(reversed(self._held))
-        self._held.clear()
+        if self._held:
+            self._ready.extendleft(reversed(self._held))
+            self._held.clear()
+
+    def _next_of_round(self) -> Entity | Task | None:
+        if self._round is None:
+            return self._ready.popleft() if self._ready else None
+        at = next((at for at, one in enumerate(self._ready) if one in self._round), None)
+        if at is None:
+            return None
+        found = self._ready[at]
+        del self._ready[at], self._round[found]
+        return found
 
     def _take_created(self) -> None:
         if self._created and (self._left <= 0 or not self._ready):

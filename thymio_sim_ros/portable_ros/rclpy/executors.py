@@ -51,6 +51,7 @@ class Executor:
         self._wait_set = WaitSet()
         self._changed = self._wait_set.changed
         self._queue = ReadyQueue()
+        self._reference = weakref.ref(self)
         self._resumable: dict[Task, Entity | None] = {}
         """Coroutines that wait, with the entity whose callback they are."""
         self._running: list[Entity | Task] = []
@@ -66,7 +67,7 @@ class Executor:
     def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
         """Run a callback or a coroutine, before tasks that were created earlier. Thread-safe."""
         task = Task(callback, args, kwargs, executor=self)
-        task.belong_to(self)
+        task.belong_to(self._reference)
         with self._changed:
             self._queue.add_created(task)
             self._changed.notify_all()
@@ -75,14 +76,15 @@ class Executor:
     def resume(self, task: Task) -> None:
         """Run a task again. Thread-safe."""
         with self._changed:
-            self._queue.extend((task,))
+            self._queue.append(task)
             self._changed.notify_all()
 
     def enqueue(self, entity: Entity, count: int = 1) -> None:
         """Execute so many events of an entity, if its node is one of these. Thread-safe."""
         with self._changed:
             if count and entity.node in self._nodes:
-                self._queue.extend([entity] * count)
+                for _ in range(count):
+                    self._queue.append(entity)
                 self._changed.notify_all()
 
     def wake(self) -> None:
@@ -223,7 +225,7 @@ class Executor:
             self._release(entity, entity)
             return None
         task = Task(taken[0], taken[1], executor=self)
-        task.belong_to(self)
+        task.belong_to(self._reference)
         self._resumable[task] = entity
         self._running.append(task)
         self._running.remove(entity)
@@ -232,7 +234,9 @@ class Executor:
     def _poll(self) -> None:
         """Enqueue the timers that are due and the waitables that are ready."""
         for node in self._nodes:
-            self._queue.extend(one for one in node.polled() if one.announce_if_due())
+            for one in node.polled():
+                if one.announce_if_due():
+                    self._queue.append(one)
 
     def _due_s(self) -> float | None:
         """Seconds until a timer is due."""

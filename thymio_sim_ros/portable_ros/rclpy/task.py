@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 __all__ = ["Future", "Task"]
 
 
+def _nothing() -> None:
+    """Stand for a weak reference without an object."""
+
+
 class FutureState(Enum):
     """The states of a future."""
 
@@ -36,7 +40,6 @@ class Future:
         self._exception: BaseException | None = None
         self._callbacks: list[Callable[[Any], Any]] = []
         self._waiting: list[Task] = []
-        self._executor: Callable[[], TaskCreator | None] = lambda: None
         self._set_executor(executor)
 
     def __del__(self) -> None:
@@ -114,7 +117,7 @@ class Future:
 
     def _set_executor(self, executor: TaskCreator | None) -> None:
         """Set the executor that runs the callbacks."""
-        self._executor = weakref.ref(executor) if executor is not None else lambda: None
+        self._executor: Callable[[], TaskCreator | None] = _nothing if executor is None else weakref.ref(executor)
 
     def _resume_when_done(self, task: Task) -> None:
         """Resume a task that waits for this future."""
@@ -161,11 +164,11 @@ class Task(Future):
             self._handler, self._is_coroutine = handler(*self._args, **self._kwargs), True
         self._is_executing = threading.Lock()
         self._thread_id = 0
-        self._scheduler: Callable[[], Scheduler | None] = lambda: None
+        self._scheduler: Callable[[], Scheduler | None] = _nothing
 
-    def belong_to(self, scheduler: Scheduler) -> None:
-        """Make an executor the one that runs the task whenever it can proceed."""
-        self._scheduler = weakref.ref(scheduler)
+    def belong_to(self, scheduler: Callable[[], Scheduler | None]) -> None:
+        """Make an executor, by a weak reference, the one that runs the task whenever it can proceed."""
+        self._scheduler = scheduler
 
     def __call__(self) -> None:
         """Run the callback, or the coroutine to its next wait."""
