@@ -10,6 +10,7 @@ from thymio_sim_ros.portable_ros.graph.entity import Entity
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
+    from thymio_sim_ros.portable_ros.rclpy.context import Context
 
 __all__ = ["GuardCondition"]
 
@@ -18,7 +19,7 @@ class GuardCondition(Entity):
     """Calls its callback in the executor after `trigger`, once for all triggers until then."""
 
     def __init__(
-        self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None, context: Any = None
+        self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None, context: Context | None = None
     ) -> None:
         super().__init__(callback_group)
         self.callback = callback

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
 from thymio_sim_ros.portable_ros.rclpy.impl.rcutils_logger import add_sink, remove_sink
 from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
 
 __all__ = ["Rosout"]
 
@@ -24,7 +27,7 @@ _PROFILE = QoSProfile(
 class Rosout:
     """Publishes what a node logs."""
 
-    def __init__(self, node: Any) -> None:
+    def __init__(self, node: NodeEndpoints) -> None:
         self._context, self._name = node.context, node.get_logger().name
         self.publisher = node.create_publisher(ros_types.Log, _TOPIC, _PROFILE)
         add_sink(self._name, self._publish)

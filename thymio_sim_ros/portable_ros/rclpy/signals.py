@@ -7,7 +7,10 @@ import threading
 import weakref
 from enum import IntEnum
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.rclpy.context import Context
 
 __all__ = [
     "SignalHandlerOptions",
@@ -27,7 +30,7 @@ class SignalHandlerOptions(IntEnum):
 
 
 _SIGNALS = {SignalHandlerOptions.SIGINT: signal.SIGINT, SignalHandlerOptions.SIGTERM: signal.SIGTERM}
-_contexts: weakref.WeakSet[Any] = weakref.WeakSet()
+_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 _before: dict[int, Any] = {}
 
 
@@ -54,7 +57,7 @@ def uninstall_signal_handlers() -> None:
                 signal.signal(number, handler)
 
 
-def shut_down_at_signals(context: Any) -> None:
+def shut_down_at_signals(context: Context) -> None:
     """Shut a context down when a signal comes."""
     _contexts.add(context)
 
