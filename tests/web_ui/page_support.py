@@ -57,9 +57,9 @@ class TouchPoints:
 
 
 def drop_file(page: Any, path: Path, selector: str) -> None:
-    """Drop a file on the center of an element; again if the browser takes the gesture for one that ends elsewhere."""
-    box = page.locator(selector).bounding_box()
-    place = {"x": box["x"] + box["width"] / 2, "y": box["y"] + box["height"] / 2}
+    """Drop a file on the center of what is seen of an element; again if the browser takes the gesture for one that ends elsewhere."""
+    box, height = page.locator(selector).bounding_box(), page.viewport_size["height"]
+    place = {"x": box["x"] + box["width"] / 2, "y": (box["y"] + min(box["y"] + box["height"], height)) / 2}
     data = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
     developer = page.context.new_cdp_session(page)
     page.evaluate("() => addEventListener('drop', () => (document.body.dataset.drops = 'taken'), {once: true})")

@@ -20,8 +20,11 @@ FOLDER = Path(__file__).parents[1] / "data" / "web" / "snapshots"
 MISTAKE = "var near = 2000\nonevent prox\nif prox.horizontal[2] = near then\nmotor.left.target = 0\nend\n"
 READY = "window.thymio && window.thymio.connected && window.thymio.partPosition('robot')"
 FEW_ROBOTS = "() => Object.keys(window.thymio.state().robots).length === 1"
-QUIET = ".sample img, .current img, .clock, .real { visibility: hidden; }"
-"""Thumbnails are drawn one after another, and time runs."""
+QUIET = """
+    .sample img, .current img, .clock, .real { visibility: hidden; }
+    .time-parts:not([data-names="all"]) > .real { display: none !important; }
+"""
+"""Thumbnails are drawn one after another, time runs, and on a busy machine it is said how slowly, where there is room."""
 
 State = Callable[[Any], None]
 
@@ -129,12 +132,12 @@ def show(page: Any, address: str, name: str) -> None:
     page.set_viewport_size({"width": width, "height": height})
     page.emulate_media(color_scheme="dark" if name.endswith("dark") else "light", reduced_motion="reduce")
     page.goto(f"{address}?tour=off&{options}")
+    page.add_style_tag(content=QUIET)
     page.wait_for_function(READY)
     act(page)
     if "scene=off" not in options:
         page.wait_for_function("() => window.thymio.isPainted()")  # the wood is, when there is time
         wait_for_frame(page)
-    page.add_style_tag(content=QUIET)
     page.mouse.move(0, 0)
 
 
