@@ -19,7 +19,7 @@ from rosbags.typesys.store import TIDMAP
 
 from thymio_sim_ros.portable_ros.messages.definitions import SERVICE_PARTS, FieldType, Shape, definition, is_service
 from thymio_sim_ros.portable_ros.messages.field_values import WideText
-from thymio_sim_ros.portable_ros.messages.message_class import EMPTY_FIELD, Message, message_type
+from thymio_sim_ros.portable_ros.messages.message_class import EMPTY_FIELD, Message, MsgT, message_type
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 
 __all__ = ["deserialize", "serialize", "type_hash"]
@@ -47,7 +47,7 @@ def serialize(message: Message) -> bytes:
     return data
 
 
-def deserialize(data: bytes, kind: type[Message]) -> Any:
+def deserialize(data: bytes, kind: type[MsgT]) -> MsgT:
     """The message that the bytes stand for. Raises ValueError for bytes that are no such message.
 
     Bytes after the message are ignored: Fast DDS sends a few, since it allocates by an upper estimate of the size.
@@ -62,7 +62,7 @@ def deserialize(data: bytes, kind: type[Message]) -> Any:
         message, _ = read(data[_ENCAPSULATION:], 0, codec.cls, _CDR)
     except (SerdeError, struct.error, ValueError, IndexError) as error:
         raise ValueError(f"found {len(data)} bytes that are no {name}: {error}") from error
-    return message
+    return cast(MsgT, message)  # made by the class of the codec, which is `kind`
 
 
 @functools.cache

@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -36,10 +36,24 @@ from thymio_sim_ros.portable_ros.rosidl_parser.definition import (
     UnboundedWString,
 )
 
-__all__ = ["EMPTY_FIELD", "Member", "Message", "Service", "message_type", "service_type"]
+__all__ = [
+    "EMPTY_FIELD",
+    "Member",
+    "Message",
+    "MsgT",
+    "Service",
+    "SrvRequestT",
+    "SrvResponseT",
+    "message_type",
+    "service_type",
+]
 
 EMPTY_FIELD = "structure_needs_at_least_one_member"
 """The field of a serialized message without fields."""
+
+MsgT = TypeVar("MsgT", bound="Message")
+SrvRequestT = TypeVar("SrvRequestT", bound="Message")
+SrvResponseT = TypeVar("SrvResponseT", bound="Message")
 
 _CHECKED = os.environ.get("ROS_PYTHON_CHECK_FIELDS") == "1"
 
@@ -102,13 +116,13 @@ class Message:
         return dict(cls._fields_and_field_types)
 
 
-class Service:
+class Service(Generic[SrvRequestT, SrvResponseT]):
     """Base of all classes of services."""
 
     TYPE_NAME: ClassVar[str] = ""
-    Request: ClassVar[type[Message]]
-    Response: ClassVar[type[Message]]
-    Event: ClassVar[type[Message]]
+    Request: type[SrvRequestT]
+    Response: type[SrvResponseT]
+    Event: type[Message]
 
     def __init__(self) -> None:
         raise NotImplementedError("Service classes can not be instantiated")

@@ -156,7 +156,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
 
 def spin_until_future_complete(
-    node: Node, future: Future, executor: Executor | None = None, timeout_sec: float | None = None
+    node: Node, future: Future[Any], executor: Executor | None = None, timeout_sec: float | None = None
 ) -> None:
     """Execute the callbacks of a node until a future is done or the time is over."""
     executor = executor or get_global_executor()

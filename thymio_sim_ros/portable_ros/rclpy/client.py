@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.messages.message_class import SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
 from thymio_sim_ros.portable_ros.rclpy.task import Future
@@ -19,18 +20,18 @@ if TYPE_CHECKING:
 __all__ = ["Client"]
 
 
-class Client(ServiceEntity):
+class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
     """Calls a service."""
 
-    def __init__(self, context: Context, of: ServiceDescription) -> None:
+    def __init__(self, context: Context, of: ServiceDescription[SrvRequestT, SrvResponseT]) -> None:
         super().__init__(of)
         self.context = context
-        self._pending_requests: dict[int, Future] = {}
+        self._pending_requests: dict[int, Future[SrvResponseT]] = {}
         self._numbers = itertools.count(1)
         self._lock = threading.Lock()
         self._queue: EventQueue[tuple[int, bytes]] = EventQueue(of.qos_profile.kept)
 
-    def call(self, request: Any, timeout_sec: float | None = None) -> Any:
+    def call(self, request: SrvRequestT, timeout_sec: float | None = None) -> SrvResponseT | None:
         """Call and wait for the response, None when time is over; another thread must spin the node."""
         answered = threading.Event()
         future = self.call_async(request)
@@ -39,12 +40,13 @@ class Client(ServiceEntity):
             self.remove_pending_request(future)
         return future.result()
 
-    def call_async(self, request: Any) -> Future:
+    def call_async(self, request: SrvRequestT) -> Future[SrvResponseT]:
         """Call; the future gets the response. Raises TypeError for a request of another type."""
         with self._handle:
             if not isinstance(request, self.srv_type.Request):
                 raise TypeError
-            data, future = cdr.serialize(request), Future()
+            data = cdr.serialize(request)
+            future: Future[SrvResponseT] = Future()
             with self._lock:
                 sequence = next(self._numbers)
                 self._pending_requests[sequence] = future
@@ -53,12 +55,12 @@ class Client(ServiceEntity):
                 service.receive(self, sequence, data)
             return future
 
-    def get_pending_request(self, sequence_number: int) -> Future:
+    def get_pending_request(self, sequence_number: int) -> Future[SrvResponseT]:
         """The future of a request. Raises KeyError if it is answered."""
         with self._lock:
             return self._pending_requests[sequence_number]
 
-    def remove_pending_request(self, future: Future) -> None:
+    def remove_pending_request(self, future: Future[SrvResponseT]) -> None:
         """Ignore the response to a request."""
         with self._lock:
             self._pending_requests = {

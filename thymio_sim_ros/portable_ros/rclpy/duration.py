@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
@@ -45,13 +44,13 @@ class Duration:
     def __hash__(self) -> int:
         return hash(self._nanoseconds)
 
-    def to_msg(self) -> Any:
+    def to_msg(self) -> ros_types.DurationMessage:
         """The message of the duration."""
         seconds, nanoseconds = divmod(self._nanoseconds, S_TO_NS)
         return ros_types.DurationMessage(sec=seconds, nanosec=nanoseconds)
 
     @classmethod
-    def from_msg(cls, msg: Any) -> Duration:
+    def from_msg(cls, msg: ros_types.DurationMessage) -> Duration:
         """The duration of a message. Raises TypeError for a message of another type."""
         if not isinstance(msg, ros_types.DurationMessage):
             raise TypeError("Must pass a builtin_interfaces.msg.Duration object")

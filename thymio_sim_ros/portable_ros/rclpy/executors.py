@@ -142,7 +142,7 @@ class Executor:
         """Execute one callback, or none if none is ready in time. Raises ExternalShutdownException."""
         self._spin_once(timeout_sec, lambda: False)
 
-    def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Execute callbacks until a future is done, or until the time is over."""
         future.add_done_callback(lambda _: self.wake())
         end_s = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
@@ -152,7 +152,7 @@ class Executor:
                 return
             self.spin_once_until_future_complete(future, left_s)
 
-    def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
+    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Execute one callback unless a future is done before."""
         future.add_done_callback(lambda _: self.wake())
         self._spin_once(timeout_sec, lambda: not future._pending())

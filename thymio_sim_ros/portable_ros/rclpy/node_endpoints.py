@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any, TypeVar
+from collections.abc import Awaitable, Callable, Iterator
+from typing import Any, Literal, TypeVar, overload
 
 from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
 from thymio_sim_ros.portable_ros.graph.entity import Entity
+from thymio_sim_ros.portable_ros.messages.message_class import Message, MsgT, SrvRequestT, SrvResponseT
+from thymio_sim_ros.portable_ros.messages.message_class import Service as ServiceType
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.client import Client
 from thymio_sim_ros.portable_ros.rclpy.clock import Clock
@@ -24,7 +26,7 @@ from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_servic
 from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
 from thymio_sim_ros.portable_ros.rclpy.service import Service
 from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription
-from thymio_sim_ros.portable_ros.rclpy.subscription import Subscription
+from thymio_sim_ros.portable_ros.rclpy.subscription import MessageInfo, Subscription
 from thymio_sim_ros.portable_ros.rclpy.timer import Rate, Timer
 from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from thymio_sim_ros.portable_ros.rclpy.waitable import Waitable, WaitableEntity
@@ -42,16 +44,16 @@ class NodeEndpoints(NodeParameters):
     def _prepare_endpoints(self) -> None:
         """Start without endpoints."""
         self._endpoints: dict[type, list[Any]] = {kind: [] for kind in _KINDS}
-        self._log_publisher: Publisher | None = None
+        self._log_publisher: Publisher[Any] | None = None
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
 
     @property
-    def publishers(self) -> Iterator[Publisher]:
+    def publishers(self) -> Iterator[Publisher[Any]]:
         """The publishers, without that of the log."""
         yield from (one for one in self.all_publishers if one is not self._log_publisher)
 
     @property
-    def all_publishers(self) -> Iterator[Publisher]:
+    def all_publishers(self) -> Iterator[Publisher[Any]]:
         """The publishers, with that of the log."""
         yield from list(self._endpoints[Publisher])
 
@@ -61,7 +63,7 @@ class NodeEndpoints(NodeParameters):
         yield from list(self._endpoints[Subscription])
 
     @property
-    def clients(self) -> Iterator[Client]:
+    def clients(self) -> Iterator[Client[Any, Any]]:
         """The clients."""
         yield from list(self._endpoints[Client])
 
@@ -101,15 +103,15 @@ class NodeEndpoints(NodeParameters):
 
     def create_publisher(
         self,
-        msg_type: Any,
+        msg_type: type[MsgT],
         topic: str,
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
-        publisher_class: type[Publisher] = Publisher,
-    ) -> Publisher:
+        publisher_class: type[Publisher[MsgT]] = Publisher,
+    ) -> Publisher[MsgT]:
         """Publish a topic. Raises InvalidTopicNameException and errors about type and profile."""
         profile = _profile(qos_profile)
         full = self._endpoint_name(topic)
@@ -124,11 +126,50 @@ class NodeEndpoints(NodeParameters):
         self._graph.add_publisher(made)
         return made
 
+    @overload
     def create_subscription(
         self,
-        msg_type: Any,
+        msg_type: type[MsgT],
         topic: str,
-        callback: Callable[..., Any],
+        callback: Callable[[MsgT], object],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: Literal[False] = False,
+    ) -> Subscription: ...
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: Callable[[MsgT, MessageInfo], object],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: Literal[False] = False,
+    ) -> Subscription: ...
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[Message],
+        topic: str,
+        callback: Callable[[bytes], object] | Callable[[bytes, MessageInfo], object],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool,
+    ) -> Subscription: ...
+    def create_subscription(
+        self,
+        msg_type: type[Message],
+        topic: str,
+        callback: Callable[..., object],
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
@@ -152,12 +193,12 @@ class NodeEndpoints(NodeParameters):
 
     def create_client(
         self,
-        srv_type: Any,
+        srv_type: type[ServiceType[SrvRequestT, SrvResponseT]],
         srv_name: str,
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
-    ) -> Client:
+    ) -> Client[SrvRequestT, SrvResponseT]:
         """Call a service. Raises InvalidServiceNameException and errors about the type."""
         made = self._owned(
             Client(self._context, self._service_description(srv_type, srv_name, qos_profile, callback_group))
@@ -168,9 +209,9 @@ class NodeEndpoints(NodeParameters):
 
     def create_service(
         self,
-        srv_type: Any,
+        srv_type: type[ServiceType[SrvRequestT, SrvResponseT]],
         srv_name: str,
-        callback: Callable[..., Any],
+        callback: Callable[[SrvRequestT, SrvResponseT], SrvResponseT | Awaitable[SrvResponseT]],
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
@@ -226,7 +267,7 @@ class NodeEndpoints(NodeParameters):
             raise ValueError(f"found {waitable!r}, expected a waitable of the node")
         self._remove(found[0])
 
-    def destroy_publisher(self, publisher: Publisher) -> bool:
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Remove a publisher; return whether it was one of this node."""
         return self._remove_with_events(publisher)
 
@@ -234,7 +275,7 @@ class NodeEndpoints(NodeParameters):
         """Remove a subscription; return whether it was one of this node."""
         return self._remove_with_events(subscription)
 
-    def destroy_client(self, client: Client) -> bool:
+    def destroy_client(self, client: Client[Any, Any]) -> bool:
         """Remove a client; return whether it was one of this node."""
         return self._remove(client)
 
@@ -257,8 +298,12 @@ class NodeEndpoints(NodeParameters):
         return is_own
 
     def _service_description(
-        self, srv_type: Any, srv_name: str, qos_profile: QoSProfile, callback_group: CallbackGroup | None
-    ) -> ServiceDescription:
+        self,
+        srv_type: type[ServiceType[SrvRequestT, SrvResponseT]],
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup | None,
+    ) -> ServiceDescription[SrvRequestT, SrvResponseT]:
         """What a client or a service is made of. Raises InvalidServiceNameException and errors about the type."""
         check_is_valid_srv_type(srv_type)
         full = self._endpoint_name(srv_name, is_service=True)
@@ -286,7 +331,7 @@ class NodeEndpoints(NodeParameters):
         self._endpoints[_kind(entity)].append(entity)
         return entity
 
-    def _remove_with_events(self, end: Publisher | Subscription) -> bool:
+    def _remove_with_events(self, end: Publisher[Any] | Subscription) -> bool:
         is_own = self._remove(end)
         for handler in end.event_handlers:
             self._remove(handler)
@@ -302,7 +347,7 @@ class NodeEndpoints(NodeParameters):
         return True
 
 
-def _kind(end: Entity | Publisher) -> type:
+def _kind(end: Entity | Publisher[Any]) -> type:
     """The class of an endpoint without its subclasses."""
     return next(one for one in _KINDS if isinstance(end, one))
 

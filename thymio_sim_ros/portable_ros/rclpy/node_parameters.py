@@ -34,20 +34,24 @@ _EMPTY_LIST = (
 class NodeParameters(NodeBase):
     """The part of a node that has the parameters."""
 
-    _parameter_event_publisher: Publisher
+    _parameter_event_publisher: Publisher[Any]
 
     def _prepare_parameters(self, overrides: Mapping[str, Parameter], *, is_undeclared_allowed: bool) -> None:
         """Start without parameters; `overrides` are the values of the start."""
         self._parameters: dict[str, Parameter] = {}
-        self._descriptors: dict[str, Any] = {}
+        self._descriptors: dict[str, ros_types.ParameterDescriptor] = {}
         self._parameter_overrides = dict(overrides)
         self._allow_undeclared_parameters = is_undeclared_allowed
         self._pre_set_parameters_callbacks: list[Callable[[list[Parameter]], list[Parameter]]] = []
-        self._on_set_parameters_callbacks: list[Callable[[list[Parameter]], Any]] = []
+        self._on_set_parameters_callbacks: list[Callable[[list[Parameter]], ros_types.SetParametersResult]] = []
         self._post_set_parameters_callbacks: list[Callable[[list[Parameter]], None]] = []
 
     def declare_parameter(
-        self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
+        self,
+        name: str,
+        value: Any = None,
+        descriptor: ros_types.ParameterDescriptor | None = None,
+        ignore_override: bool = False,
     ) -> Parameter:
         """Declare a parameter with a default value or a type, and return it with the value of the start.
 
@@ -130,15 +134,15 @@ class NodeParameters(NodeBase):
         start = f"{prefix}{PARAMETER_SEPARATOR_STRING}" if prefix else ""
         return {name.removeprefix(start): one for name, one in self._parameters.items() if name.startswith(start)}
 
-    def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[Any]:
+    def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[ros_types.SetParametersResult]:
         """Set parameters one after the other; return a result for each. Raises ParameterNotDeclaredException."""
         return [self._set_atomically([one]) for one in parameter_list]
 
-    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> Any:
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> ros_types.SetParametersResult:
         """Set all parameters or none; return the result. Raises ParameterNotDeclaredException."""
         return self._set_atomically(parameter_list)
 
-    def list_parameters(self, prefixes: list[str], depth: int) -> Any:
+    def list_parameters(self, prefixes: list[str], depth: int) -> ros_types.ListParametersResult:
         """The names of all parameters, or of those with a prefix; `depth` limits the dots, 0 stands for any number."""
         if not isinstance(prefixes, list):
             raise TypeError("The prefixes argument must be a list")
@@ -164,7 +168,9 @@ class NodeParameters(NodeBase):
         """Let a callback change the list before parameters are checked."""
         self._pre_set_parameters_callbacks.insert(0, callback)
 
-    def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
+    def add_on_set_parameters_callback(
+        self, callback: Callable[[list[Parameter]], ros_types.SetParametersResult]
+    ) -> None:
         """Let a callback accept or reject new values."""
         self._on_set_parameters_callbacks.insert(0, callback)
 
@@ -176,7 +182,9 @@ class NodeParameters(NodeBase):
         """Undo `add_pre_set_parameters_callback`. Raises ValueError for an unknown callback."""
         self._pre_set_parameters_callbacks.remove(callback)
 
-    def remove_on_set_parameters_callback(self, callback: Callable[[list[Parameter]], Any]) -> None:
+    def remove_on_set_parameters_callback(
+        self, callback: Callable[[list[Parameter]], ros_types.SetParametersResult]
+    ) -> None:
         """Undo `add_on_set_parameters_callback`. Raises ValueError for an unknown callback."""
         self._on_set_parameters_callbacks.remove(callback)
 
@@ -184,7 +192,7 @@ class NodeParameters(NodeBase):
         """Undo `add_post_set_parameters_callback`. Raises ValueError for an unknown callback."""
         self._post_set_parameters_callbacks.remove(callback)
 
-    def describe_parameter(self, name: str) -> Any:
+    def describe_parameter(self, name: str) -> ros_types.ParameterDescriptor:
         """The descriptor of a parameter. Raises ParameterNotDeclaredException."""
         if name in self._descriptors:
             return self._descriptors[name]
@@ -192,11 +200,13 @@ class NodeParameters(NodeBase):
             return ros_types.ParameterDescriptor()
         raise ParameterNotDeclaredException(name)
 
-    def describe_parameters(self, names: Sequence[str]) -> list[Any]:
+    def describe_parameters(self, names: Sequence[str]) -> list[ros_types.ParameterDescriptor]:
         """The descriptors of parameters. Raises ParameterNotDeclaredException."""
         return [self.describe_parameter(name) for name in names]
 
-    def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
+    def set_descriptor(
+        self, name: str, descriptor: ros_types.ParameterDescriptor, alternative_value: Any = None
+    ) -> Any:
         """Replace a descriptor; return the value: the present one if it fits, else the alternative.
 
         Raises ParameterNotDeclaredException, ParameterImmutableException and InvalidParameterValueException.
@@ -216,7 +226,7 @@ class NodeParameters(NodeBase):
         self._parameters[name], self._descriptors[name] = parameter, descriptor
         return parameter.get_parameter_value()
 
-    def _set_atomically(self, parameters: list[Parameter]) -> Any:
+    def _set_atomically(self, parameters: list[Parameter]) -> ros_types.SetParametersResult:
         if self._pre_set_parameters_callbacks:
             parameters = [one for callback in self._pre_set_parameters_callbacks for one in callback(parameters)]
             if not parameters:
@@ -229,7 +239,7 @@ class NodeParameters(NodeBase):
             raise ParameterNotDeclaredException(unknown[1:])
         return self._set_all(parameters, None)
 
-    def _problem(self, parameter: Parameter, descriptor: Any) -> str:
+    def _problem(self, parameter: Parameter, descriptor: ros_types.ParameterDescriptor) -> str:
         """Why a value does not fit a descriptor, which gets its name and, with a dynamic type, its type."""
         descriptor.name = parameter.name
         if descriptor.dynamic_typing:
@@ -238,7 +248,9 @@ class NodeParameters(NodeBase):
             return reason
         return range_problem(parameter, descriptor)
 
-    def _rejection(self, parameters: list[Parameter], descriptors: Mapping[str, Any] | None) -> Any:
+    def _rejection(
+        self, parameters: list[Parameter], descriptors: Mapping[str, ros_types.ParameterDescriptor] | None
+    ) -> ros_types.SetParametersResult | None:
         """The result for values that are rejected, None if they are not."""
         for parameter in parameters:
             descriptor = (self._descriptors if descriptors is None else descriptors).get(parameter.name)
@@ -258,7 +270,9 @@ class NodeParameters(NodeBase):
                 return result
         return None
 
-    def _set_all(self, parameters: list[Parameter], descriptors: Mapping[str, Any] | None) -> Any:
+    def _set_all(
+        self, parameters: list[Parameter], descriptors: Mapping[str, ros_types.ParameterDescriptor] | None
+    ) -> ros_types.SetParametersResult:
         """Set all parameters or none; with descriptors they are declared."""
         rejection = self._rejection(parameters, descriptors)
         if rejection is not None:

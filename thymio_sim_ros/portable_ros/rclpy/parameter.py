@@ -107,7 +107,7 @@ class Parameter:
         self._name, self._type_, self._value = name, type_, value
 
     @classmethod
-    def from_parameter_msg(cls, param_msg: Any) -> Parameter:
+    def from_parameter_msg(cls, param_msg: ParameterMessage) -> Parameter:
         """The parameter of a message."""
         kind = Type(param_msg.value.type)
         return cls(param_msg.name, kind, parameter_value_to_python(param_msg.value))
@@ -127,19 +127,19 @@ class Parameter:
         """The value, None without one."""
         return self._value
 
-    def get_parameter_value(self) -> Any:
+    def get_parameter_value(self) -> ParameterValue:
         """The message of the value."""
         message = ParameterValue(type=self._type_.value)
         if self._type_ is not Type.NOT_SET:
             setattr(message, _FIELDS[self._type_.value], self._value)
         return message
 
-    def to_parameter_msg(self) -> Any:
+    def to_parameter_msg(self) -> ParameterMessage:
         """The message of the parameter."""
         return ParameterMessage(name=self._name, value=self.get_parameter_value())
 
 
-def get_parameter_value(string_value: str) -> Any:
+def get_parameter_value(string_value: str) -> ParameterValue:
     """The message of a value that is written as YAML."""
     try:
         value = yaml.safe_load(string_value)
@@ -160,7 +160,7 @@ def _yaml_type(value: Any) -> Type:
     return next((kind for kind in kinds if all(isinstance(one, _ARRAYS[kind]) for one in value)), Type.STRING)
 
 
-def parameter_value_to_python(parameter_value: Any) -> Any:
+def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
     """The value of a message, None without one. Raises RuntimeError for an unknown type."""
     kind = parameter_value.type
     if kind == ParameterType.PARAMETER_NOT_SET:

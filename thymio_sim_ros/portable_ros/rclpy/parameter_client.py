@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from thymio_sim_ros.portable_ros import ros_types
+from thymio_sim_ros.portable_ros.messages.message_class import Service, SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.client import Client
 from thymio_sim_ros.portable_ros.rclpy.event_handler import SubscriptionEventCallbacks
@@ -18,12 +19,12 @@ from thymio_sim_ros.portable_ros.rclpy.qos import (
     qos_profile_services_default,
 )
 from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridingOptions
-from thymio_sim_ros.portable_ros.rclpy.subscription import Subscription
+from thymio_sim_ros.portable_ros.rclpy.subscription import MessageInfo, Subscription
 from thymio_sim_ros.portable_ros.rclpy.task import Future
 
 __all__ = ["AsyncParameterClient"]
 
-DoneCallback = Callable[[Future], Any]
+DoneCallback = Callable[[Future[SrvResponseT]], object]
 
 
 class AsyncParameterClient:
@@ -38,7 +39,7 @@ class AsyncParameterClient:
     ) -> None:
         self.node, self.remote_node_name = node, remote_node_name
 
-        def client(kind: Any, name: str) -> Client:
+        def client(kind: type[Service[SrvRequestT, SrvResponseT]], name: str) -> Client[SrvRequestT, SrvResponseT]:
             full = f"{remote_node_name}/{name}"
             return node.create_client(kind, full, qos_profile=qos_profile, callback_group=callback_group)
 
@@ -50,7 +51,7 @@ class AsyncParameterClient:
         self._set_atomically = client(ros_types.SetParametersAtomically, "set_parameters_atomically")
 
     @property
-    def _clients(self) -> tuple[Client, ...]:
+    def _clients(self) -> tuple[Client[Any, Any], ...]:
         return self._get, self._list, self._set, self._get_types, self._describe, self._set_atomically
 
     def services_are_ready(self) -> bool:
@@ -66,57 +67,80 @@ class AsyncParameterClient:
         return True
 
     def list_parameters(
-        self, prefixes: list[str] | None = None, depth: int | None = None, callback: DoneCallback | None = None
-    ) -> Future:
+        self,
+        prefixes: list[str] | None = None,
+        depth: int | None = None,
+        callback: DoneCallback[ros_types.ListParameters.Response] | None = None,
+    ) -> Future[ros_types.ListParameters.Response]:
         """Ask for the names of parameters; without `depth`, at any depth."""
         request = ros_types.ListParameters.Request(prefixes=prefixes or [], depth=depth or 0)
         return _call(self._list, request, callback)
 
-    def get_parameters(self, names: list[str], callback: DoneCallback | None = None) -> Future:
+    def get_parameters(
+        self, names: list[str], callback: DoneCallback[ros_types.GetParameters.Response] | None = None
+    ) -> Future[ros_types.GetParameters.Response]:
         """Ask for values."""
         return _call(self._get, ros_types.GetParameters.Request(names=names), callback)
 
-    def set_parameters(self, parameters: Sequence[Parameter | Any], callback: DoneCallback | None = None) -> Future:
+    def set_parameters(
+        self,
+        parameters: Sequence[Parameter | ros_types.ParameterMessage],
+        callback: DoneCallback[ros_types.SetParameters.Response] | None = None,
+    ) -> Future[ros_types.SetParameters.Response]:
         """Set parameters one after the other; they are objects or messages."""
         request = ros_types.SetParameters.Request(parameters=_messages(parameters))
         return _call(self._set, request, callback)
 
-    def describe_parameters(self, names: list[str], callback: DoneCallback | None = None) -> Future:
+    def describe_parameters(
+        self, names: list[str], callback: DoneCallback[ros_types.DescribeParameters.Response] | None = None
+    ) -> Future[ros_types.DescribeParameters.Response]:
         """Ask for descriptors."""
         return _call(self._describe, ros_types.DescribeParameters.Request(names=names), callback)
 
-    def get_parameter_types(self, names: list[str], callback: DoneCallback | None = None) -> Future:
+    def get_parameter_types(
+        self, names: list[str], callback: DoneCallback[ros_types.GetParameterTypes.Response] | None = None
+    ) -> Future[ros_types.GetParameterTypes.Response]:
         """Ask for types."""
         return _call(self._get_types, ros_types.GetParameterTypes.Request(names=names), callback)
 
     def set_parameters_atomically(
-        self, parameters: Sequence[Parameter | Any], callback: DoneCallback | None = None
-    ) -> Future:
+        self,
+        parameters: Sequence[Parameter | ros_types.ParameterMessage],
+        callback: DoneCallback[ros_types.SetParametersAtomically.Response] | None = None,
+    ) -> Future[ros_types.SetParametersAtomically.Response]:
         """Set all parameters or none; they are objects or messages."""
         request = ros_types.SetParametersAtomically.Request(parameters=_messages(parameters))
         return _call(self._set_atomically, request, callback)
 
-    def delete_parameters(self, names: list[str], callback: DoneCallback | None = None) -> Future:
+    def delete_parameters(
+        self, names: list[str], callback: DoneCallback[ros_types.SetParameters.Response] | None = None
+    ) -> Future[ros_types.SetParameters.Response]:
         """Undeclare parameters, which only those with a dynamic type permit."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
-        self, parameter_file: str, use_wildcard: bool = False, callback: DoneCallback | None = None
-    ) -> Future:
+        self,
+        parameter_file: str,
+        use_wildcard: bool = False,
+        callback: DoneCallback[ros_types.SetParameters.Response] | None = None,
+    ) -> Future[ros_types.SetParameters.Response]:
         """Set the parameters of a file one after the other."""
         found = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters(list(found.values()), callback)
 
     def load_parameter_file_atomically(
-        self, parameter_file: str, use_wildcard: bool = False, callback: DoneCallback | None = None
-    ) -> Future:
+        self,
+        parameter_file: str,
+        use_wildcard: bool = False,
+        callback: DoneCallback[ros_types.SetParametersAtomically.Response] | None = None,
+    ) -> Future[ros_types.SetParametersAtomically.Response]:
         """Set all parameters of a file or none."""
         found = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters_atomically(list(found.values()), callback)
 
     def on_parameter_event(
         self,
-        callback: Callable[[Any], Any],
+        callback: Callable[[Any], object] | Callable[[Any, MessageInfo], object],
         qos_profile: QoSProfile = qos_profile_parameter_events,
         *,
         callback_group: CallbackGroup | None = None,
@@ -137,12 +161,14 @@ class AsyncParameterClient:
         )
 
 
-def _call(client: Client, request: Any, callback: DoneCallback | None) -> Future:
+def _call(
+    client: Client[SrvRequestT, SrvResponseT], request: SrvRequestT, callback: DoneCallback[SrvResponseT] | None
+) -> Future[SrvResponseT]:
     future = client.call_async(request)
     if callback is not None:
         future.add_done_callback(callback)
     return future
 
 
-def _messages(parameters: Sequence[Parameter | Any]) -> list[Any]:
+def _messages(parameters: Sequence[Parameter | ros_types.ParameterMessage]) -> list[ros_types.ParameterMessage]:
     return [one.to_parameter_msg() if isinstance(one, Parameter) else one for one in parameters]

@@ -15,7 +15,7 @@ __all__ = ["declared"]
 
 def declared(
     namespace: str, item: tuple[Any, ...], index: int, overrides: Mapping[str, Parameter]
-) -> tuple[Parameter, Any]:
+) -> tuple[Parameter, ros_types.ParameterDescriptor]:
     """The parameter and the descriptor that a tuple declares.
 
     Args:
@@ -56,7 +56,7 @@ def declared(
     return Parameter(name, value=value), descriptor
 
 
-def _default(name: str, second: Any, descriptor: Any) -> Any:
+def _default(name: str, second: Any, descriptor: ros_types.ParameterDescriptor) -> Any:
     """The default value of a declaration, whose descriptor gets the type."""
     if isinstance(second, Parameter.Type):
         if second is Parameter.Type.NOT_SET:

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any
+from typing import Any, TypeVar
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
@@ -18,6 +18,8 @@ from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridi
 
 __all__ = ["ParameterCallbackHandle", "ParameterEventCallbackHandle", "ParameterEventHandler"]
 
+T = TypeVar("T")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ParameterCallbackHandle:
@@ -25,14 +27,14 @@ class ParameterCallbackHandle:
 
     parameter_name: str
     node_name: str
-    callback: Callable[[Any], None]
+    callback: Callable[[ros_types.ParameterMessage], object]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ParameterEventCallbackHandle:
     """The registration of a callback for all messages of `/parameter_events`."""
 
-    callback: Callable[[Any], None]
+    callback: Callable[[ros_types.ParameterEvent], object]
 
 
 class _Callbacks:
@@ -57,7 +59,7 @@ class _Callbacks:
             other.callback(event)
 
     def add_parameter_callback(
-        self, parameter_name: str, node_name: str, callback: Callable[[Any], None]
+        self, parameter_name: str, node_name: str, callback: Callable[[ros_types.ParameterMessage], object]
     ) -> ParameterCallbackHandle:
         """Call back for a parameter of a node with this full name."""
         handle = ParameterCallbackHandle(parameter_name, node_name, callback)
@@ -73,7 +75,9 @@ class _Callbacks:
             if not self.parameter_callbacks[key]:
                 del self.parameter_callbacks[key]
 
-    def add_parameter_event_callback(self, callback: Callable[[Any], None]) -> ParameterEventCallbackHandle:
+    def add_parameter_event_callback(
+        self, callback: Callable[[ros_types.ParameterEvent], object]
+    ) -> ParameterEventCallbackHandle:
         """Call back for all events."""
         handle = ParameterEventCallbackHandle(callback)
         with self._lock:
@@ -86,7 +90,7 @@ class _Callbacks:
             _remove(self.event_callbacks, handle)
 
 
-def _remove(handles: list[Any], handle: object) -> None:
+def _remove(handles: list[T], handle: T) -> None:
     if handle not in handles:
         raise RuntimeError("Callback doesn't exist")
     handles.remove(handle)
@@ -124,7 +128,9 @@ class ParameterEventHandler:
         self.node.destroy_subscription(self.parameter_event_subscription)
 
     @staticmethod
-    def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any:
+    def get_parameter_from_event(
+        event: ros_types.ParameterEvent, parameter_name: str, node_name: str
+    ) -> ros_types.ParameterMessage | None:
         """The message of a parameter of a node, None if the event is not about it."""
         if event.node != node_name:
             return None
@@ -132,12 +138,12 @@ class ParameterEventHandler:
         return next((one for one in parameters if one.name == parameter_name), None)
 
     @staticmethod
-    def get_parameters_from_event(event: Any) -> Iterable[Any]:
+    def get_parameters_from_event(event: ros_types.ParameterEvent) -> Iterable[ros_types.ParameterMessage]:
         """The messages of all new and changed parameters."""
         yield from chain(event.new_parameters, event.changed_parameters)
 
     def add_parameter_callback(
-        self, parameter_name: str, node_name: str, callback: Callable[[Any], None]
+        self, parameter_name: str, node_name: str, callback: Callable[[ros_types.ParameterMessage], object]
     ) -> ParameterCallbackHandle:
         """Call back for a parameter of a node, whose name may be relative to the namespace of this one."""
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
@@ -146,7 +152,9 @@ class ParameterEventHandler:
         """Undo `add_parameter_callback`. Raises RuntimeError for an unknown handle."""
         self._callbacks.remove_parameter_callback(handle)
 
-    def add_parameter_event_callback(self, callback: Callable[[Any], None]) -> ParameterEventCallbackHandle:
+    def add_parameter_event_callback(
+        self, callback: Callable[[ros_types.ParameterEvent], object]
+    ) -> ParameterEventCallbackHandle:
         """Call back for all events."""
         return self._callbacks.add_parameter_event_callback(callback)
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.parameter import Parameter
 
 __all__ = ["REL_TOL", "range_problem", "type_problem"]
@@ -13,7 +13,7 @@ REL_TOL = 1e-6
 """Relative tolerance of limits and steps of numbers with a decimal point."""
 
 
-def type_problem(parameter: Parameter, descriptor: Any, *, is_declared: bool) -> str:
+def type_problem(parameter: Parameter, descriptor: ros_types.ParameterDescriptor, *, is_declared: bool) -> str:
     """Why the type of a value does not fit, empty if it does."""
     if is_declared and parameter.type_ is Parameter.Type.NOT_SET:
         return "Static parameter cannot be undeclared"
@@ -22,7 +22,7 @@ def type_problem(parameter: Parameter, descriptor: Any, *, is_declared: bool) ->
     return ""
 
 
-def range_problem(parameter: Parameter, descriptor: Any) -> str:
+def range_problem(parameter: Parameter, descriptor: ros_types.ParameterDescriptor) -> str:
     """Why a number is not in its range, empty if it is."""
     if parameter.type_ is Parameter.Type.INTEGER and descriptor.integer_range:
         return _integer_problem(parameter, descriptor.integer_range[0])
@@ -31,7 +31,7 @@ def range_problem(parameter: Parameter, descriptor: Any) -> str:
     return ""
 
 
-def _integer_problem(parameter: Parameter, limits: Any) -> str:
+def _integer_problem(parameter: Parameter, limits: ros_types.IntegerRange) -> str:
     low, high = sorted((limits.from_value, limits.to_value))
     name, value = parameter.name, parameter.value
     if value in (low, high):
@@ -46,7 +46,7 @@ def _integer_problem(parameter: Parameter, limits: Any) -> str:
     return ""
 
 
-def _float_problem(parameter: Parameter, limits: Any) -> str:
+def _float_problem(parameter: Parameter, limits: ros_types.FloatingPointRange) -> str:
     low, high = sorted((limits.from_value, limits.to_value))
     name, value = parameter.name, parameter.value
     if math.isclose(value, low, rel_tol=REL_TOL) or math.isclose(value, high, rel_tol=REL_TOL):

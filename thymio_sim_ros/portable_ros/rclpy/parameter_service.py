@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import weakref
+from collections.abc import Sequence
 from typing import Any
 
 from thymio_sim_ros.portable_ros import ros_types
@@ -40,7 +41,9 @@ class ParameterService:
             raise ReferenceError("Expected valid node weak reference")
         return node
 
-    def _describe(self, request: Any, response: Any) -> Any:
+    def _describe(
+        self, request: ros_types.DescribeParameters.Request, response: ros_types.DescribeParameters.Response
+    ) -> ros_types.DescribeParameters.Response:
         for name in request.names:
             try:
                 response.descriptors.append(self._node.describe_parameter(name))
@@ -49,7 +52,9 @@ class ParameterService:
                 return response
         return response
 
-    def _get(self, request: Any, response: Any) -> Any:
+    def _get(
+        self, request: ros_types.GetParameters.Request, response: ros_types.GetParameters.Response
+    ) -> ros_types.GetParameters.Response:
         for name in request.names:
             try:
                 parameter = self._node.get_parameter(name)
@@ -59,7 +64,9 @@ class ParameterService:
             response.values.append(parameter.get_parameter_value())
         return response
 
-    def _get_types(self, request: Any, response: Any) -> Any:
+    def _get_types(
+        self, request: ros_types.GetParameterTypes.Request, response: ros_types.GetParameterTypes.Response
+    ) -> ros_types.GetParameterTypes.Response:
         for name in request.names:
             try:
                 kind = self._node.get_parameter_type(name)
@@ -69,21 +76,29 @@ class ParameterService:
             response.types.append(kind.value if isinstance(kind, Parameter.Type) else kind)
         return response
 
-    def _list(self, request: Any, response: Any) -> Any:
+    def _list(
+        self, request: ros_types.ListParameters.Request, response: ros_types.ListParameters.Response
+    ) -> ros_types.ListParameters.Response:
         response.result = self._node.list_parameters(list(request.prefixes), request.depth)
         return response
 
-    def _set(self, request: Any, response: Any) -> Any:
+    def _set(
+        self, request: ros_types.SetParameters.Request, response: ros_types.SetParameters.Response
+    ) -> ros_types.SetParameters.Response:
         for one in request.parameters:
             response.results.append(self._result([one]))
         return response
 
-    def _set_atomically(self, request: Any, response: Any) -> Any:
+    def _set_atomically(
+        self, request: ros_types.SetParametersAtomically.Request, response: ros_types.SetParametersAtomically.Response
+    ) -> ros_types.SetParametersAtomically.Response:
         response.result = self._result(request.parameters)
         return response
 
-    def _result(self, messages: list[Any]) -> Any:
+    def _result(self, messages: Sequence[ros_types.ParameterMessage]) -> ros_types.SetParametersResult:
         try:
-            return self._node.set_parameters_atomically([Parameter.from_parameter_msg(one) for one in messages])
+            parameters = [Parameter.from_parameter_msg(one) for one in messages]
+            result: ros_types.SetParametersResult = self._node.set_parameters_atomically(parameters)
         except ParameterNotDeclaredException as error:
             return ros_types.SetParametersResult(successful=False, reason=str(error))
+        return result

@@ -5,12 +5,13 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Generic
 
 from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
 from thymio_sim_ros.portable_ros.graph.entity import Handle
 from thymio_sim_ros.portable_ros.graph.protocols import Sample
 from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.messages.message_class import MsgT
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
 from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, QoSProfile
@@ -22,13 +23,13 @@ if TYPE_CHECKING:
 __all__ = ["Publisher"]
 
 
-class Publisher:
+class Publisher(Generic[MsgT]):
     """Sends serialized messages to all matched subscriptions."""
 
     def __init__(
         self,
         context: Context,
-        msg_type: Any,
+        msg_type: type[MsgT],
         topic: str,
         topic_name: str,
         qos_profile: QoSProfile,
@@ -65,7 +66,7 @@ class Publisher:
         with self._handle:
             return self._logger_name
 
-    def publish(self, msg: Any) -> None:
+    def publish(self, msg: MsgT | bytes) -> None:
         """Send a message, or the bytes of a serialized one. Raises TypeError for a message of another type."""
         with self._handle:
             if isinstance(msg, bytes):

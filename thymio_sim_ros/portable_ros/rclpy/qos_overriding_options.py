@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["InvalidQosOverridesError", "QoSOverridingOptions", "QosCallbackResult", "QosCallbackType"]
 
 QosCallbackResult = ros_types.SetParametersResult
-QosCallbackType = Callable[[QoSProfile], Any]
+QosCallbackType = Callable[[QoSProfile], ros_types.SetParametersResult]
 
 
 class InvalidQosOverridesError(Exception):
@@ -64,7 +64,7 @@ class QoSOverridingOptions:
 
 
 def _declare_qos_parameters(
-    entity_type: type[Publisher | Subscription],
+    entity_type: type[Publisher[Any] | Subscription],
     node: NodeParameters,
     topic_name: str,
     qos: QoSProfile,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.messages.message_class import Message
 from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
 
 if TYPE_CHECKING:
@@ -15,10 +16,10 @@ if TYPE_CHECKING:
 __all__ = ["Service"]
 
 
-class Service(ServiceEntity):
+class Service(ServiceEntity[Any, Any]):
     """Answers requests; each call gets a request of its own and an empty response."""
 
-    def __init__(self, of: ServiceDescription, callback: Callable[..., Any]) -> None:
+    def __init__(self, of: ServiceDescription[Any, Any], callback: Callable[..., Any]) -> None:
         super().__init__(of)
         self.callback = callback
         self._queue: EventQueue[tuple[ClientEnd, int, bytes]] = EventQueue(of.qos_profile.kept)
@@ -28,7 +29,7 @@ class Service(ServiceEntity):
         if self._queue.put((client, sequence, request)):
             self.notify()
 
-    def send_response(self, response: Any, header: tuple[ClientEnd, int]) -> None:
+    def send_response(self, response: Message, header: tuple[ClientEnd, int]) -> None:
         """Answer a request. Raises TypeError for a response of another type."""
         with self._handle:
             if not isinstance(response, self.srv_type.Response):
@@ -48,7 +49,7 @@ class Service(ServiceEntity):
         client, sequence, data = found
         return self._answer, (cdr.deserialize(data, self.srv_type.Request), (client, sequence))
 
-    async def _answer(self, request: Any, header: tuple[ClientEnd, int]) -> None:
+    async def _answer(self, request: Message, header: tuple[ClientEnd, int]) -> None:
         response = self.callback(request, self.srv_type.Response())
         if hasattr(response, "__await__"):
             response = await response

@@ -5,11 +5,12 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.messages.message_class import Message
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
 
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
     from thymio_sim_ros.portable_ros.graph.protocols import PublisherEnd, Sample
 
-__all__ = ["Subscription"]
+__all__ = ["MessageInfo", "Subscription"]
+
+MessageInfo: TypeAlias = dict[str, int | None]
 
 
 class Subscription(Entity):
@@ -31,10 +34,10 @@ class Subscription(Entity):
 
     def __init__(
         self,
-        msg_type: Any,
+        msg_type: type[Message],
         topic: str,
         topic_name: str,
-        callback: Callable[..., Any],
+        callback: Callable[..., object],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         raw: bool,
@@ -63,12 +66,12 @@ class Subscription(Entity):
             return self._logger_name
 
     @property
-    def callback(self) -> Callable[..., Any]:
+    def callback(self) -> Callable[..., object]:
         """What is called for each message. Raises RuntimeError for a function that takes neither one nor two values."""
         return self._callback
 
     @callback.setter
-    def callback(self, value: Callable[..., Any]) -> None:
+    def callback(self, value: Callable[..., object]) -> None:
         self._callback = value
         if _accepts(value, 1):
             self._callback_type = Subscription.CallbackType.MessageOnly
@@ -117,7 +120,7 @@ class Subscription(Entity):
         message = sample.data if self.raw else cdr.deserialize(sample.data, self.msg_type)
         if self._callback_type is Subscription.CallbackType.MessageOnly:
             return self._callback, (message,)
-        info = {
+        info: MessageInfo = {
             "source_timestamp": sample.source_timestamp,
             "received_timestamp": sample.source_timestamp,
             "publication_sequence_number": sample.sequence_number,
@@ -126,7 +129,7 @@ class Subscription(Entity):
         return self._callback, (message, info)
 
 
-def _accepts(callback: Callable[..., Any], count: int) -> bool:
+def _accepts(callback: Callable[..., object], count: int) -> bool:
     """Whether a callback can be called with so many arguments."""
     try:
         inspect.signature(callback).bind(*[None] * count)

@@ -9,12 +9,14 @@ import warnings
 import weakref
 from collections.abc import Callable, Coroutine, Generator, Mapping, Sequence
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import Scheduler, TaskCreator
 
 __all__ = ["Future", "Task"]
+
+T = TypeVar("T")
 
 
 def _nothing() -> None:
@@ -29,16 +31,16 @@ class FutureState(Enum):
     FINISHED = "FINISHED"
 
 
-class Future:
+class Future(Generic[T]):
     """A value, an exception or a cancellation that comes later."""
 
     def __init__(self, *, executor: TaskCreator | None = None) -> None:
         self._lock = threading.RLock()
         self._state = FutureState.PENDING
         self._is_raised = False
-        self._result: Any = None
+        self._result: T | None = None
         self._exception: BaseException | None = None
-        self._callbacks: list[Callable[[Any], Any]] = []
+        self._callbacks: list[Callable[[Future[T]], object]] = []
         self._waiting: list[Task] = []
         self._set_executor(executor)
 
@@ -46,7 +48,7 @@ class Future:
         if self._exception is not None and not self._is_raised:
             print(f"The following exception was never retrieved: {self._exception}", file=sys.stderr)
 
-    def __await__(self) -> Generator[Future, None, Any]:
+    def __await__(self) -> Generator[Future[T], None, T | None]:
         while self._pending():
             yield self
         return self.result()
@@ -70,7 +72,7 @@ class Future:
         """Whether there is neither a result nor an exception nor a cancellation."""
         return self._state is FutureState.PENDING
 
-    def result(self) -> Any:
+    def result(self) -> T | None:
         """The result, None before it is there. Raises the exception if there is one."""
         if self._exception is not None:
             raise self._retrieved(self._exception)
@@ -81,7 +83,7 @@ class Future:
         self._is_raised = True
         return self._exception
 
-    def set_result(self, result: Any) -> None:
+    def set_result(self, result: T) -> None:
         """Set the result and call all callbacks."""
         self._result = result
         self._end(FutureState.FINISHED)
@@ -91,7 +93,7 @@ class Future:
         self._exception, self._is_raised = exception, False
         self._end(FutureState.FINISHED)
 
-    def add_done_callback(self, callback: Callable[[Any], Any]) -> None:
+    def add_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
         """Call the callback with the future once it is done; at once, with its exceptions, if it is done already."""
         with self._lock:
             if self._pending():
@@ -103,7 +105,7 @@ class Future:
         else:
             callback(self)
 
-    def remove_done_callback(self, callback: Callable[[Any], Any]) -> bool:
+    def remove_done_callback(self, callback: Callable[[Future[T]], object]) -> bool:
         """Remove a callback; return whether there was one."""
         with self._lock:
             if callback not in self._callbacks:
@@ -146,7 +148,7 @@ class Future:
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
 
-class Task(Future):
+class Task(Future[Any]):
     """A callback or a coroutine; calling the task runs it, until it is done or waits for a future."""
 
     def __init__(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, overload
+from typing import overload
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.clock_type import ClockType
@@ -110,13 +110,13 @@ class Time:
 
     __hash__ = None  # type: ignore[assignment]  # as rclpy's
 
-    def to_msg(self) -> Any:
+    def to_msg(self) -> ros_types.TimeMessage:
         """The message of the time."""
         seconds, nanoseconds = self.seconds_nanoseconds()
         return ros_types.TimeMessage(sec=seconds, nanosec=nanoseconds)
 
     @classmethod
-    def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
+    def from_msg(cls, msg: ros_types.TimeMessage, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
         """The time of a message. Raises TypeError for a message of another type."""
         if not isinstance(msg, ros_types.TimeMessage):
             raise TypeError("Must pass a builtin_interfaces.msg.Time object")

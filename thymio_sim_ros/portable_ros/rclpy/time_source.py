@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.clock import ROSClock
@@ -80,7 +80,7 @@ class TimeSource:
         clock._set_ros_time_is_active(self._ros_time_is_active)
         self._associated_clocks.add(clock)
 
-    def clock_callback(self, msg: Any) -> None:
+    def clock_callback(self, msg: ros_types.Clock) -> None:
         """Set all clocks to the time of a message."""
         self._last_time_set = Time.from_msg(msg.clock)
         for clock in self._associated_clocks:
@@ -101,7 +101,7 @@ class TimeSource:
     def _get_node(self) -> NodeEndpoints | None:
         return None if self._node_weak_ref is None else self._node_weak_ref()
 
-    def _on_parameter_event(self, parameters: list[Parameter]) -> Any:
+    def _on_parameter_event(self, parameters: list[Parameter]) -> ros_types.SetParametersResult:
         """Follow a change of the parameter, or reject it."""
         for parameter in parameters:
             if parameter.name != USE_SIM_TIME_NAME:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from thymio_sim_ros.portable_ros.messages.message_class import MsgT
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.task import Future
@@ -15,10 +16,10 @@ __all__ = ["wait_for_message"]
 
 
 def wait_for_message(
-    msg_type: Any, node: Node, topic: str, *, qos_profile: QoSProfile | int = 1, time_to_wait: float = -1
-) -> tuple[bool, Any]:
+    msg_type: type[MsgT], node: Node, topic: str, *, qos_profile: QoSProfile | int = 1, time_to_wait: float = -1
+) -> tuple[bool, MsgT | None]:
     """Wait for a message of a topic; return whether there is one, and the message or None."""
-    received = Future()
+    received: Future[MsgT] = Future()
     waiter = Node(
         f"_{node.get_name()}_waiter",
         context=node.context,

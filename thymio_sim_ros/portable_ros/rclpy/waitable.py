@@ -97,7 +97,7 @@ class Waitable:
     def __init__(self, callback_group: CallbackGroup) -> None:
         self.callback_group = callback_group
         self.callback_group.add_entity(self)
-        self._futures: list[Future] = []
+        self._futures: list[Future[Any]] = []
 
     def __enter__(self) -> None:
         """Called before a wait."""
@@ -107,11 +107,11 @@ class Waitable:
     ) -> None:
         """Called after a wait."""
 
-    def add_future(self, future: Future) -> None:
+    def add_future(self, future: Future[Any]) -> None:
         """Call the callbacks of a future in the executor of the node."""
         self._futures.append(future)
 
-    def remove_future(self, future: Future) -> None:
+    def remove_future(self, future: Future[Any]) -> None:
         """Undo `add_future`. Raises ValueError for an unknown future."""
         self._futures.remove(future)
 
