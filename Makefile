@@ -78,6 +78,8 @@ lint: $(VENV)/.ready-lint  ## check format, style and types
 	@# A text file without an encoding is another one on Windows. The rule is in preview, hence apart.
 	@$(PYTHON) -m ruff check --quiet --preview --select PLW1514 aseba_vm thymio_sim_ros web_ui/build.py hatch_build.py
 	@git ls-files -z | xargs -0 $(PYTHON) -m codespell_lib --dictionary - --dictionary .ci/glossary.txt
+	@# rclpy and messages are those of the embedded graph, with or without a ROS (docs/portable-ros.md).
+	@$(PYTHON) -m thymio_sim_ros.portable_ros.type_stubs build/typings
 	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros web_ui/build.py
 
 docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site

@@ -5,6 +5,7 @@ node that has. Events carry 16-bit integers, so the unit is mm, and values are l
 """
 
 import rclpy
+from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.executors import ExternalShutdownException
@@ -24,7 +25,7 @@ class EventAnswer(Node):
             description="Units of the answer in a meter: 1000 is mm", floating_point_range=[scales]
         )
         self.declare_parameter("units_per_meter", 1000.0, about)
-        self.position = None
+        self.position: Point | None = None
         self.create_subscription(Odometry, "odom", self.on_odometry, 10)
         self.create_subscription(Int16MultiArray, "aseba/events/where", self.on_where, 10)
         self.answers = self.create_publisher(Int16MultiArray, "aseba/emit/here", 10)

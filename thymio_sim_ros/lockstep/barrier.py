@@ -8,6 +8,7 @@ whatever its topic and its reliability (docs/decisions.md).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from rclpy.context import Context
 from rclpy.node import Node
@@ -70,7 +71,8 @@ class Barrier:
 
     def _take(self) -> str:
         with self._subscription.handle:
-            mark_message = self._subscription.handle.take_message(String, False)  # not raw
+            handle: Any = self._subscription.handle  # of the compiled part of rclpy
+            mark_message = handle.take_message(String, False)  # not raw
         return "" if mark_message is None else str(mark_message[0].data)
 
     def _ignore(self, _message: String) -> None:

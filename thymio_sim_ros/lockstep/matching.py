@@ -6,8 +6,12 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence, Set
 from typing import Any
 
+from rclpy.client import Client
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
+from rclpy.service import Service
+from rclpy.subscription import Subscription
 
 from thymio_sim_ros.names.type_names import type_name
 
@@ -53,8 +57,9 @@ def is_complete(nodes: Sequence[Node], expected: Mapping[str, Mapping[str, int]]
     published, subscribed = expected["publishers"], expected["subscriptions"]
     used = (published.keys() & subscribed.keys()).difference(EVERYWHERE)
     view = nodes[0]
-    ends: list[Any] = [end for node in nodes for end in (*node.publishers, *node.subscriptions)]
-    own = {end.topic_name for end in ends} & used
+    own = {publisher.topic_name for node in nodes for publisher in node.publishers}
+    own |= {subscription.topic_name for node in nodes for subscription in node.subscriptions}
+    own &= used
     return (
         all(view.count_publishers(topic) >= published[topic] for topic in own)
         and all(view.count_subscribers(topic) >= subscribed[topic] for topic in own)
@@ -74,18 +79,18 @@ def _node_is_matched(node: Node, topics: Set[str]) -> bool:
     )
 
 
-def _service(end: Any) -> str:
+def _service(end: Service | Client[Any, Any]) -> str:
     return f"{end.service_name} {type_name(end.srv_type)}"
 
 
-def _publisher_is_matched(node: Node, publisher: Any) -> bool:
+def _publisher_is_matched(node: Node, publisher: Publisher[Any]) -> bool:
     own = type_name(publisher.msg_type)
     infos = node.get_subscriptions_info_by_topic(publisher.topic_name)
     fits = sum(info.topic_type == own and fit(publisher.qos_profile, info.qos_profile) for info in infos)
     return bool(publisher.get_subscription_count() >= fits)
 
 
-def is_matched(node: Node, subscription: Any) -> bool:
+def is_matched(node: Node, subscription: Subscription) -> bool:
     """Whether a subscription is matched with all compatible publishers, including those of other processes."""
     own = type_name(subscription.msg_type)
     infos = node.get_publishers_info_by_topic(subscription.topic_name)

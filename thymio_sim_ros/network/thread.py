@@ -45,8 +45,8 @@ class NetworkThread:
         settings: NetworkSettings,
         *,
         tokens: Tokens | None = None,
-        warn: Callable[[str], None],
-        info: Callable[[str], None],
+        warn: Callable[[str], object],
+        info: Callable[[str], object],
     ) -> None:
         """Start the thread. `tokens`: those that clients on other computers need, where the protocol allows it.
 

@@ -16,12 +16,12 @@ from types import ModuleType
 
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["MixedInstallationError", "install", "is_served"]
+__all__ = ["APIS", "FORMS", "MODULES", "MixedInstallationError", "install", "is_served"]
 
 _ROOM = __package__
-_APIS = ("rclpy", "rosidl_parser")
-_FORMS = ("msg", "srv")
-_MODULES = ("test_msgs.message_fixtures",)
+APIS = ("rclpy", "rosidl_parser")
+FORMS = ("msg", "srv")
+MODULES = ("test_msgs.message_fixtures",)
 """What packages of messages have beside their messages."""
 
 
@@ -68,7 +68,7 @@ class _Finder(MetaPathFinder):
     ) -> ModuleSpec | None:
         """The spec of a module, None for others."""
         top, _, rest = fullname.partition(".")
-        if top in _APIS or fullname in _MODULES:
+        if top in APIS or fullname in MODULES:
             own = importlib.util.find_spec(f"{_ROOM}.{fullname}")
             if own is None:
                 return None
@@ -76,7 +76,7 @@ class _Finder(MetaPathFinder):
             return ModuleSpec(fullname, _RoomLoader(fullname), origin=own.origin, is_package=is_package)
         from thymio_sim_ros.portable_ros.messages.definitions import PACKAGES
 
-        if top not in PACKAGES or rest not in ("", *_FORMS):
+        if top not in PACKAGES or rest not in ("", *FORMS):
             return None
         return ModuleSpec(fullname, _MessagesLoader(), origin=__file__, is_package=not rest)
 
@@ -93,7 +93,7 @@ def install(*, is_forced: bool = False) -> bool:
         return False
     from thymio_sim_ros.portable_ros.messages.definitions import PACKAGES
 
-    imported = sorted(name for name in (*_APIS, *PACKAGES) if name in sys.modules)
+    imported = sorted(name for name in (*APIS, *PACKAGES) if name in sys.modules)
     if imported:
         raise MixedInstallationError(
             f"found {imported[0]} of another ROS imported already, expected none: install the embedded graph first"

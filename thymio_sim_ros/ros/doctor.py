@@ -12,7 +12,7 @@ import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -20,12 +20,16 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 from std_msgs.msg import String
 
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 from thymio_sim_ros.ros.interface import qos
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["Examination", "NothingFoundError", "TopicUse", "examine"]
 
@@ -171,7 +175,7 @@ class _Doctor:
             return
         self._listened.add((use.name, use.type))
 
-        def receive(message: Any) -> None:
+        def receive(message: Message) -> None:
             self._last[use.name, use.type] = _text(message), time.monotonic()
 
         try:
@@ -227,21 +231,21 @@ class _Doctor:
                 yield f"{topic} has no publisher: the robot moves by its program and from the page only"
 
 
-def _nodes(infos: Iterable[Any], kind: str) -> tuple[str, ...]:
+def _nodes(infos: Iterable[TopicEndpointInfo], kind: str) -> tuple[str, ...]:
     """The nodes of the endpoints of a type."""
     return tuple(
         sorted({f"{info.node_namespace.rstrip('/')}/{info.node_name}" for info in infos if info.topic_type == kind})
     )
 
 
-def _text(message: Any) -> str:
+def _text(message: Message) -> str:
     """The values of a message that are not zero or empty, on one line."""
     values = list(_values(message, ""))
     shown = ", ".join(f"{name} {value}" for name, value in values[:_MAX_VALUES])
     return (shown or "all values are zero") + (", …" if len(values) > _MAX_VALUES else "")
 
 
-def _values(message: Any, prefix: str) -> Iterator[tuple[str, str]]:
+def _values(message: Message, prefix: str) -> Iterator[tuple[str, str]]:
     for name in message.get_fields_and_field_types():
         value = getattr(message, name)
         full = f"{prefix}{name}"

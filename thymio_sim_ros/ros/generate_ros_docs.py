@@ -277,10 +277,10 @@ def _value(value: object) -> str:
 
 def _limits(parameter: parameters.Declared) -> str:
     descriptor = parameter.descriptor
-    for bounds in descriptor.floating_point_range:
-        return f"{bounds.from_value:g}…{bounds.to_value:g}"
-    for bounds in descriptor.integer_range:
-        return f"{bounds.from_value}…{bounds.to_value}"
+    for floats in descriptor.floating_point_range:
+        return f"{floats.from_value:g}…{floats.to_value:g}"
+    for integers in descriptor.integer_range:
+        return f"{integers.from_value}…{integers.to_value}"
     return _cell(descriptor.additional_constraints)
 
 

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Generic, Literal, TypeVar
 
 from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["Awaited", "NothingYetError"]
 
 
+T = TypeVar("T")
+
+
 class NothingYetError(ThymioSimError, IndexError):
     """There is nothing yet, such as no message on a topic; `until` waits for it."""
 
 
-class Awaited:
+class Awaited(Generic[T]):
     """A condition of `until`."""
 
-    def __init__(self, condition: Callable[[], Any]) -> None:
+    def __init__(self, condition: Callable[[], T]) -> None:
         self._condition = condition
         self._missing = ""
 
-    def __call__(self) -> Any:
+    def __call__(self) -> T | Literal[False]:
         """The value of the condition; False while it raises NothingYetError."""
         try:
             value = self._condition()

@@ -43,7 +43,7 @@ class Buffer(BufferInterface):
         self._core = BufferCore(CACHE_NS if cache_time is None else cache_time.nanoseconds)
         self._clock = Clock() if node is None else node.get_clock()
         self._changed = threading.Condition()
-        self._waiting: dict[Future, Callable[[], bool]] = {}
+        self._waiting: dict[Future[bool], Callable[[], bool]] = {}
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
         """Store a transform. Raises TransformException if it is invalid or too old."""
@@ -206,7 +206,7 @@ class Buffer(BufferInterface):
         with self._changed:
             return self._core.velocity(*frames, _ns(time), averaging_interval.nanoseconds)
 
-    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> Future:
+    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time | TimeMessage) -> Future[bool]:
         """A future whose result is True as soon as the transform is known."""
         return self._future(lambda: self._core.lookup(target_frame, source_frame, _ns(time)))
 
@@ -217,7 +217,7 @@ class Buffer(BufferInterface):
         source_frame: str,
         source_time: Time | TimeMessage,
         fixed_frame: str,
-    ) -> Future:
+    ) -> Future[bool]:
         """A future whose result is True as soon as the transform between two times is known."""
         return self._future(
             lambda: self._core.lookup_full(target_frame, _ns(target_time), source_frame, _ns(source_time), fixed_frame)
@@ -280,8 +280,8 @@ class Buffer(BufferInterface):
                 return
             self._changed.wait(min(left_s, POLL_S))
 
-    def _future(self, lookup: Callable[[], StampedTransform]) -> Future:
-        future = Future()
+    def _future(self, lookup: Callable[[], StampedTransform]) -> Future[bool]:
+        future: Future[bool] = Future()
         with self._changed:
             if not _is_known(lookup):
                 self._waiting[future] = lambda: _is_known(lookup)
@@ -413,7 +413,7 @@ class StaticTransformBroadcaster:
 
 
 def _several(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
-    return [transform] if hasattr(transform, "child_frame_id") else list(transform)
+    return list(transform) if isinstance(transform, Iterable) else [transform]
 
 
 def _encoded(transforms: Iterable[TransformStamped]) -> bytes:

@@ -7,7 +7,7 @@ functions that convert them from and to messages of ROS (`ConvertRegistration`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from builtin_interfaces.msg import Time as TimeMessage
 from geometry_msgs.msg import TransformStamped
@@ -23,6 +23,12 @@ __all__ = ["NO_WAIT", "BufferInterface", "ConvertRegistration", "Stamped", "Tran
 NO_WAIT = Duration()
 
 Key = TypeVar("Key")
+T = TypeVar("T", bound="_WithHeader")
+
+
+class _WithHeader(Protocol):
+    header: Header
+
 
 _transformers: dict[type, Callable[[Any, TransformStamped], Any]] = dict(TRANSFORMERS)
 _to_message: dict[type, Callable[[Any], Any]] = {kind: lambda message: message for kind in TRANSFORMERS}
@@ -89,7 +95,7 @@ def convert(a: Any, b_type: type) -> Any:
     return from_message(registration.get_to_msg(type(a))(a))
 
 
-def Stamped(obj: Any, stamp: TimeMessage, frame_id: str) -> Any:  # noqa: N802  # as tf2's
+def Stamped(obj: T, stamp: TimeMessage, frame_id: str) -> T:  # noqa: N802  # as tf2's
     """Give an object a header with a time and a frame, and return it."""
     obj.header = Header(stamp=stamp, frame_id=frame_id)
     return obj
@@ -171,7 +177,7 @@ def _registered(register: dict[Key, Callable[..., Any]], key: Key, adds: str) ->
     raise TypeException(f"found {_name(key)}, expected one of {known}; {adds} registers a function for it")
 
 
-def _name(key: Any) -> str:
+def _name(key: object) -> str:
     return " to ".join(one.__name__ for one in (key if isinstance(key, tuple) else (key,)))
 
 

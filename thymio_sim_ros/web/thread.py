@@ -26,7 +26,7 @@ class PageThread:
     """
 
     def __init__(
-        self, content: Content, settings: Settings, *, address: str, port: int, warn: Callable[[str], None]
+        self, content: Content, settings: Settings, *, address: str, port: int, warn: Callable[[str], object]
     ) -> None:
         """Start serving. Raises OSError if the address and port cannot be used."""
         self._content = content

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import Any
 
 from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.subscription import Subscription
 from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.device.behavior_host import is_internal
@@ -38,8 +39,8 @@ class EventEndpoints:
         self._any_emit = node.create_subscription(
             Int16MultiArray, names.topic("_aseba/emit"), self._on_any_emit, qos.EVENTS
         )
-        self._publishers: dict[str, Any] = {}
-        self._subscriptions: list[Any] = []
+        self._publishers: dict[str, Publisher[Int16MultiArray]] = {}
+        self._subscriptions: list[Subscription] = []
 
     @property
     def has_subscribers(self) -> bool:

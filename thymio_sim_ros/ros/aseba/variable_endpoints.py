@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Sequence
-from typing import Any
 
 from rcl_interfaces.msg import (
     IntegerRange,
@@ -20,6 +19,7 @@ from rcl_interfaces.msg import (
 )
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.device.editor.help import help_of
@@ -47,7 +47,7 @@ class VariableEndpoints:
         self._node = node
         self._names = names
         self._owner, self._robot = owner, robot
-        self._watched: dict[str, Any] = {}
+        self._watched: dict[str, Publisher[Int16MultiArray]] = {}
         self._published: dict[str, tuple[int, ...]] = {}
         self._places: list[tuple[str, int, int]] = []
         self._last_table: list[int] = []

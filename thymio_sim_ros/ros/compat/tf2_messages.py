@@ -134,9 +134,7 @@ _TFMessage.__name__ = _TFMessage.__qualname__ = "TFMessage"
 _TFMessage.__module__ = "tf2_msgs.msg._tf_message"  # the name of the type in tools of ROS is made of these
 
 
-if TYPE_CHECKING:
-    TFMessage: Any
-elif course_packages.is_installed("tf2_msgs"):
+if TYPE_CHECKING or course_packages.is_installed("tf2_msgs"):
     from tf2_msgs.msg import TFMessage
 else:
     TFMessage = _TFMessage

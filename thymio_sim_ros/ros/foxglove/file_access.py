@@ -9,10 +9,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.files.loading import NO_PROGRAM, is_playground_text
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["call_refusal", "parameter_refusal"]
 
@@ -45,19 +50,19 @@ def parameter_refusal(name: str, value: object) -> str:
     return next((refusal(value) for pattern, refusal in _PARAMETERS if pattern.fullmatch(name)), "")
 
 
-def call_refusal(type_name: str, request: Any) -> str:
+def call_refusal(type_name: str, request: Message) -> str:
     """The reason why a client may not call a service of this type with this request, or an empty string."""
     check = _CALLS.get(type_name)
     return "" if check is None else check(request)
 
 
-def _set_parameters(request: Any) -> str:
+def _set_parameters(request: SetParameters.Request | SetParametersAtomically.Request) -> str:
     given = ((item.name, item.value.string_value) for item in request.parameters if item.value.string_value)
     refusals = ((name, parameter_refusal(name, value)) for name, value in given)
     return next((f"{name}: {reason}" for name, reason in refusals if reason), "")
 
 
-def _load_world(request: Any) -> str:
+def _load_world(request: Any) -> str:  # the package may not be installed
     uri = getattr(request, "world_resource", request).uri  # version 2 has it in a separate field
     return _playground_refusal(uri) if uri else ""
 

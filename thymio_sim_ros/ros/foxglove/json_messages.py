@@ -12,11 +12,14 @@ import json
 import math
 import re
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.bridge.protocol import bounded_json
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.foxglove.types import full_name, load_type
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message, MsgT
 
 __all__ = ["JsonMessageError", "from_json", "to_json"]
 
@@ -32,7 +35,7 @@ class JsonMessageError(ThymioSimError, ValueError):
     """JSON does not fit the message type; the text says where."""
 
 
-def from_json(data: bytes, message_type: Any) -> Any:
+def from_json(data: bytes, message_type: type[MsgT]) -> MsgT:
     """Convert UTF-8 JSON to a message of the class. Raises JsonMessageError."""
     try:
         value = bounded_json.loads(data.decode())
@@ -45,19 +48,19 @@ def from_json(data: bytes, message_type: Any) -> Any:
     return message
 
 
-def _messages_in(value: Any) -> int:
+def _messages_in(value: object) -> int:
     """Number of objects in a JSON value: each becomes a message, which takes about 20 µs."""
     if isinstance(value, dict):
         return 1 + sum(_messages_in(item) for item in value.values() if isinstance(item, (dict, list)))
     return sum(_messages_in(item) for item in value if isinstance(item, (dict, list))) if isinstance(value, list) else 0
 
 
-def to_json(message: Any) -> bytes:
+def to_json(message: Message) -> bytes:
     """Convert a message to UTF-8 JSON; NaN and infinity, which JSON does not have, become null."""
     return json.dumps(_plain(message), allow_nan=False, separators=(",", ":")).encode()
 
 
-def _fill(message: Any, value: Any, where: str) -> None:
+def _fill(message: Message, value: object, where: str) -> None:
     if not isinstance(value, dict):
         raise JsonMessageError(f"{where}: expected an object, found {value!r:.40}")
     fields = message.get_fields_and_field_types()
@@ -68,7 +71,7 @@ def _fill(message: Any, value: Any, where: str) -> None:
         setattr(message, key, _convert(item, kind, f"{where}.{key}"))
 
 
-def _convert(value: Any, kind: str, where: str) -> Any:
+def _convert(value: object, kind: str, where: str) -> object:
     is_list = _LIST.match(kind)
     if is_list is not None:
         items = _convert_list(value, is_list["item"] or is_list["cell"], where)
@@ -83,7 +86,7 @@ def _convert(value: Any, kind: str, where: str) -> Any:
     return _convert_scalar(value, kind, where)
 
 
-def _convert_list(value: Any, kind: str, where: str) -> list[Any]:
+def _convert_list(value: object, kind: str, where: str) -> list[object]:
     if isinstance(value, str) and kind in ("octet", "uint8", "int8"):
         try:
             data = base64.b64decode(value, validate=True)
@@ -97,7 +100,7 @@ def _convert_list(value: Any, kind: str, where: str) -> list[Any]:
     return [_convert(item, kind, f"{where}[{index}]") for index, item in enumerate(value)]
 
 
-def _convert_scalar(value: Any, kind: str, where: str) -> Any:
+def _convert_scalar(value: object, kind: str, where: str) -> object:
     is_text = _TEXT.match(kind)
     if is_text is not None:
         if isinstance(value, str) and _is_utf8(value) and len(value.encode()) <= int(is_text[1] or sys.maxsize):

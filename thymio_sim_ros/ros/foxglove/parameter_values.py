@@ -83,10 +83,12 @@ def to_ros(parameter: Parameter, current: int = ParameterType.PARAMETER_NOT_SET)
         value = tuple(_float(item) for item in (value if isinstance(value, tuple) else (value,)))
     for item in value if isinstance(value, tuple) else (value,):
         _check(item)
-    return ParameterValue(type=code, **{_FIELDS[code]: list(value) if isinstance(value, tuple) else value})
+    message = ParameterValue(type=code)
+    setattr(message, _FIELDS[code], list(value) if isinstance(value, tuple) else value)
+    return message
 
 
-def _kind(value: Any, current: int) -> Any:
+def _kind(value: Any, current: int) -> int:
     if not isinstance(value, tuple):
         code = _SCALARS[type(value)]
         is_double = current == ParameterType.PARAMETER_DOUBLE and type(value) is int

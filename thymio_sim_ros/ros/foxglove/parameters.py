@@ -11,8 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import islice, zip_longest
-from typing import Any
+from itertools import chain, islice, repeat
 
 from rcl_interfaces.msg import Parameter as RosParameter
 from rcl_interfaces.msg import ParameterEvent, ParameterType, ParameterValue, SetParametersResult
@@ -230,12 +229,12 @@ class Parameters:
     def _set_on(self, node: str, parameters: list[RosParameter], change: _Change) -> None:
         names = [parameter.name for parameter in parameters]
 
-        def was_set(response: Any, reason: str) -> None:
+        def was_set(response: SetParameters.Response | None, reason: str) -> None:
             if response is None:
                 change.refused.update((f"{node}.{name}", reason) for name in names)
             else:
                 missing = SetParametersResult(reason="the node did not report a result")
-                for name, result in zip_longest(names, response.results[: len(names)], fillvalue=missing):
+                for name, result in zip(names, chain(response.results, repeat(missing)), strict=False):
                     if not result.successful:
                         change.refused[f"{node}.{name}"] = self._explained(node, name, result.reason)
             self._read(node, names, lambda: was_read(), sender=change.request.client)
@@ -291,7 +290,7 @@ class Parameters:
     def _read_all(self, node: str) -> None:
         self._reading.add(node)
 
-        def listed(response: Any, reason: str) -> None:
+        def listed(response: ListParameters.Response | None, reason: str) -> None:
             if response is not None:
                 self._read(node, response.result.names, lambda: self._finish_reading(node))
             else:
@@ -307,7 +306,7 @@ class Parameters:
             then()
             return
 
-        def got(response: Any, reason: str) -> None:
+        def got(response: GetParameters.Response | None, reason: str) -> None:
             if response is not None and len(response.values) == len(names):
                 self._update_cache(node, zip(names, response.values, strict=True))
             elif response is not None and len(names) > 1:

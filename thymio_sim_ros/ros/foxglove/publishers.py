@@ -7,8 +7,9 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING
 
+from geometry_msgs.msg import Twist, TwistStamped
 from rclpy._rclpy_pybind11 import RCLError, RMWError
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.exceptions import InvalidTopicNameException
@@ -28,6 +29,9 @@ from thymio_sim_ros.ros.foxglove.qos import publisher_qos
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
 from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
 
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
+
 __all__ = ["ClientPublishers"]
 
 _MAX_HELD = 10
@@ -44,8 +48,6 @@ _SLICE_S = 0.005
 _NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 """No event handlers: each would be one more entity that the executor waits for, in every iteration."""
 
-_MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
-
 
 class _RefusalError(ThymioSimError):
     """A client's channel or message is rejected; the text is sent to the client."""
@@ -57,11 +59,11 @@ class _SharedPublisher:
 
     topic: str
     type_name: str
-    message_type: Any
-    publisher: Publisher
+    message_type: type[Message]
+    publisher: Publisher[Message]
     discovery_end_s: float
     users: int = 0
-    held: deque[tuple[float, Any]] = field(default_factory=lambda: deque(maxlen=_MAX_HELD))
+    held: deque[tuple[float, Message | bytes]] = field(default_factory=lambda: deque(maxlen=_MAX_HELD))
     """Messages that are not published yet, with the time of arrival, s."""
     is_waiting: bool = False
     """Whether messages are held because of discovery."""
@@ -218,7 +220,7 @@ class ClientPublishers:
         self._post(SendToClient(client, Status(StatusLevel.ERROR, text)))
 
 
-def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Any:
+def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Message | bytes:
     """Decode and check a message; return its bytes if there is no class for it. Raises _RefusalError."""
     try:
         if shared.type_name == tf2_messages.TF_TYPE_NAME and encoding != JSON:
@@ -240,10 +242,11 @@ def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Any:
         raise _RefusalError(f"expected a {shared.type_name} in {encoding}: {first_line}") from error
     except TypeError as error:  # the type has no Python class
         raise _RefusalError(f"{shared.type_name} is accepted in encoding cdr only") from error
-    if shared.type_name in _MOTION_TYPES and not _is_finite(getattr(message, "twist", message)):
+    twist = message.twist if isinstance(message, TwistStamped) else message
+    if isinstance(twist, Twist) and not _is_finite(twist):
         raise _RefusalError("expected finite velocities, found NaN or infinity")
     return message
 
 
-def _is_finite(twist: Any) -> bool:
+def _is_finite(twist: Twist) -> bool:
     return all(math.isfinite(getattr(part, axis)) for part in (twist.linear, twist.angular) for axis in "xyz")

@@ -12,10 +12,13 @@ import os
 import re
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from thymio_sim_ros.ros.compat.tf2_messages import TF_DEFINITION, TF_TYPE_NAME
 from thymio_sim_ros.ros.foxglove.types import load_type
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["message_definition", "service_definitions", "share_folders"]
 
@@ -101,7 +104,7 @@ def _file_text(type_name: str) -> str | None:
     return None
 
 
-def _class_text(message: Any) -> str:
+def _class_text(message: type[Message]) -> str:
     """The definition of a message class; constants and defaults are missing, as the class does not have them."""
     return "".join(f"{_ros_type(kind)} {name}\n" for name, kind in message.get_fields_and_field_types().items())
 

@@ -14,13 +14,17 @@ import traceback
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.task import Future
 
 from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message, Service
 
 __all__ = ["CALL_TIMEOUT_S", "SET_TIMEOUT_S", "ServiceCalls"]
 
@@ -35,7 +39,10 @@ _IN_FLIGHT = 5
 _IN_FLIGHT_EACH = 2
 """Calls of one service at a time by one sender, so that one sender cannot occupy a slow service."""
 
-Done = Callable[[Any, str], None]
+Request = TypeVar("Request", bound="Message")
+Response = TypeVar("Response", bound="Message")
+
+Done = Callable[[Response | None, str], None]
 """Callback of a call, called once: with the response and "", or with None and the reason of the failure."""
 
 
@@ -44,9 +51,9 @@ class _Queue:
     """Calls of one service."""
 
     name: str
-    client: Client
+    client: Client[Any, Any]
     waiting: FairQueue[int, _Call] = field(default_factory=FairQueue)
-    in_flight: dict[_Call, Future] = field(default_factory=dict)
+    in_flight: dict[_Call, Future[Any]] = field(default_factory=dict)
 
     def is_free(self, sender: int) -> bool:
         """Whether a call of this sender may be sent."""
@@ -57,8 +64,8 @@ class _Queue:
 class _Call:
     queue: _Queue
     sender: int
-    request: Any
-    done: Done
+    request: Message
+    done: Done[Any]
     timeout_s: float
     deadline_s: float = 0.0
 
@@ -72,21 +79,21 @@ class ServiceCalls:
         self._node = node
         self._wake = wake
         self._timeout_s = timeout_s
-        self._queues: dict[tuple[str, Any], _Queue] = {}
+        self._queues: dict[tuple[str, type[Service[Any, Any]]], _Queue] = {}
         self._open: set[_Call] = set()
         """Calls without an answer."""
         self._deadlines: list[tuple[float, int, _Call]] = []
         """Heap of deadlines; an entry of a call that has another deadline by now, or is not open, is ignored."""
         self._numbers = itertools.count()
-        self._finished: deque[tuple[_Call, Any, str]] = deque()
+        self._finished: deque[tuple[_Call, Message | None, str]] = deque()
         self._is_finishing = False
 
     def call(
         self,
-        service_type: Any,
+        service_type: type[Service[Request, Response]],
         name: str,
-        request: Any,
-        done: Done,
+        request: Request,
+        done: Done[Response],
         *,
         sender: int = 0,
         timeout_s: float | None = None,
@@ -145,9 +152,9 @@ class ServiceCalls:
                 continue
             queue.in_flight[call] = future
             self._set_deadline(call)
-            future.add_done_callback(lambda future, call=call: self._answered(call, future))
+            future.add_done_callback(partial(self._answered, call))
 
-    def _answered(self, call: _Call, future: Future) -> None:
+    def _answered(self, call: _Call, future: Future[Any]) -> None:
         """Finish an answered call. Must not raise: an exception would end rclpy's events executor and the process."""
         if future.cancelled() or call not in self._open:
             return
@@ -166,7 +173,7 @@ class ServiceCalls:
         call.deadline_s = time.monotonic() + call.timeout_s
         heapq.heappush(self._deadlines, (call.deadline_s, next(self._numbers), call))
 
-    def _finish(self, call: _Call, response: Any, reason: str) -> None:
+    def _finish(self, call: _Call, response: Message | None, reason: str) -> None:
         """Remove an open call; `_finish_all` calls its callback."""
         self._open.remove(call)
         if not self._open:

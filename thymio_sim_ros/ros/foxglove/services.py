@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy._rclpy_pybind11 import RMWError
 from rclpy.node import Node
@@ -28,13 +28,17 @@ from thymio_sim_ros.ros.foxglove.schemas import service_definitions
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
+    from thymio_sim_ros.portable_ros.messages.message_class import Service as ServiceType
+
 __all__ = ["Services"]
 
 
 @dataclass(frozen=True, slots=True)
 class _OfferedService:
     service: Service
-    service_type: Any
+    service_type: type[ServiceType[Any, Any]]
 
 
 class Services:
@@ -83,7 +87,7 @@ class Services:
             self.fail(client, request, f"{offer.service.name}: {refusal}")
             return
 
-        def done(response: Any, reason: str) -> None:
+        def done(response: Message | None, reason: str) -> None:
             if response is None:
                 self.fail(client, request, reason)
                 return
@@ -123,7 +127,7 @@ class Services:
         self._post(SendToClient(client, Status(StatusLevel.ERROR, text)))
 
 
-def _decode(request: ServiceRequest, message_type: Any) -> Any:
+def _decode(request: ServiceRequest, message_type: type[Message]) -> Message:
     if request.encoding == CDR:
         check_parts(request.payload, message_type)
         return deserialize_message(request.payload, message_type)

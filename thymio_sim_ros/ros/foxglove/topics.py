@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
@@ -18,6 +18,9 @@ from thymio_sim_ros.ros.foxglove.qos import SubscriptionQos, subscription_qos
 from thymio_sim_ros.ros.foxglove.schemas import message_definition
 from thymio_sim_ros.ros.foxglove.time_share import TimeShare
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["Topics"]
 
@@ -40,7 +43,7 @@ new subscription leaks 97 bytes in Fast DDS 2.14; while one is kept, its publish
 class _Topic:
     """A channel and, while it has subscribers and for `KEEP_S`, the subscription to its topic."""
 
-    def __init__(self, channel: Channel, message_type: Any) -> None:
+    def __init__(self, channel: Channel, message_type: type[Message]) -> None:
         self.channel = channel
         self.message_type = message_type
         self.qos: SubscriptionQos | None = None
@@ -88,7 +91,7 @@ class Topics:
         self._by_name: dict[str, _Topic] = {}
         self._by_id: dict[int, _Topic] = {}
         self._refused: set[tuple[str, str]] = set()
-        self._types: dict[str, tuple[Any, str]] = {}
+        self._types: dict[str, tuple[type[Message], str]] = {}
         """Class and definition of each type that was used so far."""
 
     def update(self, topics: Mapping[str, Sequence[str]]) -> None:

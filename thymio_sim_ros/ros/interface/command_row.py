@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.ros.interface import qos, saturation
 from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.sim.commands import Command
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["CommandRow"]
 
@@ -25,9 +28,9 @@ class CommandRow:
     """
 
     topic: str
-    type: type
+    type: type[Message]
     decode: Callable[[Any], Command]
-    encode: Callable[[Any], Any] | None = None
+    encode: Callable[[Any], Message] | None = None
     profile: QoSProfile = field(default_factory=lambda: qos.COMMAND)
     about: str = ""
     limit_check: LimitCheck = saturation.nothing

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 from geometry_msgs.msg import Point, Quaternion, TwistWithCovariance
 from geometry_msgs.msg import Pose as PoseMsg
@@ -212,7 +211,9 @@ def sound(reading: readings.LoudspeakerReading, _names: RobotNames, _options: Co
     return Float32MultiArray(layout=parts, data=[reading.frequency_hz, seconds, volume(reading.shift)])
 
 
-def played_samples(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Any:
+def played_samples(
+    reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions
+) -> UInt8MultiArray | None:
     """Return the samples of a sound that begins; None for a tone."""
     return UInt8MultiArray(data=reading.samples) if reading.samples else None
 
@@ -240,7 +241,7 @@ def volume(shift: int) -> float:
     return 0.0 if shift >= VOLUME_OFF else 2.0**-shift
 
 
-def words(reading: Any, _names: RobotNames, _options: ConvertOptions) -> Int16MultiArray:
+def words(reading: readings.Reading, _names: RobotNames, _options: ConvertOptions) -> Int16MultiArray:
     """Return the integers that Aseba programs see."""
     return Int16MultiArray(data=list(reading.words))
 

@@ -35,8 +35,8 @@ def rays(reading: readings.ProximityReading, names: RobotNames, _options: object
         is_free = math.isinf(range_m)
         length = PROXIMITY_RANGE_M if is_free else range_m
         end_x, end_y = x + length * math.cos(yaw), y + length * math.sin(yaw)
-        marker.points += (Point(x=x, y=y, z=PROXIMITY_HEIGHT_M), Point(x=end_x, y=end_y, z=PROXIMITY_HEIGHT_M))
-        marker.colors += (FREE if is_free else HIT,) * 2
+        marker.points += [Point(x=x, y=y, z=PROXIMITY_HEIGHT_M), Point(x=end_x, y=end_y, z=PROXIMITY_HEIGHT_M)]
+        marker.colors += [FREE if is_free else HIT] * 2
     return stamped(marker, reading.stamp_ns, names.frame("base_link"))
 
 

@@ -6,7 +6,7 @@ Names: docs/spec/ros-interface.md section 4.2; those beyond it follow their patt
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import ParamSpec, TypeVar
 
 from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16MultiArray
 
@@ -21,12 +21,13 @@ from thymio_sim_ros.sim.model.units import GROUND_FULL
 __all__ = ["ROWS"]
 
 C = TypeVar("C", bound=Command)
+P = ParamSpec("P")
 
 
-def _checked(make: Callable[..., C], *values: Any) -> C:
+def _checked(make: Callable[P, C], *values: P.args, **named: P.kwargs) -> C:
     """Create a command. Raises CommandError for values out of range."""
     try:
-        return make(*values)
+        return make(*values, **named)
     except ValueError as error:
         raise CommandError(str(error)) from error
 

@@ -25,7 +25,7 @@ from thymio_sim_ros.sim.stimuli import Stimulus, all_stimuli
 
 __all__ = ["rows", "topic_of"]
 
-_NUMBERS: dict[Any, Callable[[float], object]] = {
+_NUMBERS: dict[object, Callable[[float], object]] = {
     int: round,
     float: float,
     bool: bool,
@@ -77,17 +77,20 @@ def _encode(command: Any) -> Float64MultiArray:
     return Float64MultiArray(layout=convert_readings.layout([(name, 1) for name in names]), data=data)
 
 
-def _decoder(kind: type[Any]) -> Callable[[Float64MultiArray], Any]:
+def _decoder(kind: type[Any]) -> Callable[[Float64MultiArray], commands.PluginCommand]:
     hints = typing.get_type_hints(kind)
     names = [field.name for field in dataclasses.fields(kind)]
 
-    def decode(message: Float64MultiArray) -> Any:
+    def decode(message: Float64MultiArray) -> commands.PluginCommand:
         values = command_checks.sized(message.data, len(names), f"[{', '.join(names)}]")
         for name, value in zip(names, values, strict=True):
             command_checks.finite(value, name)
         try:
-            return kind(*(_NUMBERS[hints[name]](value) for name, value in zip(names, values, strict=True)))
+            command: commands.PluginCommand = kind(
+                *(_NUMBERS[hints[name]](value) for name, value in zip(names, values, strict=True))
+            )
         except ValueError as error:
             raise CommandError(str(error)) from error
+        return command
 
     return decode

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
 from geometry_msgs.msg import Twist as TwistMsg
@@ -33,6 +33,9 @@ from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["InputContext", "RobotInput", "robot_inputs"]
 
@@ -61,7 +64,7 @@ class RobotInput:
     """
 
     topic: str
-    type: type
+    type: type[Message]
     commands: Callable[[Any, InputContext], Sequence[Command]]
     about: str
     profile: QoSProfile

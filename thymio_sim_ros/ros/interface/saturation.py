@@ -70,7 +70,8 @@ def stamped_twist(message: TwistStamped) -> str:
 
 def wheels(message: Float64MultiArray) -> str:
     """Describe wheel speeds that the wheels cannot reach."""
-    return _speeds(commands.WheelVelocities(*message.data))
+    left, right = message.data
+    return _speeds(commands.WheelVelocities(left, right))
 
 
 def _speeds(command: commands.BodyTwist | commands.WheelVelocities) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
@@ -36,9 +36,12 @@ from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
 from thymio_sim_ros.sim.model.readings import LoudspeakerReading, PenReading, Reading
 from thymio_sim_ros.sim.sensors import Sensor
 
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
+
 JOINTS, TRUTH = "joint_states", "_ground_truth/odom"
 
-Encode = Callable[[Any, RobotNames, ConvertOptions], Any]
+Encode = Callable[[Any, RobotNames, ConvertOptions], "Message | None"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,14 +54,14 @@ class Row:
     """
 
     topic: str
-    type: type
+    type: type[Message]
     encode: Encode
     about: str = ""
     frame: str = ""
     profile: QoSProfile = field(default_factory=lambda: qos.SENSOR)
     every_ns: int = 0
     always: bool = False
-    on_change: Callable[[Any], Any] | None = None
+    on_change: Callable[[Any], object] | None = None
     is_event: bool = False
     """Whether `encode` returns None for most readings."""
 

@@ -19,6 +19,7 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node, NodeNameNonExistentError
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from thymio_sim_ros.lockstep.matching import fit
 from thymio_sim_ros.names.type_names import type_name
@@ -359,7 +360,7 @@ def _name_and_type(endpoint: Any) -> tuple[str, str]:
     return endpoint.topic_name, type_name(endpoint.msg_type)
 
 
-def _node_of(info: Any) -> str:
+def _node_of(info: TopicEndpointInfo) -> str:
     return _full(info.node_namespace, info.node_name)
 
 

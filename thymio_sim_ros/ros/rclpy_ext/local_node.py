@@ -7,22 +7,30 @@ endpoints do not exist in DDS at all: callers get the `LocalNode` itself.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
 
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message, Service
+
 __all__ = ["LocalNode", "LocalTopic"]
+
+
+M = TypeVar("M", bound="Message")
+Q = TypeVar("Q", bound="Message")
+R = TypeVar("R", bound="Message")
 
 
 class LocalTopic:
     """A topic of a LocalNode, which both its publishers and its subscribers use."""
 
-    def __init__(self, kind: type, name: str) -> None:
+    def __init__(self, kind: type[Message], name: str) -> None:
         self.kind, self.topic_name = kind, name
         self.handle = None  # read by subscription_count, which then uses the method below
-        self.callbacks: list[Callable[[Any], None]] = []
+        self.callbacks: list[Callable[[Any], object]] = []
         self.retained: list[Any] = []
         """The last message, if the topic is transient local."""
         self._is_retained = False
@@ -31,7 +39,7 @@ class LocalTopic:
         """Keep the last message if the profile says so."""
         self._is_retained = getattr(profile, "durability", None) == DurabilityPolicy.TRANSIENT_LOCAL
 
-    def publish(self, message: Any) -> None:
+    def publish(self, message: Message | bytes) -> None:
         """Pass a message, which may be serialized, to all subscribers at once."""
         if isinstance(message, bytes):
             message = deserialize_message(message, self.kind)
@@ -50,7 +58,7 @@ class LocalNode:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._services: dict[str, tuple[type, Callable[[Any, Any], Any]]] = {}
+        self._services: dict[str, tuple[type[Service[Any, Any]], Callable[[Any, Any], Any]]] = {}
         self._topics: dict[str, LocalTopic] = {}
 
     def __getattr__(self, name: str) -> Any:
@@ -58,20 +66,24 @@ class LocalNode:
 
     # --- for the owner of the endpoints ---
 
-    def create_service(self, kind: type, name: str, callback: Callable[[Any, Any], Any], **_options: Any) -> str:
+    def create_service(
+        self, kind: type[Service[Q, R]], name: str, callback: Callable[[Q, R], object], **_options: Any
+    ) -> str:
         """Make a service; return its full name."""
         full = str(self._node.resolve_service_name(name))
         self._services[full] = kind, callback
         return full
 
-    def create_publisher(self, kind: type, name: str, qos_profile: QoSProfile | int, **_options: Any) -> LocalTopic:
+    def create_publisher(
+        self, kind: type[Message], name: str, qos_profile: QoSProfile | int, **_options: Any
+    ) -> LocalTopic:
         """Make a publisher."""
         topic = self._topic(kind, name)
         topic.retain(qos_profile)
         return topic
 
     def create_subscription(
-        self, kind: type, name: str, callback: Callable[[Any], None], _profile: QoSProfile | int, **_options: Any
+        self, kind: type[M], name: str, callback: Callable[[M], object], _profile: QoSProfile | int, **_options: Any
     ) -> LocalTopic:
         """Make a subscription."""
         topic = self._topic(kind, name)
@@ -99,8 +111,8 @@ class LocalNode:
         if name not in self._services:
             return None
         kind, callback = self._services[name]
-        return lambda request: callback(request, kind.Response())  # type: ignore[attr-defined]
+        return lambda request: callback(request, kind.Response())
 
-    def _topic(self, kind: type, name: str) -> LocalTopic:
+    def _topic(self, kind: type[Message], name: str) -> LocalTopic:
         full = str(self._node.resolve_topic_name(name))
         return self._topics.setdefault(full, LocalTopic(kind, full))

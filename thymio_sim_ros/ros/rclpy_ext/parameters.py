@@ -227,7 +227,8 @@ def misfit(wanted: Parameter, descriptor: ParameterDescriptor) -> str:
     value, kind = plain(wanted.value), Parameter.Type(descriptor.type)
     if kind in _EXPECTED and not descriptor.dynamic_typing and wanted.type_ != kind:
         return f"found {'nothing' if value is None else shown(value)}, expected {_EXPECTED[kind]}"
-    for bounds in (*descriptor.integer_range, *descriptor.floating_point_range):
+    ranges: list[IntegerRange | FloatingPointRange] = [*descriptor.integer_range, *descriptor.floating_point_range]
+    for bounds in ranges:
         limits = {"low": bounds.from_value, "high": bounds.to_value}
         if isinstance(value, int | float) and not _is_within(value, limits):
             return f"found {value}, expected {_limits(limits)}"

@@ -8,7 +8,7 @@ a hidden node of another participant.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol, cast, runtime_checkable
+from typing import Protocol, cast, runtime_checkable
 
 import rclpy
 from rclpy.clock import ROSClock
@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
+from rclpy.subscription import Subscription
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
@@ -69,7 +70,7 @@ class PeerContext:
         self._context.try_shutdown()
 
 
-def follow_clock(node: Node, peer: Node) -> Any:
+def follow_clock(node: Node, peer: Node) -> Subscription:
     """Set the simulated time of a node from the clock that its peer receives; return the subscription."""
 
     clock = cast(ROSClock, node.get_clock())

@@ -9,10 +9,10 @@ from __future__ import annotations
 import time
 from collections import Counter, deque
 from collections.abc import Callable
-from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node
+from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
 
 from thymio_sim_ros.ros.interface import qos
@@ -37,7 +37,7 @@ class ClockConflict:
         self._topic = topic
         self._domain = domain
         self._now_s = now_s
-        self._subscription: Any = None
+        self._subscription: Subscription | None = None
         self._own: Counter[int] = Counter()
         self._order: deque[int] = deque()
         self._foreign_s: deque[float] = deque(maxlen=PROOF)

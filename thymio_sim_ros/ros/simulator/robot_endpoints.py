@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from std_msgs.msg import String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
@@ -23,7 +24,7 @@ from thymio_sim_ros.ros.interface.names import HIDDEN, RobotNames, full_name
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput, robot_inputs
 from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
-from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.rclpy_ext.subscription_count import counter
 from thymio_sim_ros.ros.simulator.visualization.urdf import urdf
@@ -33,6 +34,9 @@ from thymio_sim_ros.sim.model.geometry import Pose, Tilt, Twist
 from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 from thymio_sim_ros.sim.playground.placement import PlacementError
 from thymio_sim_ros.sim.sensors import all_sensors
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message, Service
 
 __all__ = [
     "DESCRIPTION",
@@ -47,7 +51,7 @@ __all__ = [
 DESCRIPTION = "robot_description"
 DESCRIPTION_TOPIC = (String, "the robot as URDF, made of primitives, with turning wheels")
 
-SERVICES: Mapping[str, tuple[type, str]] = {
+SERVICES: Mapping[str, tuple[type[Service[Any, Any]], str]] = {
     "is_ready": (EmptyService, "responds once the robot is in the world"),
     "reset_odometry": (Trigger, "reset the odometry to zero: `odom -> base_link` jumps once"),
 }
@@ -95,11 +99,11 @@ class _SensorPublisher:
     row: Row
     topic_demand: TopicDemand
     next_ns: int
-    publisher: Any = None
-    count: Callable[[], int] = lambda: 0
+    publisher: Publisher[Any] | LocalTopic
+    count: Callable[[], int]
     """Returns the number of subscriptions."""
     is_sent: bool = False
-    last: Any = None
+    last: object = None
     is_stale: bool = False
     """Whether the retained message is outdated after a reset, although the sensor reports nothing."""
 
@@ -160,7 +164,7 @@ class RobotEndpoints:
                 if row.topic not in options.left_out:
                     every_ns = options.every_ns.get(row.topic, row.every_ns)
                     self._open(row, TopicDemand(sensor.name, every_ns, sensor_topics.is_periodic(sensor, row)))
-        self._description: Any = None
+        self._description: Publisher[String] | None = None
         if DESCRIPTION not in options.left_out:
             self._description = node.create_publisher(
                 DESCRIPTION_TOPIC[0], names.topic(DESCRIPTION), qos.TRANSIENT_LOCAL
@@ -206,6 +210,11 @@ class RobotEndpoints:
             target.is_stale = row.profile == qos.TRANSIENT_LOCAL
             target.publisher.publish(message)
 
+    def _publish_on(self, target: _SensorPublisher, reading: Reading) -> None:
+        message = target.row.encode(reading, self.names, self._owner.convert_options)
+        if message is not None:
+            target.publisher.publish(message)
+
     @property
     def topics(self) -> int:
         """Number of sensor topics."""
@@ -228,7 +237,7 @@ class RobotEndpoints:
         reading = PoseReading(now_ns, (), pose, still, pose, still, tilt, height_m)
         for target in self._publishers["pose"]:
             if target.row.topic == sensor_topics.TRUTH:
-                target.publisher.publish(target.row.encode(reading, self.names, self._owner.convert_options))
+                self._publish_on(target, reading)
 
     def reset(self) -> None:
         """Publish the next reading of every sensor even if unchanged, and replace outdated retained messages."""
@@ -237,8 +246,7 @@ class RobotEndpoints:
                 target.last, target.next_ns = None, target.topic_demand.every_ns
                 if target.is_stale and sensor in sensor_topics.AT_START:
                     target.is_stale = False
-                    message = target.row.encode(sensor_topics.AT_START[sensor], self.names, self._owner.convert_options)
-                    target.publisher.publish(message)
+                    self._publish_on(target, sensor_topics.AT_START[sensor])
 
     def close(self) -> None:
         """Destroy all topics and services of this robot."""
@@ -249,15 +257,16 @@ class RobotEndpoints:
         for publishers in self._publishers.values():
             for target in publishers:
                 self._send(target, wanted=False)
-                self._node_of(target.row).destroy_publisher(target.publisher)
+                creator: Any = self._node_of(target.row)
+                creator.destroy_publisher(target.publisher)
         if self._description is not None:
             self._node.destroy_publisher(self._description)
 
     def _open(self, row: Row, topic_demand: TopicDemand) -> None:
-        topic, target = self.names.topic(row.topic), _SensorPublisher(row, topic_demand, next_ns=topic_demand.every_ns)
+        topic = self.names.topic(row.topic)
         profile = qos.overridable(self._node, topic, row.profile)
-        target.publisher = self._node_of(row).create_publisher(row.type, topic, **profile)
-        target.count = counter(target.publisher)
+        publisher = self._node_of(row).create_publisher(row.type, topic, **profile)
+        target = _SensorPublisher(row, topic_demand, topic_demand.every_ns, publisher, counter(publisher))
         self._publishers[topic_demand.sensor].append(target)
         self._send(target, wanted=row.always)
 
@@ -273,7 +282,7 @@ class RobotEndpoints:
         self._sent[sensor] = tuple(publisher for publisher in self._publishers[sensor] if publisher.is_sent)
 
     def _handler(self, robot_input: RobotInput) -> Callable[[Any], None]:
-        def handle(message: Any) -> None:
+        def handle(message: Message) -> None:
             try:
                 for command in robot_input.commands(message, self._owner.input_context()):
                     self._owner.post(command)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from geometry_msgs.msg import TransformStamped
 from rcl_interfaces.msg import ParameterType, ParameterValue, SetParametersResult
@@ -30,6 +30,9 @@ from thymio_sim_ros.sim.model.fields import FieldError
 from thymio_sim_ros.sim.playground import writer
 from thymio_sim_ros.sim.playground.reader import RobotStart
 
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Service as ServiceType
+
 __all__ = ["PLACE_MEANING", "PLACE_TOPIC", "SERVICES", "WorldServices", "at_current_tick"]
 
 
@@ -37,7 +40,7 @@ __all__ = ["PLACE_MEANING", "PLACE_TOPIC", "SERVICES", "WorldServices", "at_curr
 class Service:
     """Type and description of a service."""
 
-    type: type
+    type: type[ServiceType[Any, Any]]
     about: str
 
 
@@ -67,11 +70,14 @@ PLACE_MEANING = "move a robot or an object: `child_frame_id` is its name, or the
 
 Handler = Callable[[Any, Any], Any]
 
+Q = TypeVar("Q")
+R = TypeVar("R")
 
-def at_current_tick(runner: WorldRunner, handler: Handler) -> Handler:
+
+def at_current_tick(runner: WorldRunner, handler: Callable[[Q, R], R]) -> Callable[[Q, R], R]:
     """Wrap a service handler so that deferred ticks are executed first."""
 
-    def handle(request: Any, response: Any) -> Any:
+    def handle(request: Q, response: R) -> R:
         runner.catch_up()
         return handler(request, response)
 
@@ -121,7 +127,9 @@ class WorldServices:
         response.success, response.message = True, "world, time and noise were reset"
         return response
 
-    def _each(self, act: Callable[[str, ParameterValue], None]) -> Callable[[Any, Any], Any]:
+    def _each(
+        self, act: Callable[[str, ParameterValue], None]
+    ) -> Callable[[SetParameters.Request, SetParameters.Response], SetParameters.Response]:
         """Return a service handler that applies `act` to each name and returns a reason where it fails."""
 
         def answer(request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
@@ -131,7 +139,9 @@ class WorldServices:
 
         return answer
 
-    def _attempt(self, act: Callable[[str, ParameterValue], None], name: str, value: Any) -> SetParametersResult:
+    def _attempt(
+        self, act: Callable[[str, ParameterValue], None], name: str, value: ParameterValue
+    ) -> SetParametersResult:
         try:
             act(name, value)
         except (FieldError, ValueError) as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid
@@ -14,6 +15,9 @@ from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros.ros.interface import qos
 
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
+
 __all__ = ["TOPICS", "WorldTopic"]
 
 
@@ -21,7 +25,7 @@ __all__ = ["TOPICS", "WorldTopic"]
 class WorldTopic:
     """One topic of the world: type, rate, content, QoS and frame."""
 
-    type: type
+    type: type[Message]
     rate: str
     about: str
     profile: QoSProfile

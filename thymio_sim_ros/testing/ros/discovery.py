@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from thymio_sim_ros.lockstep.barrier import TOPIC
 from thymio_sim_ros.lockstep.matching import EVERYWHERE, fit
 from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros.rclpy_ext.connections import SUBSCRIBER, wrong_qos
 from thymio_sim_ros.testing.failure_messages import pluralized
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["as_published", "misfit", "topic_lines"]
 
@@ -31,7 +35,7 @@ def as_published(node: Node, topic: str, depth: int, *, transient_local: bool | 
     )
 
 
-def misfit(node: Node, kind: Any, topic: str, qos: QoSProfile | int) -> str:
+def misfit(node: Node, kind: type[Message], topic: str, qos: QoSProfile | int) -> str:
     """A sentence if a subscription of `node` fits no publisher of other nodes, although there are some; else empty."""
     profile = QoSProfile(depth=qos) if isinstance(qos, int) else qos
     own = node.get_fully_qualified_name()
@@ -69,5 +73,5 @@ def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:
     return [*lines, f"and {pluralized(others, 'other topic')}"] if others else lines
 
 
-def _name(info: Any) -> str:
+def _name(info: TopicEndpointInfo) -> str:
     return str(info.node_name)

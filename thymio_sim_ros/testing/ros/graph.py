@@ -7,10 +7,11 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import pytest
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.lockstep.matching import all_matched, is_matched
@@ -32,7 +33,15 @@ from thymio_sim_ros.testing.ros.programs import Programs
 from thymio_sim_ros.testing.ros.recorder import Recorder
 from thymio_sim_ros.testing.sources import beside
 
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message, Service
+
 __all__ = ["DEADLINE_S", "Ros"]
+
+T = TypeVar("T")
+M = TypeVar("M", bound="Message")
+Q = TypeVar("Q", bound="Message")
+R = TypeVar("R", bound="Message")
 
 DEADLINE_S = 20.0
 """Initial `Ros.deadline_s`."""
@@ -59,7 +68,7 @@ class Stepped(Protocol):
     def now(self) -> float:
         """Simulated time in s."""
 
-    def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
+    def until(self, condition: Callable[[], T], seconds: float = 60.0, *, what: str = "") -> T:
         """Advance simulated time until a condition is true."""
 
     def lines(self) -> list[str]:
@@ -94,7 +103,7 @@ class Ros:
         self._nodes: list[Node] = []
         self._turns: dict[Node, ExecutorTurns] = {}
         """Executors of the nodes under test, in the order in which these were started."""
-        self._recorders: list[Recorder] = []
+        self._recorders: list[Recorder[Any]] = []
         self._remarks: list[str] = []
         with dds_profile.used(dds_profile.ANNOUNCING):  # programs find the participant of this node at once
             self.node = self.make_node(TEST_NODE)
@@ -280,12 +289,12 @@ class Ros:
 
     def until(
         self,
-        condition: Callable[[], Any],
+        condition: Callable[[], T],
         timeout: float | None = None,
         *,
         sim_time: float | None = None,
         what: str = "",
-    ) -> Any:
+    ) -> T:
         """Spin until the condition is true and return its value; fails the test with a report otherwise.
 
         With `sim_time`, the simulation is stepped by at most that many simulated seconds, however long that takes.
@@ -302,7 +311,7 @@ class Ros:
             condition, timeout, lambda: f"not within {timeout:g} s: {what or describe_condition(condition)}{hint}"
         )
 
-    def spin_until(self, condition: Callable[[], Any], timeout: float, head: Callable[[], str]) -> Any:
+    def spin_until(self, condition: Callable[[], T], timeout: float, head: Callable[[], str]) -> T:
         """Spin until the condition is true, for at most `timeout` s; `head()` begins a failure report.
 
         A turn counts as `SLICE_S` at most, so that a busy machine, on which it takes longer, has more real time.
@@ -335,13 +344,13 @@ class Ros:
 
     def collect(
         self,
-        kind: Any,
+        kind: type[M],
         topic: str,
         *,
         transient_local: bool | None = None,
-        where: Callable[[Any], Any] | None = None,
+        where: Callable[[M], object] | None = None,
         qos: QoSProfile | int | None = None,
-    ) -> Recorder:
+    ) -> Recorder[M]:
         """A list that is filled with the messages of a topic, or with those that satisfy `where`.
 
         Waits for a publisher and uses its QoS. With durability transient local, earlier messages arrive too, unless
@@ -368,7 +377,7 @@ class Ros:
         self.settle()
         return recorder
 
-    def publisher(self, kind: Any, topic: str, *, depth: int = 10) -> Any:
+    def publisher(self, kind: type[M], topic: str, *, depth: int = 10) -> Publisher[M] | LocalTopic:
         """Create a publisher, and wait until it has a subscriber."""
         __tracebackhide__ = True
         if (local := self._local_topic(self.node.resolve_topic_name(topic))) is not None:
@@ -379,12 +388,13 @@ class Ros:
         self.settle()
         return publisher
 
-    def call(self, kind: Any, name: str, request: Any = None) -> Any:
+    def call(self, kind: type[Service[Q, R]], name: str, request: Q | None = None) -> R | None:
         """Call a service and return its response."""
         __tracebackhide__ = True
         full = self.node.resolve_service_name(name)
         if (answer := next(filter(None, (local.service(full) for local in self._local_nodes())), None)) is not None:
-            return answer(kind.Request() if request is None else request)
+            response: R = answer(kind.Request() if request is None else request)
+            return response
         with student.types_explained(self.node, CLIENT, kind, name):
             client = self.node.create_client(kind, name)
         self.until(client.service_is_ready, what=f"service {name}")

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
+from rclpy.subscription import Subscription
 from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
@@ -30,6 +31,8 @@ from thymio_sim_ros.testing.thymio import Thymio
 
 __all__ = ["Simulation"]
 
+T = TypeVar("T")
+
 HOPS = 2
 """Deliveries per tick: a reading reaches a node under test, and its command comes back."""
 
@@ -48,7 +51,7 @@ class Simulation:
         self.simulator = simulator
         self._folder = folder
         self._runtimes: list[AsebaRuntime] = []
-        self._event_subscriptions: dict[str, Any] = {}
+        self._event_subscriptions: dict[str, Subscription] = {}
         """Subscriptions to the events of each robot's program."""
         self._robots = {name: Thymio(name, self) for name in self.world.robots}
         ros.simulation = self
@@ -129,7 +132,7 @@ class Simulation:
         for thymio in self:
             thymio.record.clear()
 
-    def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
+    def until(self, condition: Callable[[], T], seconds: float = 60.0, *, what: str = "") -> T:
         """Step until the condition is true, for at most `seconds` of simulated time; returns its value.
 
         A condition that needs the first message of a topic waits for it (`Recorder.latest`).

@@ -11,11 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
+from rclpy.subscription import Subscription
 from sensor_msgs.msg import Imu, Range, Temperature
 from std_msgs.msg import Bool, Empty, Float32, Int8, Int16
 
@@ -24,6 +25,9 @@ from thymio_sim_ros.ros.interface.names import PROXIMITY, SIDES, RobotNames
 from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.robot_constants import WHEEL_TRACK_M
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["MISSING", "Feed", "proximity_count", "subscribe", "twist_of"]
 
@@ -63,7 +67,7 @@ class _ReadingAssembler:
         self._finish(self._values)
 
 
-def subscribe(node: Node, names: RobotNames, feed: Feed) -> list[Any]:
+def subscribe(node: Node, names: RobotNames, feed: Feed) -> list[Subscription]:
     """Subscribe to the driver topics of one robot and return the subscriptions."""
     return [
         node.create_subscription(kind, names.topic(topic), handle, qos.SENSOR)
@@ -92,7 +96,7 @@ def _is_reflecting(message: Range) -> bool:
     return bool(message.range < message.min_range)
 
 
-def _ranges(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
+def _ranges(feed: Feed) -> Iterator[tuple[str, type[Message], Callable[[Any], None]]]:
     ground = _ReadingAssembler(len(SIDES), lambda counts: feed("ground", (0, 0, *counts, *counts)))
     proximity = _ReadingAssembler(len(PROXIMITY), partial(feed, "proximity"))
     for index, side in enumerate(SIDES):
@@ -109,7 +113,7 @@ def _set_proximity(proximity: _ReadingAssembler, index: int, message: Range) -> 
     proximity.add(index, proximity_count(message))
 
 
-def _buttons(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
+def _buttons(feed: Feed) -> Iterator[tuple[str, type[Message], Callable[[Any], None]]]:
     pressed = [0] * len(BUTTONS)
 
     def on_button(message: Bool, index: int) -> None:
@@ -120,7 +124,7 @@ def _buttons(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
         yield f"buttons/{name}", Bool, partial(on_button, index=index)
 
 
-def _others(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
+def _others(feed: Feed) -> Iterator[tuple[str, type[Message], Callable[[Any], None]]]:
     yield "imu", Imu, lambda message: feed("accelerometer", _acceleration(message))
     yield "temperature", Temperature, lambda message: feed("temperature", [units.celsius_to_units(message.temperature)])
     yield "tap", Empty, lambda _message: feed("tap", [1])

@@ -9,16 +9,20 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 
 from thymio_sim_ros.ros.aseba.outside import driver_input
 from thymio_sim_ros.ros.interface import command_topics, driver_topics, plugin_topics, qos
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext.subscription_count import counter
 from thymio_sim_ros.sim.commands import Command, SetLed, ShowOnLeds
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["OutputEndpoints"]
 
@@ -31,8 +35,8 @@ was one before: discovery reports a killed robot as a subscriber for a while."""
 class _CommandPublisher:
     """The publisher of a command topic with its encoder and its count of subscriptions."""
 
-    encode: Callable[[Any], Any]
-    publisher: Any
+    encode: Callable[[Any], Message]
+    publisher: Publisher[Message]
     count: Callable[[], int]
     is_retained: bool
 
@@ -41,7 +45,7 @@ class _CommandPublisher:
 class _SentCommand:
     """A sent message, the number of current subscribers that may have received it, and whether to send it again."""
 
-    message: Any
+    message: Message
     receivers: int
     is_due: bool = False
 
@@ -59,15 +63,12 @@ class OutputEndpoints:
         for row in (*command_topics.ROWS, *plugin_topics.rows()):
             if row.encode is None:
                 continue
-            if row.topic == "_motor/target":
-                topic = "cmd_vel"
-                publisher = node.create_publisher(Twist, names.topic(topic), qos.COMMAND)
-                encode: Callable[[Any], Any] = driver_input.twist_of
-            else:
-                topic = driver_topics.driver_name(row.topic)
-                publisher, encode = node.create_publisher(row.type, names.topic(topic), row.profile), row.encode
+            is_wheels = row.topic == "_motor/target"
+            topic = "cmd_vel" if is_wheels else driver_topics.driver_name(row.topic)
+            kind: type[Message] = Twist if is_wheels else row.type
+            publisher = node.create_publisher(kind, names.topic(topic), qos.COMMAND if is_wheels else row.profile)
             self._publishers[row.topic] = _CommandPublisher(
-                encode,
+                driver_input.twist_of if is_wheels else row.encode,
                 publisher,
                 counter(publisher),
                 row.is_retained,

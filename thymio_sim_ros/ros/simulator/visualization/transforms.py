@@ -10,9 +10,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.ros.compat import tf2_messages
@@ -55,7 +55,7 @@ class _TransformTopic:
         """`demand` counts the topics with subscribers."""
         self.word = word
         self._node, self._profile, self._demand = node, profile, demand
-        self._publishers: dict[str, Any] = {}
+        self._publishers: dict[str, Publisher[tf2_messages.TFMessage]] = {}
         self._heard: set[str] = set()
         self._waiting: dict[str, list[Transform]] = {}
 
