@@ -10,7 +10,7 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from thymio_sim_ros.files import registry
 from thymio_sim_ros.names.type_names import type_name
@@ -193,7 +193,7 @@ def _topics(lines: Iterable[_Line]) -> str:
     return table(heads, rows)
 
 
-def _runs(items: Iterable[T], key: Callable[[T], Any]) -> Iterator[list[T]]:
+def _runs(items: Iterable[T], key: Callable[[T], object]) -> Iterator[list[T]]:
     for _, group in itertools.groupby(items, key=key):
         yield list(group)
 

@@ -254,7 +254,7 @@ def exclusive(parameters: Sequence[Parameter], present: Callable[[str], Any]) ->
     return result
 
 
-def _check_constant(name: str, constant: str, value: Any) -> None:
+def _check_constant(name: str, constant: str, value: object) -> None:
     if not is_name(constant):
         raise WrongValueError(f"{name}: a program cannot use the name '{constant}'")
     if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value not in INT16):

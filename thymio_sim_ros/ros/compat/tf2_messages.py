@@ -12,7 +12,7 @@ import functools
 import logging
 import struct
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from geometry_msgs.msg import TransformStamped
 from rclpy.time import Time
@@ -67,11 +67,11 @@ class TransformDataError(ThymioSimError, ValueError):
 class _Metaclass(type):
     """The attributes that rclpy expects of a message class: type support and four conversions, built on first use."""
 
-    _TYPE_SUPPORT: Any = None
-    _CREATE_ROS_MESSAGE: Any = None
-    _CONVERT_FROM_PY: Any = None
-    _CONVERT_TO_PY: Any = None
-    _DESTROY_ROS_MESSAGE: Any = None
+    _TYPE_SUPPORT: object = None
+    _CREATE_ROS_MESSAGE: object = None
+    _CONVERT_FROM_PY: object = None
+    _CONVERT_TO_PY: object = None
+    _DESTROY_ROS_MESSAGE: object = None
 
     @classmethod
     def __import_type_support__(cls) -> None:

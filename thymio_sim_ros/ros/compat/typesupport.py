@@ -113,10 +113,10 @@ class Codec:
 class Conversions(NamedTuple):
     """The four functions of a message class that rclpy calls for message objects, as capsules."""
 
-    create: Any
-    convert_from_py: Any
-    convert_to_py: Any
-    destroy: Any
+    create: object
+    convert_from_py: object
+    convert_to_py: object
+    destroy: object
 
 
 # Own prototypes: `ctypes.pythonapi` is shared with other modules, so its argtypes must not be changed.
@@ -162,7 +162,7 @@ def type_hash_of(message_type: type) -> str:
     return f"RIHS{found.version:02d}_{bytes(found.value).hex()}"
 
 
-def build(message: SequenceType, element_type: type, codec: Codec | None = None) -> Any:
+def build(message: SequenceType, element_type: type, codec: Codec | None = None) -> object:
     """Return a capsule with the type support of `message`; `element_type` is the compiled class of its elements.
 
     `check_layouts` must have been called. Message objects need a `codec` and `conversions`. Raises TypeSupportError if
@@ -172,7 +172,7 @@ def build(message: SequenceType, element_type: type, codec: Codec | None = None)
     requested implementation (Fast DDS or introspection) by its identifier.
     """
     element = _support_of(element_type)
-    keep: list[Any] = []
+    keep: list[object] = []
     handles = {
         _FASTRTPS: _handle(_FASTRTPS, _callbacks(message, element, codec, keep), keep),
         _INTROSPECTION: _handle(_INTROSPECTION, _members(message, element, keep), keep),
@@ -210,12 +210,12 @@ def _part(element: rosidl_structs.TypeSupport, identifier: bytes) -> rosidl_stru
     return rosidl_structs.TypeSupport.from_address(address)
 
 
-def _handle(identifier: bytes, data: ctypes.Structure, keep: list[Any]) -> rosidl_structs.TypeSupport:
+def _handle(identifier: bytes, data: ctypes.Structure, keep: list[object]) -> rosidl_structs.TypeSupport:
     keep.append(data)
     return rosidl_structs.TypeSupport(identifier, ctypes.addressof(data))
 
 
-def _getter(part: ctypes.Structure, keep: list[Any]) -> Any:
+def _getter(part: ctypes.Structure, keep: list[object]) -> Any:
     address = ctypes.addressof(part)
     function = rosidl_structs.Getter(functools.cache(lambda _handle: address))
     keep += [part, function]
@@ -223,7 +223,7 @@ def _getter(part: ctypes.Structure, keep: list[Any]) -> Any:
 
 
 def _callbacks(
-    message: SequenceType, element: rosidl_structs.TypeSupport, codec: Codec | None, keep: list[Any]
+    message: SequenceType, element: rosidl_structs.TypeSupport, codec: Codec | None, keep: list[object]
 ) -> rosidl_structs.Callbacks:
     """A copy of the element's callbacks under the name of the message; both types are unbounded in size."""
     data = _part(element, _FASTRTPS).data
@@ -315,7 +315,7 @@ def conversions(codec: Codec) -> Conversions:
     )
 
 
-def _hold(place: int, value: Any) -> None:
+def _hold(place: int, value: object) -> None:
     """Make the C message at `place` refer to a Python object, None: to nothing; its former object is released."""
     reference = ctypes.c_void_p.from_address(place)
     former = None if not reference.value else ctypes.cast(reference.value, ctypes.py_object).value
@@ -332,7 +332,7 @@ def _held(place: int) -> Any:
     return ctypes.cast(ctypes.c_void_p.from_address(place), ctypes.py_object).value
 
 
-def _members(message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]) -> rosidl_structs.Members:
+def _members(message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[object]) -> rosidl_structs.Members:
     nested = _part(element, _INTROSPECTION)
     member = rosidl_structs.Member(
         name=message.field.encode(),
@@ -356,7 +356,7 @@ def _hash(message: SequenceType) -> rosidl_structs.TypeHash:
 
 
 def _description(
-    message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]
+    message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[object]
 ) -> rosidl_structs.TypeDescription:
     """The description of the message, then all types that it refers to in the order of their names, as rosidl does."""
     address = element.get_type_description(ctypes.addressof(element))
@@ -377,7 +377,7 @@ def _description(
     return rosidl_structs.TypeDescription(ours, _sequence(rosidl_structs.IndividualTypeDescription, referenced, keep))
 
 
-def _sources(message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]) -> rosidl_structs.Sequence:
+def _sources(message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[object]) -> rosidl_structs.Sequence:
     nested = rosidl_structs.Sequence.from_address(element.get_sources(ctypes.addressof(element)))
     ours = rosidl_structs.TypeSource(
         _string(message.full_name, keep), _string("msg", keep), _string(message.definition, keep)
@@ -386,7 +386,7 @@ def _sources(message: SequenceType, element: rosidl_structs.TypeSupport, keep: l
     return _sequence(rosidl_structs.TypeSource, [ours, *others], keep)
 
 
-def _string(text: str, keep: list[Any]) -> rosidl_structs.String:
+def _string(text: str, keep: list[object]) -> rosidl_structs.String:
     data = ctypes.create_string_buffer(text.encode())
     keep.append(data)
     return rosidl_structs.String(ctypes.addressof(data), len(data) - 1, len(data))
@@ -400,7 +400,7 @@ def _items(sequence: rosidl_structs.Sequence, kind: type[ctypes.Structure]) -> I
     return (kind * sequence.size).from_address(sequence.data) if sequence.size else ()
 
 
-def _sequence(kind: type[ctypes.Structure], items: Sequence[Any], keep: list[Any]) -> rosidl_structs.Sequence:
+def _sequence(kind: type[ctypes.Structure], items: Sequence[Any], keep: list[object]) -> rosidl_structs.Sequence:
     data = (kind * len(items))(*items)
     keep.append(data)
     return rosidl_structs.Sequence(ctypes.addressof(data), len(items), len(items))

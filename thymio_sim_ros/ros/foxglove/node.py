@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 import traceback
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 from urllib.parse import quote
@@ -235,7 +235,7 @@ class FoxgloveBridge:
             if values.publish_client_count
             else None
         )
-        self._seen: tuple[Any, Any] = ({}, {})
+        self._seen: tuple[Mapping[str, Sequence[str]], Mapping[str, Sequence[str]]] = ({}, {})
         self._discovery, self._graph_share = TimeShare(_DISCOVERY_SHARE), TimeShare(_DISCOVERY_SHARE)
         self._next_check_s = 0.0
         self._shown: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())

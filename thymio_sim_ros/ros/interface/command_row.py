@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import builtins
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.qos import QoSProfile
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["CommandRow"]
+
+M = TypeVar("M", bound="Message")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,3 +38,17 @@ class CommandRow:
     about: str = ""
     limit_check: LimitCheck = saturation.nothing
     is_retained: bool = False
+
+    if TYPE_CHECKING:  # the parts fit each other; a generic class would not be checked within a tuple of rows
+
+        def __init__(
+            self,
+            topic: str,
+            type: builtins.type[M],  # noqa: A002  # the name of the field
+            decode: Callable[[M], Command],
+            encode: Callable[[Any], M] | None = None,
+            profile: QoSProfile = ...,
+            about: str = "",
+            limit_check: Callable[[M], str] = ...,
+            is_retained: bool = False,
+        ) -> None: ...

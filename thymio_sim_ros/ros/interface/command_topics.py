@@ -7,7 +7,6 @@ The simulator decodes messages and the Aseba runtime encodes commands of program
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 from std_msgs.msg import (
     Bool,
@@ -48,7 +47,7 @@ def topic_of(command: Command) -> str | None:
     return _TOPICS.get(type(command))
 
 
-_TOPICS: dict[type[Any], str] = {
+_TOPICS: dict[type[Command], str] = {
     commands.MotorTargets: "_motor/target",
     commands.SetLed: "_led/single",
     commands.ShowOnLeds: "_led/own",

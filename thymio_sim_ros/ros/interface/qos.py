@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -74,8 +73,8 @@ def check_overrides(node: Node) -> None:
             raise StartError(f"parameter {name}: found {value!r}, expected {expected}")
 
 
-def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
-    """Return arguments for `create_publisher`: the profile, and QoS overrides if any were given for the topic.
+def overridable(node: Node, topic: str, profile: QoSProfile) -> tuple[QoSProfile, QoSOverridingOptions | None]:
+    """Return the profile and the QoS overrides for `create_publisher`, None if none were given for the topic.
 
     Override parameters are declared only if the node was started with one of them; for all topics of a hundred robots
     there would be ten thousand.
@@ -87,5 +86,5 @@ def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
     ):
         # rclpy writes the overrides into the given profile.
         own = copy.copy(profile)
-        return {"qos_profile": own, "qos_overriding_options": QoSOverridingOptions.with_default_policies()}
-    return {"qos_profile": profile}
+        return own, QoSOverridingOptions.with_default_policies()
+    return profile, None

@@ -6,11 +6,12 @@ the message, or that produce several commands (docs/spec/ros-interface.md sectio
 
 from __future__ import annotations
 
+import builtins
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
 from geometry_msgs.msg import Twist as TwistMsg
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 
 __all__ = ["InputContext", "RobotInput", "robot_inputs"]
 
+
+M = TypeVar("M", bound="Message")
 
 WORLD = Pose(0.0, 0.0, 0.0)
 """Pose of the world frame in the world."""
@@ -69,6 +72,18 @@ class RobotInput:
     about: str
     profile: QoSProfile
     limit_check: LimitCheck = saturation.nothing
+
+    if TYPE_CHECKING:  # the parts fit each other; a generic class would not be checked within a tuple of rows
+
+        def __init__(
+            self,
+            topic: str,
+            type: builtins.type[M],  # noqa: A002  # the name of the field
+            commands: Callable[[M, InputContext], Sequence[Command]],
+            about: str,
+            profile: QoSProfile,
+            limit_check: Callable[[M], str] = ...,
+        ) -> None: ...
 
     @property
     def is_of_operator(self) -> bool:

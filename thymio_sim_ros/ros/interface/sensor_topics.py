@@ -5,11 +5,12 @@ Names, units, frames and QoS are those of docs/spec/ros-interface.md sections 4,
 
 from __future__ import annotations
 
+import builtins
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 
 JOINTS, TRUTH = "joint_states", "_ground_truth/odom"
 
+M = TypeVar("M", bound="Message")
+
 Encode = Callable[[Any, RobotNames, ConvertOptions], "Message | None"]
 
 
@@ -64,6 +67,22 @@ class Row:
     on_change: Callable[[Any], object] | None = None
     is_event: bool = False
     """Whether `encode` returns None for most readings."""
+
+    if TYPE_CHECKING:  # the parts fit each other; a generic class would not be checked within a tuple of rows
+
+        def __init__(
+            self,
+            topic: str,
+            type: builtins.type[M],  # noqa: A002  # the name of the field
+            encode: Callable[[Any, RobotNames, ConvertOptions], M | None],
+            about: str = "",
+            frame: str = "",
+            profile: QoSProfile = ...,
+            every_ns: int = 0,
+            always: bool = False,
+            on_change: Callable[[Any], object] | None = None,
+            is_event: bool = False,
+        ) -> None: ...
 
 
 ROWS: dict[str, tuple[Row, ...]] = {

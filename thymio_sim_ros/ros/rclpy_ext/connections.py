@@ -14,11 +14,15 @@ import difflib
 import time
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from rclpy.client import Client
 from rclpy.node import Node, NodeNameNonExistentError
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.service import Service
+from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from thymio_sim_ros.lockstep.matching import fit
@@ -124,10 +128,13 @@ class _Endpoint:
         return _full(self.namespace, self.node)
 
 
+_OwnEndpoint: TypeAlias = "Publisher[Any] | Subscription | Client[Any, Any] | Service"
+
+
 class _OwnNames:
     """The names and types of endpoints of our node, with an index by their last words."""
 
-    def __init__(self, endpoints: Sequence[Any]) -> None:
+    def __init__(self, endpoints: Sequence[_OwnEndpoint]) -> None:
         self.endpoints = endpoints
         self.types = dict(map(_name_and_type, endpoints))
         self._by_word: dict[str, list[str]] = {}
@@ -354,8 +361,8 @@ def _argument(rule: str) -> str:
     return f"--ros-args -p '{rule}'" if "[" in rule else f"--ros-args -p {rule}"
 
 
-def _name_and_type(endpoint: Any) -> tuple[str, str]:
-    if hasattr(endpoint, "srv_type"):
+def _name_and_type(endpoint: _OwnEndpoint) -> tuple[str, str]:
+    if isinstance(endpoint, Client | Service):
         return endpoint.service_name, type_name(endpoint.srv_type)
     return endpoint.topic_name, type_name(endpoint.msg_type)
 

@@ -67,7 +67,7 @@ class LocalNode:
     # --- for the owner of the endpoints ---
 
     def create_service(
-        self, kind: type[Service[Q, R]], name: str, callback: Callable[[Q, R], object], **_options: Any
+        self, kind: type[Service[Q, R]], name: str, callback: Callable[[Q, R], object], **_options: object
     ) -> str:
         """Make a service; return its full name."""
         full = str(self._node.resolve_service_name(name))
@@ -75,7 +75,7 @@ class LocalNode:
         return full
 
     def create_publisher(
-        self, kind: type[Message], name: str, qos_profile: QoSProfile | int, **_options: Any
+        self, kind: type[Message], name: str, qos_profile: QoSProfile | int, **_options: object
     ) -> LocalTopic:
         """Make a publisher."""
         topic = self._topic(kind, name)
@@ -83,7 +83,7 @@ class LocalNode:
         return topic
 
     def create_subscription(
-        self, kind: type[M], name: str, callback: Callable[[M], object], _profile: QoSProfile | int, **_options: Any
+        self, kind: type[M], name: str, callback: Callable[[M], object], _profile: QoSProfile | int, **_options: object
     ) -> LocalTopic:
         """Make a subscription."""
         topic = self._topic(kind, name)

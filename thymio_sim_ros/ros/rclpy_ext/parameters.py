@@ -17,7 +17,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import Field, dataclass, field
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
@@ -27,6 +27,7 @@ from rclpy.parameter import Parameter
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 
 T = TypeVar("T")
+V = TypeVar("V")
 
 _LIKE = 0.7
 """Similarity 0…1 from which an unknown name is treated as a typing error for a known one."""
@@ -52,7 +53,7 @@ _OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
 
 
 def param(
-    default: Any,
+    default: V,
     text: str,
     *,
     name: str | None = None,
@@ -62,7 +63,7 @@ def param(
     choices: Sequence[str] = (),
     size: int | None = None,
     array: Parameter.Type | None = None,
-) -> Any:
+) -> V:
     """Return a field of a parameter dataclass.
 
     Args:
@@ -80,11 +81,11 @@ def param(
     if name:
         metadata["name"] = name
     if isinstance(default, list):
-        return field(default_factory=lambda: list(default), metadata=metadata)
+        return cast(V, field(default_factory=lambda: list(default), metadata=metadata))
     return field(default=default, metadata=metadata)
 
 
-def group(default: Any, name: str) -> Any:
+def group(default: V, name: str) -> V:
     """Return a field with a nested parameter dataclass; the names of its parameters begin with `name` and a dot."""
     return field(default=default, metadata={"group": name})
 
@@ -235,7 +236,7 @@ def misfit(wanted: Parameter, descriptor: ParameterDescriptor) -> str:
     return ""
 
 
-def shown(value: Any) -> str:
+def shown(value: object) -> str:
     """Return a value as a message shows it, shortened if it is long."""
     return _cut(repr(value))
 

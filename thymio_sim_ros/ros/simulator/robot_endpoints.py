@@ -264,8 +264,8 @@ class RobotEndpoints:
 
     def _open(self, row: Row, topic_demand: TopicDemand) -> None:
         topic = self.names.topic(row.topic)
-        profile = qos.overridable(self._node, topic, row.profile)
-        publisher = self._node_of(row).create_publisher(row.type, topic, **profile)
+        profile, overrides = qos.overridable(self._node, topic, row.profile)
+        publisher = self._node_of(row).create_publisher(row.type, topic, profile, qos_overriding_options=overrides)
         target = _SensorPublisher(row, topic_demand, topic_demand.every_ns, publisher, counter(publisher))
         self._publishers[topic_demand.sensor].append(target)
         self._send(target, wanted=row.always)

@@ -7,16 +7,17 @@ import logging
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 from nav_msgs.msg import OccupancyGrid
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, RobotNames
-from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.simulator.sensor_list import displayed_sensors
 from thymio_sim_ros.ros.simulator.visualization.markers import playground_markers
 from thymio_sim_ros.ros.simulator.visualization.occupancy_grid import occupancy
@@ -26,6 +27,9 @@ from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 from thymio_sim_ros.sim.playground.scene import ObjectSnapshot
 from thymio_sim_ros.sim.world import World
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.portable_ros.messages.message_class import Message
 
 __all__ = ["SceneMessages", "WorldEndpoints", "WorldState", "shipped_playgrounds"]
 
@@ -99,7 +103,7 @@ class WorldEndpoints:
     ) -> None:
         """`control` publishes the topics that show where things are."""
         words = (*_WORDS, "map") if publish_map else _WORDS
-        self._publishers: dict[str, Any] = {
+        self._publishers: dict[str, Publisher[Message] | LocalTopic] = {
             name: (control if name in _SHOWING else node).create_publisher(
                 TOPICS[name].type, name, TOPICS[name].profile
             )

@@ -62,7 +62,7 @@ class ExecutorTurns:
                 handler()
                 handler.result()  # raises what the callback has raised
 
-    def _describe(self, entity: Any) -> str:
+    def _describe(self, entity: object) -> str:
         """The callback of an entity."""
         name = getattr(entity, "topic_name", "") or getattr(entity, "srv_name", "")
         what = "a timer" if isinstance(entity, Timer) else name or "a task"

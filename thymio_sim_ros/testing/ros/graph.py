@@ -18,7 +18,7 @@ from thymio_sim_ros.lockstep.matching import all_matched, is_matched
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SUBSCRIBER, Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
-from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor, nodes_of
+from thymio_sim_ros.ros.rclpy_ext.node_runner import RunnableNode, deliver, make_executor, nodes_of
 from thymio_sim_ros.testing.awaited import Awaited
 from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["DEADLINE_S", "Ros"]
 
 T = TypeVar("T")
+L = TypeVar("L", bound=RunnableNode)
 M = TypeVar("M", bound="Message")
 Q = TypeVar("Q", bound="Message")
 R = TypeVar("R", bound="Message")
@@ -99,7 +100,7 @@ class Ros:
         # The events executor writes crash reports to the file behind stderr, which `--capture=sys` does not provide.
         with contextlib.redirect_stderr(sys.__stderr__):
             self._executor = make_executor(self.context)
-        self._lives: list[Any] = []
+        self._lives: list[RunnableNode] = []
         self._nodes: list[Node] = []
         self._turns: dict[Node, ExecutorTurns] = {}
         """Executors of the nodes under test, in the order in which these were started."""
@@ -127,7 +128,7 @@ class Ros:
             self._turns[node] = ExecutorTurns(node, self.context, self._containment, cpu_limit)
         return node
 
-    def live(self, life: Any) -> Any:
+    def live(self, life: L) -> L:
         """Add a node of this package (`RunnableNode`) to the test's executor; it is closed when the test ends."""
         for node in nodes_of(life):
             self._executor.add_node(node)
@@ -252,7 +253,7 @@ class Ros:
         with self._containment.contain(lambda: what, CPU_LIMIT_S):
             node.destroy_node()
 
-    def end(self, life: Any) -> None:
+    def end(self, life: RunnableNode) -> None:
         """Close a node added by `live` before the test ends."""
         self._lives.remove(life)
         for node in nodes_of(life):
