@@ -127,10 +127,12 @@ def _declared(module: str) -> dict[str, type]:
     namespace = vars(importlib.import_module(f"thymio_sim_ros.ros.{module}")).values()
     classes = [item for item in namespace if isinstance(item, type) and dataclasses.is_dataclass(item)]
     return {
-        field.metadata.get("name", field.name): list if field.default is dataclasses.MISSING else type(field.default)
+        field.metadata["options"].name or field.name: list
+        if field.default is dataclasses.MISSING
+        else type(field.default)
         for item in classes
         for field in dataclasses.fields(item)
-        if "text" in field.metadata
+        if "options" in field.metadata
     }
 
 
@@ -179,7 +181,7 @@ def test_an_argument_with_choices_has_those_of_its_parameter(description: Call) 
     listed = {item.args[0]: item.kwargs["choices"] for item in _actions(description, "DeclareLaunchArgument")}
     parameters = {item.name: item for item in params.declared(simulator_params.SimulatorParams())}
     for name in ("motor_model", "proximity_model"):
-        assert listed[name] == list(parameters[name].metadata["choices"])
+        assert listed[name] == list(parameters[name].options.choices)
     assert listed["layout"] == list(LAYOUTS)
     assert listed["events"] == list(POLICIES)
     assert listed["playground"] is None

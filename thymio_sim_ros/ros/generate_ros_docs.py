@@ -234,8 +234,8 @@ def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
             f"`{name}`",
             _value(first.default),
             _limits(first),
-            "" if first.metadata["fixed"] else "yes",
-            _cell(first.metadata["text"]),
+            "" if first.options.fixed else "yes",
+            _cell(first.options.text),
         )
 
 
@@ -243,7 +243,7 @@ def _grouped(values: object) -> Iterator[tuple[parameters.Declared, str]]:
     """The first parameter of each group, and the name of its row."""
     groups: dict[tuple[str, str], list[parameters.Declared]] = {}
     for parameter in parameters.declared(values):
-        groups.setdefault((_outer(parameter.name), parameter.metadata["text"]), []).append(parameter)
+        groups.setdefault((_outer(parameter.name), parameter.options.text), []).append(parameter)
     for group in groups.values():
         first = group[0]
         several = f"{first.name.split('.')[0]}.<sensor>.{first.name.rpartition('.')[2]}"

@@ -26,7 +26,7 @@ def default_of(value):
 
 def row(item):
     """One parameter as a row of the page's table."""
-    return f"| `{item.name}` | {default_of(getattr(FoxgloveParams(), item.name))} | {item.metadata['text']} |"
+    return f"| `{item.name}` | {default_of(getattr(FoxgloveParams(), item.name))} | {item.metadata['options'].text} |"
 
 
 def test_the_table_of_parameters_is_the_declaration():

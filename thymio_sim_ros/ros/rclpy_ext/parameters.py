@@ -16,7 +16,7 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import Field, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any, TypeVar, cast
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
@@ -48,8 +48,25 @@ _EXPECTED: Mapping[Parameter.Type, str] = {
 _SHOWN = 60
 """Characters of a wrong value that a message has at most; a program or a playground is longer."""
 
+_OPTIONS, _GROUP = "options", "group"
+"""Keys of the metadata of fields."""
+
 _BOOLS_OF_RCL = ("use_sim_time", "start_type_description_service")
 _OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
+
+
+@dataclass(frozen=True, slots=True)
+class FieldOptions:
+    """What a field of a parameter dataclass declares besides its default; see `param`."""
+
+    text: str
+    name: str | None
+    low: float | None
+    high: float | None
+    fixed: bool
+    choices: tuple[str, ...]
+    size: int | None
+    array: Parameter.Type | None
 
 
 def param(
@@ -76,40 +93,37 @@ def param(
         size: Length of an array.
         array: The type of an array that may be empty.
     """
-    metadata: dict[str, Any] = {"text": text, "low": low, "high": high, "fixed": fixed, "array": array, "size": size}
-    metadata["choices"] = tuple(choices)
-    if name:
-        metadata["name"] = name
+    about = FieldOptions(text, name, low, high, fixed, tuple(choices), size, array)
     if isinstance(default, list):
-        return cast(V, field(default_factory=lambda: list(default), metadata=metadata))
-    return field(default=default, metadata=metadata)
+        made = field(default_factory=lambda: list(default), metadata={_OPTIONS: about})
+        return cast(V, made)  # a copy of a list has the type of the list
+    return field(default=default, metadata={_OPTIONS: about})
 
 
 def group(default: V, name: str) -> V:
     """Return a field with a nested parameter dataclass; the names of its parameters begin with `name` and a dot."""
-    return field(default=default, metadata={"group": name})
+    return field(default=default, metadata={_GROUP: name})
 
 
 @dataclass(frozen=True)
 class Declared:
-    """One parameter: full name, path of its field in the dataclass, default and metadata of the field."""
+    """One parameter: full name, path of its field in the dataclass, default and options of the field."""
 
     name: str
     path: tuple[str, ...]
     default: Any
-    metadata: Mapping[str, Any]
+    options: FieldOptions
 
     @property
     def descriptor(self) -> ParameterDescriptor:
         """The descriptor shown by `ros2 param describe`."""
-        metadata = self.metadata
-        expected = [f"one of: {', '.join(metadata['choices'])}"] if metadata["choices"] else []
-        expected += [f"{metadata['size']} values"] if metadata["size"] is not None else []
-        expected += [f"each {_limits(metadata)}"] if isinstance(self.default, list) and _limits(metadata) else []
+        options, low, high = self.options, self.options.low, self.options.high
+        expected = [f"one of: {', '.join(options.choices)}"] if options.choices else []
+        expected += [f"{options.size} values"] if options.size is not None else []
+        expected += [f"each {_limits(low, high)}"] if isinstance(self.default, list) and _limits(low, high) else []
         descriptor = ParameterDescriptor(
-            description=metadata["text"], read_only=metadata["fixed"], additional_constraints="; ".join(expected)
+            description=options.text, read_only=options.fixed, additional_constraints="; ".join(expected)
         )
-        low, high = metadata["low"], metadata["high"]
         if (low is None and high is None) or isinstance(self.default, list):
             return descriptor
         if isinstance(self.default, float):
@@ -123,32 +137,31 @@ class Declared:
 
     def refusal(self, value: Any) -> str:
         """Return the reason why a value is invalid, or an empty text; constraints of the descriptor are not checked."""
-        metadata = self.metadata
+        options = self.options
         if value is None:
             return f"{self.name}: found nothing, expected a value"
-        if metadata["choices"] and value not in metadata["choices"]:
-            return f"{self.name} is '{value}', expected {' or '.join(metadata['choices'])}"
+        if options.choices and value not in options.choices:
+            return f"{self.name} is '{value}', expected {' or '.join(options.choices)}"
         if isinstance(value, float) and not math.isfinite(value):
             return f"{self.name} is {value}, expected a finite number"
         if not isinstance(self.default, list):
             return ""
-        if metadata["size"] is not None and len(value) != metadata["size"]:
-            return f"{self.name}: found {len(value)} values, expected {metadata['size']}"
+        if options.size is not None and len(value) != options.size:
+            return f"{self.name}: found {len(value)} values, expected {options.size}"
         for number, item in enumerate(value):
-            if isinstance(item, float) and not _is_within(item, metadata):
-                return f"{self.name}[{number}] is {item}, expected {_limits(metadata) or 'a finite number'}"
+            if isinstance(item, float) and not _is_within(item, options.low, options.high):
+                expected = _limits(options.low, options.high) or "a finite number"
+                return f"{self.name}[{number}] is {item}, expected {expected}"
         return ""
 
 
-def _limits(limits: Mapping[str, Any]) -> str:
-    low, high = (
-        None if bound is None or math.isinf(bound) else _short(bound) for bound in (limits["low"], limits["high"])
-    )
-    if low is None and high is None:
+def _limits(low: float | None, high: float | None) -> str:
+    least, most = (None if bound is None or math.isinf(bound) else _short(bound) for bound in (low, high))
+    if least is None and most is None:
         return ""
-    if high is None:
-        return f"at least {low}"
-    return f"at most {high}" if low is None else f"{low} to {high}"
+    if most is None:
+        return f"at least {least}"
+    return f"at most {most}" if least is None else f"{least} to {most}"
 
 
 def _short(number: float) -> str:
@@ -156,10 +169,8 @@ def _short(number: float) -> str:
     return str(number) if isinstance(number, int) else f"{number:g}"
 
 
-def _is_within(value: float, limits: Mapping[str, Any]) -> bool:
-    low = -math.inf if limits["low"] is None else limits["low"]
-    high = math.inf if limits["high"] is None else limits["high"]
-    return bool(math.isfinite(value) and low <= value <= high)
+def _is_within(value: float, low: float | None, high: float | None) -> bool:
+    return math.isfinite(value) and (low is None or low <= value) and (high is None or value <= high)
 
 
 def declared(values: Any) -> Iterator[Declared]:
@@ -170,14 +181,11 @@ def declared(values: Any) -> Iterator[Declared]:
 def _declared(values: Any, prefix: str, path: tuple[str, ...]) -> Iterator[Declared]:
     for item in dataclasses.fields(values):
         here, value = (*path, item.name), getattr(values, item.name)
-        if "group" in item.metadata:
-            yield from _declared(value, f"{prefix}{item.metadata['group']}.", here)
+        if _GROUP in item.metadata:
+            yield from _declared(value, f"{prefix}{item.metadata[_GROUP]}.", here)
         else:
-            yield Declared(prefix + _name(item), here, value, item.metadata)
-
-
-def _name(item: Field[Any]) -> str:
-    return str(item.metadata.get("name", item.name))
+            options: FieldOptions = item.metadata[_OPTIONS]
+            yield Declared(f"{prefix}{options.name or item.name}", here, value, options)
 
 
 def declare(node: Node, defaults: T) -> T:
@@ -187,8 +195,8 @@ def declare(node: Node, defaults: T) -> T:
     """
     values = defaults
     for item in declared(defaults):
-        if item.metadata["array"] is not None:
-            found = declare_array(node, item.name, item.metadata["array"], item.metadata["text"], item.default)
+        if item.options.array is not None:
+            found = declare_array(node, item.name, item.options.array, item.options.text, item.default)
             values = _with(values, item.path, found)
             continue
         try:
@@ -230,9 +238,9 @@ def misfit(wanted: Parameter, descriptor: ParameterDescriptor) -> str:
         return f"found {'nothing' if value is None else shown(value)}, expected {_EXPECTED[kind]}"
     ranges: list[IntegerRange | FloatingPointRange] = [*descriptor.integer_range, *descriptor.floating_point_range]
     for bounds in ranges:
-        limits = {"low": bounds.from_value, "high": bounds.to_value}
-        if isinstance(value, int | float) and not _is_within(value, limits):
-            return f"found {value}, expected {_limits(limits)}"
+        low, high = bounds.from_value, bounds.to_value
+        if isinstance(value, int | float) and not _is_within(value, low, high):
+            return f"found {value}, expected {_limits(low, high)}"
     return ""
 
 
