@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -39,6 +39,15 @@ MISSING = (
     "of the remote control: these stay 0"
 )
 """Inputs that programs do not get, as text for the user."""
+
+M = TypeVar("M", bound="Message")
+
+
+class _Listen(Protocol):
+    """Subscribes to a topic of the robot."""
+
+    def __call__(self, topic: str, kind: type[M], handle: Callable[[M], object]) -> Subscription: ...
+
 
 FULL_SOUND = 255
 COMM_SENSORS = 7
@@ -69,10 +78,11 @@ class _ReadingAssembler:
 
 def subscribe(node: Node, names: RobotNames, feed: Feed) -> list[Subscription]:
     """Subscribe to the driver topics of one robot and return the subscriptions."""
-    return [
-        node.create_subscription(kind, names.topic(topic), handle, qos.SENSOR)
-        for topic, kind, handle in (*_ranges(feed), *_buttons(feed), *_others(feed))
-    ]
+
+    def listen(topic: str, kind: type[M], handle: Callable[[M], object]) -> Subscription:
+        return node.create_subscription(kind, names.topic(topic), handle, qos.SENSOR)
+
+    return [*_ranges(listen, feed), *_buttons(listen, feed), *_others(listen, feed)]
 
 
 def twist_of(command: MotorTargets) -> Twist:
@@ -96,13 +106,13 @@ def _is_reflecting(message: Range) -> bool:
     return bool(message.range < message.min_range)
 
 
-def _ranges(feed: Feed) -> Iterator[tuple[str, type[Message], Callable[[Any], None]]]:
+def _ranges(listen: _Listen, feed: Feed) -> Iterator[Subscription]:
     ground = _ReadingAssembler(len(SIDES), lambda counts: feed("ground", (0, 0, *counts, *counts)))
     proximity = _ReadingAssembler(len(PROXIMITY), partial(feed, "proximity"))
     for index, side in enumerate(SIDES):
-        yield f"ground/{side}", Range, partial(_set_ground, ground, index)
+        yield listen(f"ground/{side}", Range, partial(_set_ground, ground, index))
     for index, name in enumerate(PROXIMITY):
-        yield f"proximity/{name}", Range, partial(_set_proximity, proximity, index)
+        yield listen(f"proximity/{name}", Range, partial(_set_proximity, proximity, index))
 
 
 def _set_ground(ground: _ReadingAssembler, index: int, message: Range) -> None:
@@ -113,7 +123,7 @@ def _set_proximity(proximity: _ReadingAssembler, index: int, message: Range) -> 
     proximity.add(index, proximity_count(message))
 
 
-def _buttons(feed: Feed) -> Iterator[tuple[str, type[Message], Callable[[Any], None]]]:
+def _buttons(listen: _Listen, feed: Feed) -> Iterator[Subscription]:
     pressed = [0] * len(BUTTONS)
 
     def on_button(message: Bool, index: int) -> None:
@@ -121,17 +131,19 @@ def _buttons(feed: Feed) -> Iterator[tuple[str, type[Message], Callable[[Any], N
         feed("buttons", pressed)
 
     for index, name in enumerate(BUTTONS):
-        yield f"buttons/{name}", Bool, partial(on_button, index=index)
+        yield listen(f"buttons/{name}", Bool, partial(on_button, index=index))
 
 
-def _others(feed: Feed) -> Iterator[tuple[str, type[Message], Callable[[Any], None]]]:
-    yield "imu", Imu, lambda message: feed("accelerometer", _acceleration(message))
-    yield "temperature", Temperature, lambda message: feed("temperature", [units.celsius_to_units(message.temperature)])
-    yield "tap", Empty, lambda _message: feed("tap", [1])
-    yield "sound", Float32, lambda message: feed("sound", [round(message.data * FULL_SOUND), 0])
-    yield "remote", Int8, lambda message: feed("remote", [0, message.data])
-    yield "comm/received", Int16, lambda message: feed("comm", [message.data, *[0] * (2 * COMM_SENSORS)])
-    yield "odom", Odometry, lambda message: feed("motor", _wheels(message))
+def _others(listen: _Listen, feed: Feed) -> Iterator[Subscription]:
+    yield listen("imu", Imu, lambda message: feed("accelerometer", _acceleration(message)))
+    yield listen(
+        "temperature", Temperature, lambda message: feed("temperature", [units.celsius_to_units(message.temperature)])
+    )
+    yield listen("tap", Empty, lambda _message: feed("tap", [1]))
+    yield listen("sound", Float32, lambda message: feed("sound", [round(message.data * FULL_SOUND), 0]))
+    yield listen("remote", Int8, lambda message: feed("remote", [0, message.data]))
+    yield listen("comm/received", Int16, lambda message: feed("comm", [message.data, *[0] * (2 * COMM_SENSORS)]))
+    yield listen("odom", Odometry, lambda message: feed("motor", _wheels(message)))
 
 
 def _acceleration(message: Imu) -> list[int]:
