@@ -11,9 +11,9 @@ from __future__ import annotations
 import time
 import traceback
 import uuid
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import assert_never
 from urllib.parse import quote
 
 from rclpy.clock import Clock, JumpThreshold, TimeJump
@@ -321,7 +321,7 @@ class FoxgloveBridge:
 
     def _on_event(self, event: ev.Event) -> None:
         try:
-            _HANDLERS[type(event)](self, event)
+            self._handle(event)
         except Exception:
             # A failed request of one client must not end the bridge for the others; it is dropped.
             self.node.get_logger().error(
@@ -331,6 +331,33 @@ class FoxgloveBridge:
                 self._services.fail(event.client, event.request, "internal error (please report), see the log")
             elif isinstance(event, (ev.ParametersSet, ev.ParametersRequested)):
                 self._server.post(ev.SendParameters(event.client, (), event.request_id, ev.size_of(event)))
+
+    def _handle(self, event: ev.Event) -> None:
+        match event:
+            case ev.ChannelSubscribed():
+                self._topics.subscribe(event.channel_id)
+            case ev.ChannelUnsubscribed():
+                self._topics.unsubscribe(event.channel_id)
+            case ev.ClientChannelOpened():
+                self._publishers.open(event.client, event.channel)
+            case ev.ClientChannelClosed():
+                self._publishers.close(event.client, event.channel_id)
+            case ev.ClientMessageReceived():
+                self._publishers.publish(event.client, event.channel_id, event.payload)
+            case ev.ServiceCalled():
+                self._services.call(event.client, event.request)
+            case ev.ParametersSet():
+                self._parameters.set(event)
+            case ev.ParametersRequested():
+                self._parameters.get(event)
+            case ev.ParametersWatched():
+                self._parameters.watch(event)
+            case ev.GraphSubscriptionChanged():
+                self._on_graph_subscription(event)
+            case ev.AssetRequested():
+                self._on_asset_requested(event)
+            case _:
+                assert_never(event)
 
     def _on_graph_subscription(self, event: ev.GraphSubscriptionChanged) -> None:
         self._wants_graph = event.wanted
@@ -344,23 +371,6 @@ class FoxgloveBridge:
         except AssetError as error:
             answer = AssetResponse(event.request_id, b"", str(error))
         self._server.post(ev.SendToClient(event.client, answer))
-
-
-_HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
-    ev.ChannelSubscribed: lambda self, event: self._topics.subscribe(event.channel_id),
-    ev.ChannelUnsubscribed: lambda self, event: self._topics.unsubscribe(event.channel_id),
-    ev.ClientChannelOpened: lambda self, event: self._publishers.open(event.client, event.channel),
-    ev.ClientChannelClosed: lambda self, event: self._publishers.close(event.client, event.channel_id),
-    ev.ClientMessageReceived: lambda self, event: self._publishers.publish(
-        event.client, event.channel_id, event.payload
-    ),
-    ev.ServiceCalled: lambda self, event: self._services.call(event.client, event.request),
-    ev.ParametersSet: lambda self, event: self._parameters.set(event),
-    ev.ParametersRequested: lambda self, event: self._parameters.get(event),
-    ev.ParametersWatched: lambda self, event: self._parameters.watch(event),
-    ev.GraphSubscriptionChanged: FoxgloveBridge._on_graph_subscription,
-    ev.AssetRequested: FoxgloveBridge._on_asset_requested,
-}
 
 
 def _sender(event: ev.Event) -> int:
