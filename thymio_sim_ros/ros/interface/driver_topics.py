@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
+from builtin_interfaces.msg import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
@@ -24,6 +25,7 @@ from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.ros.interface.sensor_topics import Row
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
 __all__ = ["PACKAGE", "STANDARD_TOPICS", "TOPICS", "DriverTopics", "driver_name", "found"]
@@ -71,6 +73,34 @@ TOPICS: Mapping[str, tuple[str, str, str]] = {
 """Direction, type and meaning of the topics with types of `thymio_msgs`."""
 
 
+# The messages of thymio_msgs, as far as they are read here.
+
+
+class _Led(Protocol):
+    id: int
+    values: Sequence[float]
+
+
+class _LedGesture(Protocol):
+    gesture: int
+    leds: int
+    wave: int
+    period: float
+    length: int
+    OFF: int
+    RECT: int
+
+
+class _Sound(Protocol):
+    frequency: float
+    duration: Duration
+
+
+class _SystemSound(Protocol):
+    sound: int
+    STOP: int
+
+
 @dataclass(frozen=True, slots=True)
 class DriverTopics:
     """Additional topics of a robot: published rows by sensor, and inputs."""
@@ -94,7 +124,7 @@ class DriverTopics:
     def of(cls, messages: Any) -> DriverTopics:
         """Return the topics with types of the module `thymio_msgs.msg`."""
 
-        def comm(reading: Any, _names: object, _options: object) -> Any:
+        def comm(reading: Reading, _names: object, _options: object) -> Any:
             words = reading.words
             return messages.Comm(value=words[0], payloads=words[1:8], intensities=words[8:15])
 
@@ -146,17 +176,17 @@ def _group(number: int) -> str:
     return GROUPS[number]
 
 
-def _led(message: Any, _input_context: InputContext) -> Sequence[Command]:
+def _led(message: _Led, _input_context: InputContext) -> Sequence[Command]:
     group = _group(message.id)
     size = commands.LED_GROUPS[group]
     return (command_checks.led_levels(group, list(message.values)[:size]),)
 
 
-def _too_bright(message: Any) -> str:
+def _too_bright(message: _Led) -> str:
     return saturation.brightness(message.values[: commands.LED_GROUPS[GROUPS[message.id]]])
 
 
-def _gesture(message: Any, _input_context: InputContext) -> Sequence[Command]:
+def _gesture(message: _LedGesture, _input_context: InputContext) -> Sequence[Command]:
     """Find the gesture of the driver by group, wave form and length."""
     if message.gesture == message.OFF:
         return (commands.StopGesture(),)
@@ -175,11 +205,11 @@ def _gesture(message: Any, _input_context: InputContext) -> Sequence[Command]:
         raise CommandError(str(error)) from error
 
 
-def _tone(message: Any, _input_context: InputContext) -> Sequence[Command]:
+def _tone(message: _Sound, _input_context: InputContext) -> Sequence[Command]:
     command_checks.finite(message.frequency, "frequency")
     duration_ns = message.duration.sec * SECOND_NS + message.duration.nanosec
     return (commands.PlayTone(max(1.0, float(message.frequency)), max(MIN_TONE_NS, duration_ns)),)
 
 
-def _system(message: Any, _input_context: InputContext) -> Sequence[Command]:
+def _system(message: _SystemSound, _input_context: InputContext) -> Sequence[Command]:
     return (commands.StopSound() if message.sound == message.STOP else commands.PlaySystemSound(int(message.sound)),)
