@@ -24,7 +24,7 @@ KINDS |= {"str": str, "bytes": bytes}
 
 PROGRAM = """
 import rclpy
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, Vector3
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
@@ -50,6 +50,8 @@ node.create_subscription(Bool, "wrong", on_text_with_info, 10)  # wrong
 node.create_subscription(String, "wrong", lambda message: message.dat, 10)  # wrong
 node.create_publisher(Twist, "wrong", 10).publish(String())  # wrong
 twist.linear.x = "fast"  # wrong
+twist.linear.x = 1  # wrong
+twist.linear = Vector3(x=1, y=0.0)  # wrong
 twist.speed = 1.0  # wrong
 """
 

@@ -36,6 +36,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from {__package__}.messages.message_class import Message, Service
+from {__package__}.messages.primitives import Float
 """
 
 
@@ -124,7 +125,7 @@ def _kept(of: FieldType) -> str:
 def _assigned(of: FieldType) -> str:
     """The type of what a field can be set to."""
     if of.shape is Shape.SCALAR:
-        return _element(of)
+        return "Float" if _element(of) == "float" else _element(of)
     given = f"Sequence[{_element(of)}] | Set[{_element(of)}]"
     return f"{_kept(of)} | {given}" if of.shape is Shape.ARRAY and of.is_primitive else given
 

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
-__all__ = ["FLOATS", "PRIMITIVES", "Primitive"]
+__all__ = ["FLOATS", "PRIMITIVES", "Float", "Primitive"]
 
 FLOATS = {"float": 3.402823466e38, "double": 1.7976931348623157e308}
 """The largest finite values, by the name of the type in IDL."""
+
+
+class Float(Protocol):
+    """A float and no int, for type checkers: rclpy sends an int in a float field as another number."""
+
+    def __float__(self) -> float: ...
+
+    def hex(self) -> str: ...  # which int lacks
 
 
 @dataclass(frozen=True, slots=True)
