@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
 import pytest
 from rclpy.node import Node
@@ -389,7 +389,7 @@ class Ros:
         self.settle()
         return publisher
 
-    def call(self, kind: type[Service[Q, R]], name: str, request: Q | None = None) -> R | None:
+    def call(self, kind: type[Service[Q, R]], name: str, request: Q | None = None) -> R:
         """Call a service and return its response."""
         __tracebackhide__ = True
         full = self.node.resolve_service_name(name)
@@ -401,7 +401,7 @@ class Ros:
         self.until(client.service_is_ready, what=f"service {name}")
         future = client.call_async(kind.Request() if request is None else request)
         self.until(future.done, what=f"answer of {name}")
-        return future.result()
+        return cast(R, future.result())  # done, and not canceled
 
     def _local_topic(self, name: str) -> LocalTopic | None:
         return next(filter(None, (local.topic(name) for local in self._local_nodes())), None)
