@@ -23,6 +23,8 @@ __all__ = ["NO_WAIT", "BufferInterface", "ConvertRegistration", "Stamped", "Tran
 NO_WAIT = Duration()
 
 Key = TypeVar("Key")
+S = TypeVar("S")
+N = TypeVar("N")
 T = TypeVar("T", bound="_WithHeader")
 
 
@@ -39,11 +41,11 @@ _direct: dict[tuple[type, type], Callable[[Any], Any]] = {}
 class TransformRegistration:
     """The functions that transform messages, by type; all objects of this class share them."""
 
-    def add(self, key: type, callback: Callable[[Any, TransformStamped], Any]) -> None:
+    def add(self, key: type[S], callback: Callable[[S, TransformStamped], S]) -> None:
         """Register a function of a message and a transform that returns the transformed message."""
         _transformers[key] = callback
 
-    def get(self, key: type) -> Callable[[Any, TransformStamped], Any]:
+    def get(self, key: type[S]) -> Callable[[S, TransformStamped], S]:
         """The function of a type. Raises TypeException without one."""
         return _registered(_transformers, key, "TransformRegistration().add")
 
@@ -55,39 +57,40 @@ class TransformRegistration:
 class ConvertRegistration:
     """The functions that convert objects from and to messages; all objects of this class share them."""
 
-    def add_to_msg(self, key: type, callback: Callable[[Any], Any]) -> None:
+    def add_to_msg(self, key: type[S], callback: Callable[[S], object]) -> None:
         """Register a function that makes a message of an object of type `key`."""
         _to_message[key] = callback
 
-    def add_from_msg(self, key: type, callback: Callable[[Any], Any]) -> None:
+    def add_from_msg(self, key: type[S], callback: Callable[[Any], S]) -> None:
         """Register a function that makes an object of type `key` of a message."""
         _from_message[key] = callback
 
-    def add_convert(self, key: tuple[type, type], callback: Callable[[Any], Any]) -> None:
+    def add_convert(self, key: tuple[type[S], type[N]], callback: Callable[[S], N]) -> None:
         """Register a function that converts directly; `key` is the type that it takes and the type that it returns."""
         _direct[key] = callback
 
-    def get_to_msg(self, key: type) -> Callable[[Any], Any]:
+    def get_to_msg(self, key: type[S]) -> Callable[[S], Any]:
         """The function of `add_to_msg`. Raises TypeException without one."""
         return _registered(_to_message, key, "ConvertRegistration().add_to_msg")
 
-    def get_from_msg(self, key: type) -> Callable[[Any], Any]:
+    def get_from_msg(self, key: type[S]) -> Callable[[Any], S]:
         """The function of `add_from_msg`. Raises TypeException without one."""
         return _registered(_from_message, key, "ConvertRegistration().add_from_msg")
 
-    def get_convert(self, key: tuple[type, type]) -> Callable[[Any], Any]:
+    def get_convert(self, key: tuple[type[S], type[N]]) -> Callable[[S], N]:
         """The function of `add_convert`. Raises TypeException without one."""
         return _registered(_direct, key, "ConvertRegistration().add_convert")
 
 
-def convert(a: Any, b_type: type) -> Any:
+def convert(a: object, b_type: type[N]) -> N:
     """Convert an object to a type: directly if such a function is registered, otherwise by way of a message.
 
     Raises TypeException if the types have no functions.
     """
     direct = _direct.get((type(a), b_type))
     if direct is not None:
-        return direct(a)
+        converted: N = direct(a)
+        return converted
     if type(a) is b_type:
         return a
     registration = ConvertRegistration()
@@ -108,7 +111,7 @@ class BufferInterface:
         self.registration = TransformRegistration()
 
     def transform(
-        self, object_stamped: Any, target_frame: str, timeout: Duration = NO_WAIT, new_type: type | None = None
+        self, object_stamped: _WithHeader, target_frame: str, timeout: Duration = NO_WAIT, new_type: type | None = None
     ) -> Any:
         """Transform a message to another frame at the time of its header; with `new_type`, convert the result.
 
@@ -120,7 +123,7 @@ class BufferInterface:
 
     def transform_full(
         self,
-        object_stamped: Any,
+        object_stamped: _WithHeader,
         target_frame: str,
         target_time: Time | TimeMessage,
         fixed_frame: str,
