@@ -10,6 +10,7 @@ import pytest
 from thymio_sim_ros.portable_ros.rclpy.context import Context
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor, TimeoutException
 from thymio_sim_ros.portable_ros.rclpy.node import Node
+from thymio_sim_ros.portable_ros.rclpy.task import Future
 
 
 @pytest.fixture
@@ -77,3 +78,10 @@ def test_a_task_that_creates_another_one_each_time_does_not_stop_entities(node: 
         for _ in range(4):
             executor.spin_once(timeout_sec=0)
     assert called == ["guard"] * 3
+
+
+def test_a_spin_for_a_future_without_time_runs_a_callback_that_is_ready(node: Node) -> None:
+    executor = SingleThreadedExecutor(context=node.context)
+    first, second = (executor.create_task(lambda value=value: value) for value in (1, 2))
+    executor.spin_until_future_complete(Future(), timeout_sec=0)
+    assert [first.result(), second.result()] == [None, 2], "one callback, the one of the newest task"

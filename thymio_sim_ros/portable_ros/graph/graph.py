@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from thymio_sim_ros.portable_ros.graph.deadline import Deadline
 from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd, GraphNode, PublisherEnd, ServiceEnd, SubscriptionEnd
 from thymio_sim_ros.portable_ros.rclpy.qos import incompatibilities
 
@@ -36,9 +36,9 @@ class Graph:
 
     def wait_for(self, condition: Callable[[], bool], timeout_s: float | None) -> bool:
         """Wait until a condition of the graph is true; return whether it is."""
-        end_s = None if timeout_s is None or timeout_s < 0 else time.monotonic() + timeout_s
+        deadline = Deadline(timeout_s)
         with self._changed:
-            return self._changed.wait_for(condition, None if end_s is None else max(0.0, end_s - time.monotonic()))
+            return self._changed.wait_for(condition, deadline.left_s())
 
     def notify(self) -> None:
         """Wake all waits, since something has changed."""

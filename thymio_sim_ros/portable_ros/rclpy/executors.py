@@ -6,7 +6,6 @@ All executors have one queue (`graph/ready_queue.py`), into which entities and t
 from __future__ import annotations
 
 import os
-import time
 import warnings
 import weakref
 from collections.abc import Callable, Coroutine
@@ -16,6 +15,7 @@ from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.portable_ros.graph.deadline import Deadline
 from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.graph.ready_queue import ReadyQueue
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import WaitSet
@@ -143,14 +143,13 @@ class Executor:
         self._spin_once(timeout_sec, lambda: False)
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Execute callbacks until a future is done, or until the time is over."""
+        """Execute callbacks, at least one that is ready, until a future is done or the time is over."""
         future.add_done_callback(lambda _: self.wake())
-        end_s = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
+        deadline = Deadline(timeout_sec)
         while self._context.ok() and future._pending() and not self._is_shutdown:
-            left_s = None if end_s is None else end_s - time.monotonic()
-            if left_s is not None and left_s < 0:
+            self.spin_once_until_future_complete(future, deadline.left_s())
+            if deadline.is_over():
                 return
-            self.spin_once_until_future_complete(future, left_s)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Execute one callback unless a future is done before."""
@@ -193,7 +192,7 @@ class Executor:
             raise
 
     def _next(self, timeout_sec: float | None, condition: Callable[[], bool]) -> tuple[Task, Entity | None, Any]:
-        end_s = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
+        deadline = Deadline(timeout_sec)
         while True:
             with self._changed:
                 if self._is_shutdown:
@@ -205,11 +204,10 @@ class Executor:
                 self._poll()
                 found = self._queue.pop(self._nodes)
                 if found is None:
-                    left_s = None if end_s is None else end_s - time.monotonic()
-                    if left_s is not None and left_s <= 0:
+                    if deadline.is_over():
                         raise TimeoutException
                     self._wait_set.due_s = self._due_s()
-                    self._wait_set.wait(timeout_sec_to_nsec(left_s))
+                    self._wait_set.wait(timeout_sec_to_nsec(deadline.left_s()))
                     continue
                 self._running.append(found)
             if isinstance(found, Task):

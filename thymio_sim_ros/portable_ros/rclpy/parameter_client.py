@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from thymio_sim_ros.portable_ros import ros_types
+from thymio_sim_ros.portable_ros.graph.deadline import Deadline
 from thymio_sim_ros.portable_ros.messages.message_class import Service, SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.client import Client
@@ -60,11 +60,8 @@ class AsyncParameterClient:
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
         """Wait for all services; return whether they are there."""
-        end_s = None if timeout_sec is None else time.monotonic() + timeout_sec
-        for one in self._clients:
-            if not one.wait_for_service(None if end_s is None else max(0.0, end_s - time.monotonic())):
-                return False
-        return True
+        deadline = Deadline(None if timeout_sec is None else max(0.0, timeout_sec))
+        return all(one.wait_for_service(deadline.left_s()) for one in self._clients)
 
     def list_parameters(
         self,
