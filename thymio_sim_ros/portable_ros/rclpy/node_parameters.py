@@ -18,6 +18,7 @@ from thymio_sim_ros.portable_ros.rclpy.exceptions import (
 from thymio_sim_ros.portable_ros.rclpy.node_base import NodeBase
 from thymio_sim_ros.portable_ros.rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from thymio_sim_ros.portable_ros.rclpy.parameter_declaration import declared
+from thymio_sim_ros.portable_ros.rclpy.parameter_listing import listed
 from thymio_sim_ros.portable_ros.rclpy.parameter_ranges import range_problem, type_problem
 
 if TYPE_CHECKING:
@@ -144,25 +145,7 @@ class NodeParameters(NodeBase):
 
     def list_parameters(self, prefixes: list[str], depth: int) -> ros_types.ListParametersResult:
         """The names of all parameters, or of those with a prefix; `depth` limits the dots, 0 stands for any number."""
-        if not isinstance(prefixes, list):
-            raise TypeError("The prefixes argument must be a list")
-        if not all(isinstance(one, str) for one in prefixes):
-            raise TypeError("All prefixes must be instances of type str")
-        if not isinstance(depth, int):
-            raise TypeError("The depth must be instance of type int")
-        if depth < 0:
-            raise ValueError("The depth must be greater than or equal to zero")
-
-        def is_listed(name: str) -> bool:
-            if not prefixes:
-                return not depth or name.count(PARAMETER_SEPARATOR_STRING) < depth
-            starts = [f"{one}{PARAMETER_SEPARATOR_STRING}" for one in prefixes]
-            rests = [name.removeprefix(one) for one in starts if name.startswith(one)]
-            return name in prefixes or any(not depth or one.count(PARAMETER_SEPARATOR_STRING) < depth for one in rests)
-
-        names = [name for name in self._parameters if is_listed(name)]
-        heads = (name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names)
-        return ros_types.ListParametersResult(names=names, prefixes=list(dict.fromkeys(filter(None, heads))))
+        return listed(self._parameters, prefixes, depth)
 
     def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
         """Let a callback change the list before parameters are checked."""
