@@ -47,7 +47,7 @@ class Node(NodeEndpoints, NodeGraph):
     ) -> None:
         """Raises NotInitializedException, InvalidNodeNameException and InvalidNamespaceException."""
         super().__init__(node_name, context, cli_args, namespace, use_global_arguments)
-        self._prepare_endpoints()
+        self._prepare_entities()
         self._graph.add_node(self)
         self._rosout = Rosout(self) if enable_rosout and self._context.arguments.has_rosout else None
         self._log_publisher = None if self._rosout is None else self._rosout.publisher

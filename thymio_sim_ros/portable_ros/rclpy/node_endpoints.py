@@ -1,12 +1,11 @@
-"""What a node has: publishers, subscriptions, clients, services, timers, guard conditions, waitables."""
+"""Makes and destroys what a node has: publishers, subscriptions, clients, services, timers, guard conditions."""
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterator
-from typing import Any, Literal, TypeVar, overload
+from collections.abc import Awaitable, Callable
+from typing import Any, Literal, overload
 
 from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
-from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.messages.message_class import Message, MsgT, SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.messages.message_class import Service as ServiceType
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
@@ -14,13 +13,12 @@ from thymio_sim_ros.portable_ros.rclpy.client import Client
 from thymio_sim_ros.portable_ros.rclpy.clock import Clock
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
 from thymio_sim_ros.portable_ros.rclpy.event_handler import (
-    EventHandler,
     PublisherEventCallbacks,
     SubscriptionEventCallbacks,
 )
 from thymio_sim_ros.portable_ros.rclpy.guard_condition import GuardCondition
 from thymio_sim_ros.portable_ros.rclpy.logging import get_logger
-from thymio_sim_ros.portable_ros.rclpy.node_parameters import NodeParameters
+from thymio_sim_ros.portable_ros.rclpy.node_entities import NodeEntities
 from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_services_default
 from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
@@ -29,77 +27,12 @@ from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription
 from thymio_sim_ros.portable_ros.rclpy.subscription import MessageInfo, Subscription
 from thymio_sim_ros.portable_ros.rclpy.timer import Rate, Timer
 from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
-from thymio_sim_ros.portable_ros.rclpy.waitable import Waitable, WaitableEntity
 
 __all__ = ["NodeEndpoints"]
 
-E = TypeVar("E", bound=Entity)
 
-_KINDS = (Publisher, Subscription, Client, Service, Timer, GuardCondition, EventHandler, WaitableEntity)
-
-
-class NodeEndpoints(NodeParameters):
-    """The part of a node that makes and removes what executors execute."""
-
-    def _prepare_endpoints(self) -> None:
-        """Start without endpoints."""
-        self._endpoints: dict[type, list[Any]] = {kind: [] for kind in _KINDS}
-        self._log_publisher: Publisher[Any] | None = None
-        self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
-
-    @property
-    def publishers(self) -> Iterator[Publisher[Any]]:
-        """The publishers, without that of the log."""
-        yield from (one for one in self.all_publishers if one is not self._log_publisher)
-
-    @property
-    def all_publishers(self) -> Iterator[Publisher[Any]]:
-        """The publishers, with that of the log."""
-        yield from list(self._endpoints[Publisher])
-
-    @property
-    def subscriptions(self) -> Iterator[Subscription]:
-        """The subscriptions."""
-        yield from list(self._endpoints[Subscription])
-
-    @property
-    def clients(self) -> Iterator[Client[Any, Any]]:
-        """The clients."""
-        yield from list(self._endpoints[Client])
-
-    @property
-    def services(self) -> Iterator[Service]:
-        """The services."""
-        yield from list(self._endpoints[Service])
-
-    @property
-    def timers(self) -> Iterator[Timer]:
-        """The timers."""
-        yield from list(self._endpoints[Timer])
-
-    @property
-    def guards(self) -> Iterator[GuardCondition]:
-        """The guard conditions."""
-        yield from list(self._endpoints[GuardCondition])
-
-    @property
-    def waitables(self) -> Iterator[Waitable | EventHandler]:
-        """The handlers of events, and the waitables that were added."""
-        yield from [*self._endpoints[EventHandler], *(one.waitable for one in self._endpoints[WaitableEntity])]
-
-    def polled(self) -> list[Timer | WaitableEntity]:
-        """What becomes ready without a notification of the executor."""
-        return [*self._endpoints[Timer], *self._endpoints[WaitableEntity]]
-
-    def entities(self) -> list[Entity]:
-        """All that an executor executes."""
-        kinds = (kind for kind in self._endpoints if kind is not Publisher)
-        return [entity for kind in kinds for entity in self._endpoints[kind]]
-
-    @property
-    def default_callback_group(self) -> CallbackGroup:
-        """The group of all callbacks for which no other is given."""
-        return self._default_callback_group
+class NodeEndpoints(NodeEntities):
+    """The part of a node that makes and destroys publishers, subscriptions, clients, services, timers and guards."""
 
     def create_publisher(
         self,
@@ -121,7 +54,7 @@ class NodeEndpoints(NodeParameters):
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or PublisherEventCallbacks(), group, topic)
         made = publisher_class(self._context, msg_type, topic, full, profile, events, self._logger.name)
-        self._endpoints[Publisher].append(made)
+        self._entities[Publisher].append(made)
         made.handle.on_release(lambda: self._graph.remove_publisher(made))
         self._graph.add_publisher(made)
         return made
@@ -255,18 +188,6 @@ class NodeEndpoints(NodeParameters):
         timer = self.create_timer(1.0 / frequency, None, MutuallyExclusiveCallbackGroup(), clock)
         return Rate(timer, context=self._context)
 
-    def add_waitable(self, waitable: Waitable) -> None:
-        """Execute a waitable from now on."""
-        self._owned(WaitableEntity(waitable))
-        self._wake_executor()
-
-    def remove_waitable(self, waitable: Waitable) -> None:
-        """Undo `add_waitable`. Raises ValueError for an unknown waitable."""
-        found = [one for one in self._endpoints[WaitableEntity] if one.waitable is waitable]
-        if not found:
-            raise ValueError(f"found {waitable!r}, expected a waitable of the node")
-        self._remove(found[0])
-
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Remove a publisher; return whether it was one of this node."""
         return self._remove_with_events(publisher)
@@ -318,38 +239,6 @@ class NodeEndpoints(NodeParameters):
         for handler in handlers.values():
             self._owned(handler)
         return EndpointEvents(handlers)
-
-    def _wake_executor(self) -> None:
-        if self.executor is not None:
-            self.executor.wake()
-
-    def _owned(self, entity: E) -> E:
-        """Make this node the owner of a new entity."""
-        entity.belong_to(self)
-        if entity.callback_group is not None:
-            entity.callback_group.add_entity(entity)
-        self._endpoints[_kind(entity)].append(entity)
-        return entity
-
-    def _remove_with_events(self, end: Publisher[Any] | Subscription) -> bool:
-        is_own = self._remove(end)
-        for handler in end.event_handlers:
-            self._remove(handler)
-        return is_own
-
-    def _remove(self, end: Any) -> bool:
-        kind = _kind(end)
-        ends = self._endpoints[kind]
-        if not any(one is end for one in ends):
-            return False
-        self._endpoints[kind] = [one for one in ends if one is not end]
-        end.destroy()
-        return True
-
-
-def _kind(end: Entity | Publisher[Any]) -> type:
-    """The class of an endpoint without its subclasses."""
-    return next(one for one in _KINDS if isinstance(end, one))
 
 
 def _profile(qos_or_depth: QoSProfile | int) -> QoSProfile:
