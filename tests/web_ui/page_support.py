@@ -57,7 +57,7 @@ class TouchPoints:
 
 
 def drop_file(page: Any, path: Path, selector: str) -> None:
-    """Drop a file on the center of what is seen of an element; again if the browser takes the gesture for one that ends elsewhere."""
+    """Drop a file on the center of the visible part of an element; repeat a gesture that the browser ends elsewhere."""
     box, height = page.locator(selector).bounding_box(), page.viewport_size["height"]
     place = {"x": box["x"] + box["width"] / 2, "y": (box["y"] + min(box["y"] + box["height"], height)) / 2}
     data = {"items": [], "files": [str(path)], "dragOperationsMask": 1}

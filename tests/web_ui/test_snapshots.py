@@ -24,7 +24,7 @@ QUIET = """
     .sample img, .current img, .clock, .real { visibility: hidden; }
     .time-parts:not([data-names="all"]) > .real { display: none !important; }
 """
-"""Thumbnails are drawn one after another, time runs, and on a busy machine it is said how slowly, where there is room."""
+"""Thumbnails are drawn one after another, time runs, and a busy machine shows how slowly, where there is room."""
 
 State = Callable[[Any], None]
 
