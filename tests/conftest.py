@@ -17,6 +17,7 @@ import hypothesis
 import pytest
 
 from aseba_vm import languages
+from tests import ros_graph
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.end_signals import END_SIGNALS
 from thymio_sim_ros.files import resources
@@ -106,6 +107,8 @@ def pytest_addoption(parser):
 ROOT = Path(__file__).parent
 ROS_FOLDERS = [ROOT / name for name in ("ros", "portable_ros/real", "testing/ros", "tf")]
 ROS_FIXTURES = {"ros", "ros_domain", "_shared"}
+PAGE = "page"
+"""All files of tests of the page, for the scheduler."""
 LONGEST_FIRST = ("browser", "process", "ros")
 """Kinds of tests by their usual duration: a long one that starts last keeps one worker busy and the others idle."""
 
@@ -114,7 +117,7 @@ LONGEST_FIRST = ("browser", "process", "ros")
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark and order all tests. The markers select the tiers (docs/testing.md).
 
-    - Tests need ROS if they are in one of its folders or have one of its fixtures.
+    - Tests need rclpy if they are in one of its folders or have one of its fixtures; some need an installed ROS 2.
     - A test with a browser, other processes or ROS may run a second time.
     """
     may_rerun = config.pluginmanager.hasplugin("rerunfailures")
@@ -123,11 +126,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     for item in items:
         fixtures = ROS_FIXTURES.intersection(getattr(item, "fixturenames", ()))
-        if fixtures or any(folder in item.path.parents for folder in ROS_FOLDERS):
+        if fixtures or _uses_graph(item.path):
             item.add_marker("ros")
+        if ros_graph.IS_EMBEDDED and ros_graph.needs_ros(item.path):
+            item.add_marker(pytest.mark.skip(reason="needs an installed ROS 2: THYMIO_TEST_GRAPH=ros"))
         if may_rerun and _kind(item) < len(LONGEST_FIRST):
             item.add_marker(pytest.mark.flaky(reruns=1))
     items.sort(key=_kind)
+
+
+def _uses_graph(path: Path) -> bool:
+    return any(folder in path.parents for folder in ROS_FOLDERS)
 
 
 def _kind(item: pytest.Item) -> int:
@@ -139,14 +148,33 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Share out whole files in their order, so that fixtures of a module and of a session are made less often.
 
     One worker has all tests of the page: two browsers that draw by software at the same time take several times as
-    long. (`--dist loadgroup` of pytest-xdist 3.8 does not group with pytest 9.2, which keeps names elsewhere.)
+    long. Another one has the tests that need an installed ROS 2. (`--dist loadgroup` of pytest-xdist 3.8 does not group
+    with pytest 9.2, which keeps names elsewhere.)
     """
     from xdist.scheduler import LoadScopeScheduling
 
     class Files(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
-            return "page" if file.startswith("tests/web_ui/") else file
+            return PAGE if file.startswith("tests/web_ui/") else file
+
+        def _assign_work_unit(self, node: Any) -> None:
+            scope = next(iter(self._fitting(node)), None)
+            if scope is None:  # the others have what is left
+                node.shutdown()
+            else:
+                self.workqueue.move_to_end(scope, last=False)
+                super()._assign_work_unit(node)
+
+        def _fitting(self, node: Any) -> list[str]:
+            """The files that a worker may have, in the order in which it gets them."""
+            waiting = list(self.workqueue)
+            if len(self.nodes) == 1 or all(one.gateway.id != ros_graph.ROS_WORKER for one in self.nodes):
+                return waiting
+            if node.gateway.id != ros_graph.ROS_WORKER:
+                return [file for file in waiting if not ros_graph.needs_ros(file)]
+            others = [file for file in waiting if file != PAGE and not _uses_graph(ROOT.parent / file)]
+            return [file for file in waiting if ros_graph.needs_ros(file)] + others
 
     config.option.loadscopereorder = False
     return Files(config, log)

@@ -149,6 +149,7 @@ def topics(node: Node, executor: Any) -> None:
         attempt(node.create_publisher, String, "x", "a"),
         attempt(node.create_publisher, Trigger, "x", 1),
         attempt(node.create_publisher, str, "x", 1),
+        attempt(node.create_publisher, Int32, "/talk", 1).partition(":")[0],
         attempt(node.create_publisher, String, "x y", 1),
         attempt(node.create_subscription, String, "1x", print, 1),
         attempt(node.create_service, Trigger, "a b", print),

@@ -31,12 +31,20 @@ def test_endpoints_of_another_type_are_reported_to_both_and_logged_by_default(
         ),
     )
     noted = SubscriptionEventCallbacks(incompatible_type=lambda info: found.append(("subscription", info.total_count)))
-    node.create_subscription(Int32, "topic", print, 1, event_callbacks=noted)
-    node.create_subscription(Int32, "topic", print, 1)
+    other_context = Context()  # a context uses a topic with one type
+    other_context.init([])
+    other = Node("other_types", context=other_context, enable_rosout=False, start_parameter_services=False)
+    other_executor = SingleThreadedExecutor(context=other_context)
+    other_executor.add_node(other)
+    other.create_subscription(Int32, "topic", print, 1, event_callbacks=noted)
+    other.create_subscription(Int32, "topic", print, 1)
     for _ in range(6):
         executor.spin_once(timeout_sec=0)
+        other_executor.spin_once(timeout_sec=0)
     assert sorted(found) == [("publisher", 1), ("publisher", 2), ("subscription", 1)]
     assert publisher.get_subscription_count() == 0
     assert "Incompatible type on topic 'topic', no messages will be sent to it." in capsys.readouterr().err
+    other.destroy_node()
+    other_context.shutdown()
     node.destroy_node()
     context.shutdown()

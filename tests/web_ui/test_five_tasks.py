@@ -16,7 +16,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.processes import wait_for_port
+from tests.processes import Process, wait_for_port
 from tests.web_ui.page_support import MARKS, wait_for_program, wait_until_still
 from tests.web_ui.tabs import checked_page
 from tests.web_ui.test_welcome import MOVES, READY, RESTS
@@ -168,22 +168,20 @@ def program(folder: Path, name: str, text: str) -> Path:
     return file
 
 
-def run_as_node(ros: Any, page: Any, command: str) -> None:
-    """Publish what a command for a terminal says, as a ROS node does, until the robot moves."""
-    from geometry_msgs.msg import Twist
-
+def run_as_node(folder: Path, page: Any, command: str) -> None:
+    """Publish what a command for a terminal says, as a ROS node of another process does, until the robot moves."""
     pattern = r'ros2 topic pub --rate (\d+) --times \d+ (\S+) geometry_msgs/msg/Twist "\{linear: \{x: ([\d.]+)\}\}"'
     match = re.fullmatch(pattern, command)
     assert match is not None, command
-    publisher = ros.node.create_publisher(Twist, match[2], 10)
-    twist = Twist()
-    twist.linear.x = float(match[3])
-    ros.node.create_timer(1 / int(match[1]), lambda: publisher.publish(twist))
-    ros.until(lambda: page.evaluate(MOVES))
+    node = Process(folder, "tests.web_ui.velocity_node", match[2], match[1], match[3])
+    try:
+        page.wait_for_function(MOVES)
+    finally:
+        node.end()
 
 
 @pytest.mark.slow
-def test_the_five_tasks_by_what_the_page_says(hand, ros, tmp_path):
+def test_the_five_tasks_by_what_the_page_says(hand, tmp_path):
     page = hand.page
 
     hand.task = "drive"
@@ -228,7 +226,7 @@ def test_the_five_tasks_by_what_the_page_says(hand, ros, tmp_path):
     hand.choose("button", "Copy the command", "#welcome-ros")
     playwright.expect(page.locator("#welcome-ros")).to_contain_text("Copied")
     copied = page.wait_for_function("navigator.clipboard.readText()")  # truthy: the browser writes it a moment later
-    run_as_node(ros, page, copied.json_value())
+    run_as_node(tmp_path, page, copied.json_value())
     page.keyboard.press("Escape")
     playwright.expect(page.locator(".welcome-starts")).to_have_count(0)
     page.wait_for_function("() => document.activeElement.id === 'view'")  # the focus is not lost with the cards

@@ -57,6 +57,8 @@ class Entity(ABC):
         self.callback_group = callback_group
         self._handle = Handle(type(self).__name__, self)
         self._node: Callable[[], Any] = lambda: None
+        self.context: Any = None
+        """The context of the node that owns the entity."""
 
     @property
     def handle(self) -> Handle:
@@ -76,6 +78,7 @@ class Entity(ABC):
     def belong_to(self, node: Any) -> None:
         """Make a node the owner."""
         self._node = weakref.ref(node)
+        self.context = node.context
 
     def destroy(self) -> None:
         """Release the entity. Nodes have methods that do this, such as `destroy_timer`."""

@@ -9,6 +9,7 @@ from typing import Any
 
 from thymio_sim_ros.portable_ros.graph.deadline import Deadline
 from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd, GraphNode, PublisherEnd, ServiceEnd, SubscriptionEnd
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.qos import incompatibilities
 
 __all__ = ["Graph", "graph_of"]
@@ -57,6 +58,21 @@ class Graph:
             if node in self.nodes:
                 self.nodes.remove(node)
             self._changed.notify_all()
+
+    def require_topic_type(self, name: str, msg_type: Any, context: object) -> None:
+        """Raise RCLError if a context uses the topic with another type: a participant of DDS has one for each."""
+        with self.lock:
+            topic = self.topics.get(name) or _Topic()
+            found = [one.msg_type for one in topic.publishers if one.context is context]
+            found += [one.msg_type for one in topic.subscriptions if one.context is context]
+        _require_one_type(name, msg_type, found)
+
+    def require_service_type(self, name: str, srv_type: Any, context: object) -> None:
+        """Raise RCLError if a context uses the service with another type."""
+        with self.lock:
+            found = [one.srv_type for one in self.services.get(name, ()) if one.context is context]
+            found += [one.srv_type for one in self.clients.get(name, ()) if one.context is context]
+        _require_one_type(name, srv_type, found)
 
     def add_publisher(self, publisher: PublisherEnd) -> None:
         """Add a publisher and match it with all subscriptions."""
@@ -146,6 +162,12 @@ class Graph:
         if not topic.publishers and not topic.subscriptions:
             del self.topics[name]
         self._changed.notify_all()
+
+
+def _require_one_type(name: str, kind: Any, found: Iterable[Any]) -> None:
+    for other in found:
+        if other.TYPE_NAME != kind.TYPE_NAME:
+            raise RCLError(f"{name} has the type {other.TYPE_NAME} in this context, not {kind.TYPE_NAME}")
 
 
 def names_and_types(endpoints: Iterable[tuple[str, Any]]) -> list[tuple[str, list[str]]]:

@@ -16,7 +16,11 @@ _TOKEN_WITH_NUMBER = re.compile(r"/(?=\d)")
 
 
 def topic_problem(name: str) -> NameProblem:
-    """The problem of a name of a topic or service that may be relative and have substitutions."""
+    """The problem of a name of a topic or service that may be relative and have substitutions.
+
+    Raises TypeError for half a character, which no UTF-8 has.
+    """
+    _check_unicode(name)
     if not name:
         return "topic name must not be empty string", 0
     if re.match(r"\d", name):
@@ -66,7 +70,15 @@ def namespace_problem(name: str) -> NameProblem:
     return problem
 
 
+def _check_unicode(name: str) -> None:
+    try:
+        name.encode()
+    except UnicodeEncodeError as error:
+        raise TypeError(f"{name!r}: expected Unicode; {error}") from error
+
+
 def _full_problem(name: str, what: str, end: str, *, is_root_allowed: bool) -> NameProblem:
+    _check_unicode(name)
     if not name:
         return f"{what} must not be empty", 0
     if not name.startswith("/"):

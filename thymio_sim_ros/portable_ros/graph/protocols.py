@@ -36,6 +36,10 @@ class SubscriptionEnd(Protocol):
     qos_profile: QoSProfile
 
     @property
+    def context(self) -> object:
+        """The context of the node."""
+
+    @property
     def topic_name(self) -> str:
         """The full name of the topic."""
 
@@ -64,6 +68,10 @@ class PublisherEnd(Protocol):
     qos_profile: QoSProfile
 
     @property
+    def context(self) -> object:
+        """The context of the node."""
+
+    @property
     def topic_name(self) -> str:
         """The full name of the topic."""
 
@@ -88,6 +96,10 @@ class ClientEnd(Protocol):
     srv_type: Any
 
     @property
+    def context(self) -> object:
+        """The context of the node."""
+
+    @property
     def service_name(self) -> str:
         """The full name of the service."""
 
@@ -99,6 +111,10 @@ class ServiceEnd(Protocol):
     """A service."""
 
     srv_type: Any
+
+    @property
+    def context(self) -> object:
+        """The context of the node."""
 
     @property
     def service_name(self) -> str:

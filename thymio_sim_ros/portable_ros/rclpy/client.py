@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
@@ -14,18 +14,14 @@ from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
 from thymio_sim_ros.portable_ros.rclpy.task import Future
 
-if TYPE_CHECKING:
-    from thymio_sim_ros.portable_ros.rclpy.context import Context
-
 __all__ = ["Client"]
 
 
 class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
     """Calls a service."""
 
-    def __init__(self, context: Context, of: ServiceDescription[SrvRequestT, SrvResponseT]) -> None:
+    def __init__(self, of: ServiceDescription[SrvRequestT, SrvResponseT]) -> None:
         super().__init__(of)
-        self.context = context
         self._pending_requests: dict[int, Future[SrvResponseT]] = {}
         self._numbers = itertools.count(1)
         self._lock = threading.Lock()

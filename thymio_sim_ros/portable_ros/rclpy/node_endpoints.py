@@ -51,6 +51,7 @@ class NodeEndpoints(NodeEntities):
         _declare_qos_parameters(Publisher, self, full, profile, qos_overriding_options or QoSOverridingOptions(()))
         check_is_valid_msg_type(msg_type)
         self._require_context("create publisher")
+        self._graph.require_topic_type(full, msg_type, self._context)
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or PublisherEventCallbacks(), group, topic)
         made = publisher_class(self._context, msg_type, topic, full, profile, events, self._logger.name)
@@ -116,6 +117,7 @@ class NodeEndpoints(NodeEntities):
         _declare_qos_parameters(Subscription, self, full, profile, qos_overriding_options or QoSOverridingOptions(()))
         check_is_valid_msg_type(msg_type)
         self._require_context("create subscription")
+        self._graph.require_topic_type(full, msg_type, self._context)
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or SubscriptionEventCallbacks(), group, topic)
         made = Subscription(msg_type, topic, full, callback, group, profile, raw, events, self._logger.name)
@@ -133,9 +135,7 @@ class NodeEndpoints(NodeEntities):
         callback_group: CallbackGroup | None = None,
     ) -> Client[SrvRequestT, SrvResponseT]:
         """Call a service. Raises InvalidServiceNameException and errors about the type."""
-        made = self._owned(
-            Client(self._context, self._service_description(srv_type, srv_name, qos_profile, callback_group))
-        )
+        made = self._owned(Client(self._service_description(srv_type, srv_name, qos_profile, callback_group)))
         made.handle.on_release(lambda: self._graph.remove_client(made))
         self._graph.add_client(made)
         return made
@@ -228,6 +228,7 @@ class NodeEndpoints(NodeEntities):
         """What a client or a service is made of. Raises InvalidServiceNameException and errors about the type."""
         check_is_valid_srv_type(srv_type)
         full = self._endpoint_name(srv_name, is_service=True)
+        self._graph.require_service_type(full, srv_type, self._context)
         group = callback_group or self._default_callback_group
         return ServiceDescription(srv_type, srv_name, full, qos_profile, group, self._logger.name)
 

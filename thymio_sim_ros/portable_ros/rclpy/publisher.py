@@ -37,7 +37,7 @@ class Publisher(Generic[MsgT]):
         logger_name: str,
     ) -> None:
         """`topic` is the name that the program gave, `topic_name` the full one."""
-        self._context = context
+        self.context = context
         self.msg_type, self.topic, self.qos_profile = msg_type, topic, qos_profile
         self.events, self.event_handlers = events, events.handlers
         self._topic_name, self._logger_name = topic_name, logger_name
@@ -76,7 +76,7 @@ class Publisher(Generic[MsgT]):
                 data = cdr.serialize(msg) if self.matched or self._retained is not None else None
             else:
                 raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
-            if not self._context.ok():
+            if not self.context.ok():
                 raise RCLError("Failed to publish: publisher's context is invalid")
             self._send(data)
 

@@ -11,7 +11,14 @@ from typing import Any
 
 __all__ = ["insist", "place"]
 
-_OUTSIDE = ("site-packages/", "dist-packages/", "thymio_sim_ros/testing/", "thymio_sim_ros/tf/", "<frozen")
+_OUTSIDE = (
+    "site-packages/",
+    "dist-packages/",
+    "thymio_sim_ros/testing/",
+    "thymio_sim_ros/tf/",
+    "thymio_sim_ros/portable_ros/",
+    "<frozen",
+)
 _STANDARD_LIBRARY = Path(threading.__file__).parent
 
 
