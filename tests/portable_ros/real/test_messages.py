@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import array
 import importlib
-import importlib.util
 import json
 from collections.abc import Iterator
+from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,7 +23,7 @@ from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 from thymio_sim_ros.ros.foxglove.schemas import share_folders
 
 NOT_IN_WHEELS = {"tf2_msgs"}
-OPTIONAL = {one for one in ("test_msgs",) if importlib.util.find_spec(one) is None}
+OPTIONAL = {one for one in ("test_msgs",) if PathFinder.find_spec(one) is None}  # not what our hook serves
 PACKAGES = sorted(definitions.PACKAGES - NOT_IN_WHEELS - OPTIONAL)
 
 

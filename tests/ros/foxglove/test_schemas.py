@@ -12,7 +12,7 @@ from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
 from thymio_sim_ros.ros.foxglove.schemas import message_definition, service_definitions
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
 
-PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "visualization_msgs", "rcl_interfaces", "test_msgs")
+PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "visualization_msgs", "rcl_interfaces")
 
 
 def all_types(kind):
