@@ -224,8 +224,13 @@ def zipped(group: RunningClass) -> dict[str, str]:
     ],
 )
 def test_wrong_options_are_refused_before_anything_starts(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], reason: str
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str],
+    reason: str,
 ) -> None:
+    monkeypatch.setattr("thymio_sim_ros.cli.classroom.check_ros", lambda: None)  # whether ROS 2 is installed or not
     names = tmp_path / "names.csv"
     names.write_text("Ada\nBen\n")
     assert commands.main(["class", *(one.format(names=names) for one in arguments)]) == 2
