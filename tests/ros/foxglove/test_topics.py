@@ -244,6 +244,7 @@ def test_a_topic_that_this_process_uses_with_another_type_is_named_with_both(ros
         ros.node.create_subscription(String, "/chat", lambda _: None, 10)
         studio.subscribe(1, "/chat")
         ros.until(lambda: logs)
+        other.destroy_node()
     finally:
         context.try_shutdown()
     found, expected = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
