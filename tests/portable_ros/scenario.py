@@ -302,7 +302,7 @@ def clocks(node: Node, executor: Any) -> None:
     for second in (1, 2, 4, 9):
         count = len(calls)
         advance(second)
-        spin_until(executor, lambda count=count: len(calls) == count + 1)  # type: ignore[misc]
+        spin_until(executor, lambda count=count: len(calls) == count + 1)
     seen["calls"] = calls
     seen["until"] = timer.time_until_next_call()
     timer.cancel()

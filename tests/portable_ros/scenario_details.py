@@ -167,7 +167,7 @@ def tasks(executor: Any) -> None:
     future = Future(executor=executor)
     called: list[int] = []
     for number in range(3):
-        future.add_done_callback(lambda _, number=number: called.append(number))  # type: ignore[misc]
+        future.add_done_callback(lambda _, number=number: called.append(number))
     future.set_result(None)
     spin_until(executor, lambda: len(called) == 3)
     seen["done callbacks"] = called
@@ -210,7 +210,7 @@ def endpoints(node: Node, executor: Any) -> None:
     for _ in range(2):
         count = len(infos)
         publisher.publish(String())
-        spin_until(executor, lambda count=count: len(infos) > count)  # type: ignore[misc]
+        spin_until(executor, lambda count=count: len(infos) > count)
     seen["info"] = [sorted(infos[0]), [one["publication_sequence_number"] for one in infos]]
     seen["is stamped"] = all(one["source_timestamp"] > 0 for one in infos)
     plain = SubscriptionEventCallbacks()
@@ -306,7 +306,7 @@ def ends(node: Node) -> None:
     for kind in (SingleThreadedExecutor, MultiThreadedExecutor):
         ending = kind()
         ending.add_node(node)
-        stop = node.create_guard_condition(lambda ending=ending: ending.shutdown())  # type: ignore[misc]
+        stop = node.create_guard_condition(lambda ending=ending: ending.shutdown())
         stop.trigger()
         ending.spin()
         node.destroy_guard_condition(stop)

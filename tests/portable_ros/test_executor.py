@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
+from tests.patience import PATIENCE_S
 from thymio_sim_ros.portable_ros.rclpy.context import Context
+from thymio_sim_ros.portable_ros.rclpy.exceptions import ROSInterruptException
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor, TimeoutException
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.task import Future
@@ -20,7 +23,7 @@ def node() -> Iterator[Node]:
     made = Node("rounds", context=context, enable_rosout=False, start_parameter_services=False)
     yield made
     made.destroy_node()
-    context.shutdown()
+    context.try_shutdown()
 
 
 def round_of(executor: SingleThreadedExecutor) -> list[Any]:
@@ -85,3 +88,25 @@ def test_a_spin_for_a_future_without_time_runs_a_callback_that_is_ready(node: No
     first, second = (executor.create_task(lambda value=value: value) for value in (1, 2))
     executor.spin_until_future_complete(Future(), timeout_sec=0)
     assert [first.result(), second.result()] == [None, 2], "one callback, the one of the newest task"
+
+
+def test_a_period_without_sleepers_counts_for_the_next_one_and_the_end_of_the_context_wakes_all(node: Node) -> None:
+    rate = node.create_rate(1000.0)
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    executor.spin_once()  # the timer
+    rate.sleep()  # no executor spins: it would wait for ever
+    ended = []
+
+    def sleep() -> None:
+        with pytest.raises(ROSInterruptException):
+            rate.sleep()
+        ended.append(True)
+
+    sleepers = [threading.Thread(target=sleep) for _ in range(2)]
+    for sleeper in sleepers:
+        sleeper.start()
+    node.context.shutdown()
+    for sleeper in sleepers:
+        sleeper.join(PATIENCE_S)
+    assert ended == [True, True]

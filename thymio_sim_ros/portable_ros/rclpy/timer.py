@@ -143,17 +143,18 @@ class Rate:
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer = timer
+        self._sleepers = threading.Condition()
+        self._sleeping = 0
+        self._is_over = False
+        """Whether a period has ended since the last sleeper woke: one without sleepers counts, too."""
         self._is_shutdown = self._is_destroyed = False
-        self._event = threading.Event()
-        self._lock = threading.Lock()
-        self._num_sleepers = 0
-        timer.callback = self._event.set
+        timer.callback = self._end_period
         context.on_shutdown(self._on_shutdown)
 
     def destroy(self) -> None:
         """Wake all sleepers, and sleep no more."""
         self._is_destroyed = True
-        self._event.set()
+        self._end_period()
 
     def sleep(self) -> None:
         """Wait for the next period, together with all threads that sleep.
@@ -161,22 +162,27 @@ class Rate:
         Raises ROSInterruptException after a shutdown of the context, RuntimeError for a rate that is destroyed and
         InvalidHandle if its timer is.
         """
-        if self._is_shutdown:
-            raise ROSInterruptException
+        self._check_shutdown()
         if self._is_destroyed:
             raise RuntimeError("Rate cannot sleep because it has been destroyed")
         if self._timer.is_destroyed:
             self.destroy()
             raise InvalidHandle("Rate cannot sleep because the timer has been destroyed")
-        with self._lock:
-            self._num_sleepers += 1
-        try:
-            self._event.wait()
-        finally:
-            with self._lock:
-                self._num_sleepers -= 1
-                if not self._num_sleepers:
-                    self._event.clear()
+        with self._sleepers:
+            self._sleeping += 1
+            try:
+                self._sleepers.wait_for(lambda: self._is_over)
+            finally:
+                self._sleeping -= 1
+                self._is_over = self._is_over and self._sleeping > 0
+        self._check_shutdown()
+
+    def _end_period(self) -> None:
+        with self._sleepers:
+            self._is_over = True
+            self._sleepers.notify_all()
+
+    def _check_shutdown(self) -> None:
         if self._is_shutdown:
             raise ROSInterruptException
 
