@@ -39,8 +39,15 @@ class RunningClass:
         self.process.end()
 
     def suite(self, number: int) -> psutil.Process:
-        """The process of a pupil's suite."""
-        return next(one for one in self.suites() if self.port_of(number) in _listening(one))
+        """The process of a pupil's suite, as soon as it listens."""
+        found: list[psutil.Process] = []
+
+        def is_listening() -> bool:
+            found[:] = [one for one in self.suites() if self.port_of(number) in _listening(one)]
+            return bool(found)
+
+        until(is_listening, lambda: f"{self.state()}\n{self.process.output}", every_s=_POLL_S)
+        return found[0]
 
     def suites(self) -> list[psutil.Process]:
         """The processes of all suites that have opened their ports."""

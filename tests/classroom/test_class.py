@@ -171,7 +171,8 @@ def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: Ru
     assert after["link"] == before["link"]
     assert after["programs"][0]["program"] == "Kreis für Zoë.aesl"
     assert after["plan"] == plan
-    assert group.pupil("ben")["restarts"] == 0
+    ben = group.pupil("ben")
+    assert ben["restarts"] == 0, ben["reason"]
     names = ("/aseba_runtime.script.source", "/simulator.playground")
     assert values_of(group, ADA, "Ada", *names) == (PROGRAM, playground)
     group.until("ada", lambda _one: notice(group, ADA, "Ada")[0] == "still there")
@@ -204,8 +205,8 @@ def test_with_ros_each_pupil_has_a_domain(tmp_path: Path) -> None:
 def test_the_teacher_restarts_a_suite(group: RunningClass) -> None:
     before = group.suite(BEN)
     group.request("restart", {"pupils": ["ben"]})
-    group.until("ben", lambda one: one["phase"] == "running" and one["programs"] and group.suite(BEN) != before)
-    assert group.pupil("ben")["restarts"] == 0
+    ben = group.until("ben", lambda one: one["phase"] == "running" and one["programs"] and group.suite(BEN) != before)
+    assert ben["restarts"] == 0, ben["reason"]
 
 
 def zipped(group: RunningClass) -> dict[str, str]:
