@@ -217,6 +217,15 @@ def test_every_ros_package_that_is_imported_is_declared() -> None:
     assert ros - OPTIONAL <= depends
 
 
+def test_the_environment_of_robostack_has_what_the_package_depends_on() -> None:
+    environment = tomllib.loads((ROOT / "docs/robostack/pixi.toml").read_text())
+    assert environment["pypi-dependencies"][NAME]["path"] == "../.."
+    assert environment["tasks"]["start"].split()[0] in _pyproject()["project"]["scripts"]
+    depends = {element.text or "" for tag in ("depend", "exec_depend") for element in _manifest().iter(tag)}
+    ros = {f"ros-jazzy-{name.replace('_', '-')}" for name in depends if not name.startswith("python3-")}
+    assert ros <= environment["dependencies"].keys()
+
+
 def test_ros_wheels_are_never_a_plain_dependency() -> None:
     project = _pyproject()["project"]
     assert not any(requirement.startswith("ros-") for requirement in project["dependencies"])
