@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import pytest
+from nav_msgs.msg import Odometry
 
 from tests.sim.builders import shipped
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.run_log import RunLog
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.sim.commands import MotorTargets
+from thymio_sim_ros.sim.playground.reader import RobotStart
 
 TICKS = 500
 
@@ -60,6 +62,30 @@ def test_another_time_and_another_playground(simulation, logged):
     runner.replace(runner.prepared, Engine(shipped("obstacle"), seed=4))
     runner.advance(300)
     assert pose(sim) == poses[0]  # it stands: the inputs of the log belong to the replay only
+
+
+def test_robots_that_come_and_go_in_the_log_have_topics(simulation, ros, tmp_path):
+    path = tmp_path / "run.jsonl"
+    engine = Engine(shipped("two_robots"), seed=4)
+    log = RunLog(path.open("w", encoding="utf-8"))
+    log.begin("two_robots", engine)
+    for tick in range(TICKS):
+        if tick == 100:
+            engine.spawn(RobotStart("late", 0.0, 0.0))
+        if tick == 300:
+            engine.remove("late")
+        engine.step()
+    log.close()
+    sim = simulation(replay=str(path), replay_from=0.0)
+    runner, robots = sim.simulator.runner, sim.simulator.endpoints.robots
+    ros.collect(Odometry, "/red/odom")
+    runner.advance(150)  # the robot comes within these ticks
+    assert list(robots.names) == ["red", "blue", "late"]
+    late = ros.collect(Odometry, "/late/odom")
+    runner.advance(100)
+    ros.until(lambda: late)
+    runner.advance(100)
+    assert list(robots.names) == ["red", "blue"]
 
 
 @pytest.mark.parametrize("content", ["no log", None])

@@ -248,6 +248,7 @@ class WorldRunner:
                 break
             if self._logged is not None:
                 self._logged.repeat_inputs(self.engine)
+                self.update_robots()  # those of the log come and go between these ticks
             result = self.engine.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
             self.on_tick()
