@@ -5,6 +5,8 @@ from __future__ import annotations
 import urllib.request
 
 import pytest
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -29,6 +31,16 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     (robot,) = runtime.robots
     assert robot.device.layout == "playground"
     assert robot.device.variables.get("sd.present") == (1,)
+
+
+def test_the_diagnostics_of_programs_have_the_time_of_the_world(ros):
+    suite = SuiteConfig(playground="base", program="welcome", web=False, foxglove=False)
+    (simulator,) = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    simulator.runner.advance(150)
+    received = ros.collect(DiagnosticArray, "/diagnostics")
+    ros.until(lambda: received)
+    assert received[0].status[0].name == "aseba: robot"
+    assert received[0].header.stamp == Time(sec=1, nanosec=500_000_000)
 
 
 @pytest.mark.parametrize(("words", "shown"), [([], True), (["--headless"], False)])

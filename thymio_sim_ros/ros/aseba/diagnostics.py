@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Protocol
 
+from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.node import Node
 
@@ -29,8 +30,9 @@ class DiagnosedRobot(Protocol):
 class RuntimeDiagnostics:
     """The publisher of `/diagnostics`; costs little without subscribers."""
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    def __init__(self, node: Node, now: Callable[[], Time]) -> None:
+        """`now` returns the time with which messages are stamped."""
+        self._now = now
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
         self._connections = Connections(node)
         self.messages = MessageReports(node)
@@ -50,5 +52,5 @@ class RuntimeDiagnostics:
     def _publish(self, statuses: Iterable[DiagnosticStatus]) -> None:
         if self._publisher.get_subscription_count():
             message = DiagnosticArray(status=list(statuses))
-            message.header.stamp = self._node.get_clock().now().to_msg()
+            message.header.stamp = self._now()
             self._publisher.publish(message)

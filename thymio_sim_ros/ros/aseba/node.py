@@ -12,9 +12,10 @@ import json
 import time
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, cast
+from typing import Any
 
-from rclpy.clock import Clock, ClockChange, JumpThreshold, ROSClock, TimeJump
+from builtin_interfaces.msg import Time
+from rclpy.clock import Clock, ClockChange, JumpThreshold, TimeJump
 from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
@@ -22,7 +23,6 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
-from rclpy.time import Time
 from std_msgs.msg import String
 
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
@@ -42,11 +42,13 @@ from thymio_sim_ros.ros.aseba.runtime_values import RuntimeValues
 from thymio_sim_ros.ros.aseba.variable_timer import VariableTimer
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.interface.headers import stamp
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, deliver, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.node import Simulator
+from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.ros.web.tokens import given_tokens
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
@@ -147,8 +149,8 @@ class AsebaRuntime:
         node = self.node
         self.values = RuntimeValues(node, defaults)
         params = self.values.params
-        self._diagnostics = RuntimeDiagnostics(node)
         runner = None if simulator is None else simulator.runner
+        self._diagnostics = RuntimeDiagnostics(node, lambda: _now(node, runner))
         self.robots = RobotSet(node, self.values, self._diagnostics, runner)
         self.robots.emitter.reaches_all = params.emit_reaches == "network"
         self.robots.emitter.shares_numbers = params.network.aseba_shared
@@ -177,9 +179,8 @@ class AsebaRuntime:
             node.create_timer(SUBSCRIBERS_S, self.network.drain, clock=wall)
 
     def _follow(self, simulator: Simulator) -> None:
-        """Serve the robots of a simulator, now and whenever they change, and have its time."""
+        """Serve the robots of a simulator, now and whenever they change."""
         runner, robots = simulator.runner, self.robots
-        clock = cast(ROSClock, self.node.get_clock())
 
         def follow(is_new: bool) -> None:
             try:
@@ -187,12 +188,8 @@ class AsebaRuntime:
             except ROBOT_ERRORS as error:
                 self.node.get_logger().error(f"robots {', '.join(runner.world.robots)}: {error}")
 
-        def publish() -> None:
-            clock.set_ros_time_override(Time(nanoseconds=runner.world.now_ns))
-            robots.publish()
-
         robots.follow(simulator.endpoints.robots.names, is_new=True)
-        runner.on_robots, runner.on_tick, runner.on_reset = follow, publish, robots.refresh
+        runner.on_robots, runner.on_tick, runner.on_reset = follow, robots.publish, robots.refresh
 
     def _is_set_again(self, parameter: str) -> bool:
         """Whether a parameter acts even if its value is the same.
@@ -217,6 +214,11 @@ class AsebaRuntime:
         """Restart all robots when time jumps back, as at a reset of the simulator."""
         if jump.clock_change in (ClockChange.ROS_TIME_NO_CHANGE, ClockChange.SYSTEM_TIME_NO_CHANGE):
             self.robots.restart()
+
+
+def _now(node: Node, runner: WorldRunner | None) -> Time:
+    """The time of the world; without one in this process, that of the node."""
+    return node.get_clock().now().to_msg() if runner is None else stamp(runner.world.now_ns)
 
 
 def _repeat(parameter: str) -> str:
