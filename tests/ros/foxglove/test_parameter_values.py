@@ -61,6 +61,10 @@ def test_a_parameter_that_is_not_set_has_no_value():
     assert to_ros(Parameter("/n.p")).type == ParameterType.PARAMETER_NOT_SET
 
 
+def test_a_value_of_an_unknown_type_is_no_value():
+    assert from_ros("/n.p", ParameterValue(type=77, bool_value=True)) == Parameter("/n.p")
+
+
 @pytest.mark.parametrize(
     ("value", "current", "kind"),
     [

@@ -7,23 +7,14 @@ import math
 from typing import Any
 
 from rcl_interfaces.msg import ParameterType, ParameterValue
+from rclpy.parameter import Parameter as RosParameter
+from rclpy.parameter import parameter_value_to_python
 
 from thymio_sim_ros.bridge.protocol.messages import Parameter
 from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["UnfitValueError", "from_ros", "to_ros"]
 
-_FIELDS = {
-    ParameterType.PARAMETER_BOOL: "bool_value",
-    ParameterType.PARAMETER_INTEGER: "integer_value",
-    ParameterType.PARAMETER_DOUBLE: "double_value",
-    ParameterType.PARAMETER_STRING: "string_value",
-    ParameterType.PARAMETER_BYTE_ARRAY: "byte_array_value",
-    ParameterType.PARAMETER_BOOL_ARRAY: "bool_array_value",
-    ParameterType.PARAMETER_INTEGER_ARRAY: "integer_array_value",
-    ParameterType.PARAMETER_DOUBLE_ARRAY: "double_array_value",
-    ParameterType.PARAMETER_STRING_ARRAY: "string_array_value",
-}
 _SCALARS = {
     bool: ParameterType.PARAMETER_BOOL,
     int: ParameterType.PARAMETER_INTEGER,
@@ -49,11 +40,13 @@ class UnfitValueError(ThymioSimError, ValueError):
 
 
 def from_ros(name: str, value: ParameterValue) -> Parameter:
-    """Convert a ROS value; NaN and infinity, which JSON does not have, become text."""
-    field = _FIELDS.get(value.type)
-    if field is None:
+    """Convert a ROS value; NaN and infinity, which JSON does not have, become text. An unknown type is no value."""
+    try:
+        found = parameter_value_to_python(value)
+    except RuntimeError:
+        found = None
+    if found is None:
         return Parameter(name)
-    found = getattr(value, field)
     if value.type == ParameterType.PARAMETER_BYTE_ARRAY:
         return Parameter(name, base64.b64encode(b"".join(found)).decode(), "byte_array")
     if value.type == ParameterType.PARAMETER_DOUBLE:
@@ -76,16 +69,19 @@ def to_ros(parameter: Parameter, current: int = ParameterType.PARAMETER_NOT_SET)
         return ParameterValue()
     code = _HINTS.get(parameter.type or "") or _kind(value, current)
     if code == ParameterType.PARAMETER_BYTE_ARRAY:
-        return ParameterValue(type=code, byte_array_value=_bytes(value))
+        return _message(code, _bytes(value))
     if code == ParameterType.PARAMETER_DOUBLE:
         value = _float(value)
     elif code == ParameterType.PARAMETER_DOUBLE_ARRAY:
         value = tuple(_float(item) for item in (value if isinstance(value, tuple) else (value,)))
     for item in value if isinstance(value, tuple) else (value,):
         _check(item)
-    message = ParameterValue(type=code)
-    setattr(message, _FIELDS[code], list(value) if isinstance(value, tuple) else value)
-    return message
+    return _message(code, value)
+
+
+def _message(code: int, value: Any) -> ParameterValue:
+    fitting = list(value) if isinstance(value, tuple) else value
+    return RosParameter("", RosParameter.Type(code), fitting).get_parameter_value()
 
 
 def _kind(value: Any, current: int) -> int:
