@@ -17,6 +17,7 @@ from rclpy.clock import Clock, ROSClock
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.expand_topic_name import expand_topic_name
+from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -310,7 +311,22 @@ def ends(node: Node) -> None:
         stop.trigger()
         ending.spin()
         node.destroy_guard_condition(stop)
+    left = [kind() for kind in (SingleThreadedExecutor, MultiThreadedExecutor, EventsExecutor)]
     rclpy.shutdown()
+    for one in left:
+        seen[f"{type(one).__name__} after the shutdown"] = attempt(one.spin_once, 0.0)
+    for one in left[:2]:  # rclpy's events executor waits forever at its second call
+        seen[f"{type(one).__name__} in the end"] = [
+            attempt(one.spin_once, 0.1),
+            attempt(one.spin_once, -1.0),
+            attempt(one.spin_once_until_future_complete, Future()),
+            attempt(one.spin_until_future_complete, Future()),
+            attempt(one.spin),
+            attempt(one.wait_for_ready_callbacks),
+            one.shutdown(),
+            attempt(one.spin_once, 0.0),
+            attempt(one.spin_once, 0.1),
+        ]
     seen["after the shutdown"] = [
         attempt(node.create_publisher, String, "late", 1),
         attempt(node.create_subscription, String, "late", ignore, 1),
