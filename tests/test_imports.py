@@ -35,9 +35,9 @@ def _names(*names: str) -> frozenset[str]:
 
 NO_WALL_CLOCK = frozenset({"asyncio", "threading", "time", "socket", "selectors", "multiprocessing"})
 MESSAGES = frozenset({
-    "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "nav_msgs", "rcl_interfaces", "rosgraph_msgs",
-    "sensor_msgs", "simulation_interfaces", "std_msgs", "std_srvs", "tf2_msgs", "thymio_msgs",
-    "visualization_msgs",
+    "action_msgs", "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "lifecycle_msgs", "nav_msgs",
+    "rcl_interfaces", "rosgraph_msgs", "sensor_msgs", "service_msgs", "simulation_interfaces", "std_msgs", "std_srvs",
+    "tf2_msgs", "thymio_msgs", "type_description_interfaces", "unique_identifier_msgs", "visualization_msgs",
 })  # fmt: skip
 ROS = MESSAGES | {"rclpy", "ament_index_python", "rosidl_parser", "rosidl_runtime_py"}
 ALL_OF_OURS = frozenset(PACKAGES)

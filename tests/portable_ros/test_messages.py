@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.portable_ros.messages import cdr, definitions
+from thymio_sim_ros.portable_ros.messages import cdr, interface_files
 from thymio_sim_ros.portable_ros.messages.message_class import message_type
 from thymio_sim_ros.portable_ros.rclpy.exceptions import NoTypeSupportImportedException
 from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type
@@ -26,7 +26,7 @@ def test_arrays_and_sequences_have_their_defaults_each_message_its_own() -> None
         assert other.int16_values_default[0] == 0
 
 
-@pytest.mark.parametrize("name", list(definitions.names("test_msgs", "msg")))
+@pytest.mark.parametrize("name", list(interface_files.names("test_msgs", "msg")))
 def test_samples_of_messages_are_the_same_after_a_journey(name: str) -> None:
     samples = get_test_msg(name)
     for sample in samples:

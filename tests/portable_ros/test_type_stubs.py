@@ -15,7 +15,7 @@ import pytest
 
 from tests.patience import PATIENCE_S
 from tests.syntax import ROOT
-from thymio_sim_ros.portable_ros.messages.definitions import PACKAGES, SERVICE_PARTS, interfaces
+from thymio_sim_ros.portable_ros.messages.interface_files import PACKAGES, interfaces, messages
 from thymio_sim_ros.portable_ros.messages.message_class import message_type
 from thymio_sim_ros.portable_ros.type_stubs import stubs, write
 
@@ -24,7 +24,10 @@ KINDS |= {"str": str, "bytes": bytes}
 
 PROGRAM = """
 import rclpy
+from example_interfaces.action import Fibonacci
 from geometry_msgs.msg import Twist, Vector3
+from rclpy.action import ActionClient, ActionServer
+from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
@@ -37,8 +40,26 @@ def answer(request: SetBool.Request, response: SetBool.Response) -> SetBool.Resp
     response.success = request.data
     return response
 
+FibonacciGoal = ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+
+def execute(goal: FibonacciGoal) -> Fibonacci.Result:
+    goal.publish_feedback(Fibonacci.Feedback(sequence=[goal.request.order]))
+    goal.publish_feedback(Fibonacci.Result())  # wrong
+    return Fibonacci.Result()
+
+async def execute_later(goal: FibonacciGoal) -> Fibonacci.Result:
+    return execute(goal)
+
+def execute_without_result(goal: FibonacciGoal) -> None: ...
+
 rclpy.init()
 node = Node("checked")
+ActionServer(node, Fibonacci, "right", execute)
+ActionServer(node, Fibonacci, "right", execute_later)
+ActionServer(node, Fibonacci, "wrong", execute_without_result)  # wrong
+client = ActionClient(node, Fibonacci, "right")
+client.send_goal_async(Fibonacci.Goal(order=3)).add_done_callback(lambda future: print(future.result()))
+client.send_goal_async(Fibonacci.Result())  # wrong
 node.create_subscription(String, "right", on_text, 10)
 node.create_subscription(String, "right", on_text_with_info, 10)
 node.create_service(SetBool, "right", answer)
@@ -67,7 +88,7 @@ def _classes(package: str) -> Iterator[tuple[str, ast.ClassDef]]:
 
 def _messages(package: str) -> Iterator[str]:
     for name in interfaces(package):
-        yield from [name] if name.startswith("msg/") else [f"{name}_{part}" for part in SERVICE_PARTS]
+        yield from messages(f"{package}/{name}")
 
 
 @pytest.mark.parametrize("package", sorted(PACKAGES))
@@ -88,7 +109,7 @@ def test_a_stub_has_the_fields_and_constants_of_its_class(package: str) -> None:
 
 def test_there_is_a_stub_for_each_class() -> None:
     for package in PACKAGES:
-        assert {name for name, _ in _classes(package)} == {f"{package}/{name}" for name in _messages(package)}
+        assert {name for name, _ in _classes(package)} == set(_messages(package))
 
 
 def test_a_folder_gets_the_stubs_of_all_packages(tmp_path: Path) -> None:

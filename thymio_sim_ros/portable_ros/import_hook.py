@@ -16,11 +16,10 @@ from types import ModuleType
 
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["APIS", "FORMS", "MODULES", "MixedInstallationError", "install", "is_served"]
+__all__ = ["APIS", "MODULES", "MixedInstallationError", "install", "is_served"]
 
 _ROOM = __package__
 APIS = ("rclpy", "rosidl_parser")
-FORMS = ("msg", "srv")
 MODULES = ("test_msgs.message_fixtures",)
 """What packages of messages have beside their messages."""
 
@@ -74,7 +73,7 @@ class _Finder(MetaPathFinder):
                 return None
             is_package = own.submodule_search_locations is not None
             return ModuleSpec(fullname, _RoomLoader(fullname), origin=own.origin, is_package=is_package)
-        from thymio_sim_ros.portable_ros.messages.definitions import PACKAGES
+        from thymio_sim_ros.portable_ros.messages.interface_files import FORMS, PACKAGES
 
         if top not in PACKAGES or rest not in ("", *FORMS):
             return None
@@ -91,7 +90,7 @@ def install(*, is_forced: bool = False) -> bool:
     is_there = importlib.util.find_spec("rclpy") is not None
     if is_there and not is_forced:
         return False
-    from thymio_sim_ros.portable_ros.messages.definitions import PACKAGES
+    from thymio_sim_ros.portable_ros.messages.interface_files import PACKAGES
 
     imported = sorted(name for name in (*APIS, *PACKAGES) if name in sys.modules)
     if imported:

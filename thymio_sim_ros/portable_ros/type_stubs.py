@@ -11,17 +11,19 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
-from thymio_sim_ros.portable_ros.import_hook import APIS, FORMS, MODULES
-from thymio_sim_ros.portable_ros.messages.definitions import (
+from thymio_sim_ros.portable_ros.import_hook import APIS, MODULES
+from thymio_sim_ros.portable_ros.messages.definitions import Definition, Field, FieldType, Shape, definition
+from thymio_sim_ros.portable_ros.messages.interface_files import (
+    ACTION_PARTS,
+    ACTION_SERVICES,
+    FEEDBACK_MESSAGE,
+    FORMS,
     PACKAGES,
     SERVICE_PARTS,
-    Definition,
-    Field,
-    FieldType,
-    Shape,
-    definition,
-    is_service,
+    is_action,
+    messages,
     names,
+    services,
 )
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 
@@ -35,6 +37,7 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from {__package__}.messages.action_class import Action
 from {__package__}.messages.message_class import Message, Service
 from {__package__}.messages.primitives import Float
 """
@@ -67,13 +70,14 @@ def stubs() -> dict[str, str]:
 
 
 def _module(of: list[str]) -> str:
-    """The stub of a module with these messages or services."""
-    services = [name for name in of if is_service(name)]
-    messages = [definition(name) for name in of if name not in services]
-    messages += [definition(f"{name}_{part}") for name in services for part in SERVICE_PARTS]
-    used = {_class(name.rpartition("/")[0]) for one in messages for name in (one.name, *_messages_in(one))}
+    """The stub of a module with these messages, services or actions."""
+    made = [definition(message) for name in of for message in messages(name)]
+    actions = [name for name in of if is_action(name)]
+    used = {_class(name.rpartition("/")[0]) for one in made for name in (one.name, *_messages_in(one))}
+    used |= {f"action_msgs.{form}" for form in ("msg", "srv") if actions}
     imports = "".join(f"import {module}\n" for module in sorted(used))
-    return "\n".join((_IMPORTS + imports, *map(_message, messages), *map(_service, services)))
+    classes = (*map(_message, made), *(_service(one) for name in of for one in services(name)), *map(_action, actions))
+    return "\n".join((_IMPORTS + imports, *classes))
 
 
 def _messages_in(of: Definition) -> Iterator[str]:
@@ -84,6 +88,24 @@ def _service(name: str) -> str:
     full, short = _class(name), name.rpartition("/")[2]
     aliases = "".join(f"    {part}: TypeAlias = {full}_{part}\n" for part in SERVICE_PARTS)
     return f"class {short}(Service[{full}_Request, {full}_Response]):\n{aliases}"
+
+
+def _action(name: str) -> str:
+    full, short = _class(name), name.rpartition("/")[2]
+    ends = {
+        **{f"{one}Service": f"{full}_{one}" for one in ACTION_SERVICES},
+        FEEDBACK_MESSAGE: f"{full}_{FEEDBACK_MESSAGE}",
+        "CancelGoalService": "action_msgs.srv.CancelGoal",
+        "GoalStatusMessage": "action_msgs.msg.GoalStatusArray",
+    }
+    arguments = ", ".join(f"{full}_{part}" for part in ACTION_PARTS)
+    lines = [
+        f"class {short}(Action[{arguments}]):",
+        *(f"    {part}: TypeAlias = {full}_{part}" for part in ACTION_PARTS),
+        "    class Impl:",
+        *(f"        {one}: TypeAlias = {kind}" for one, kind in ends.items()),
+    ]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _message(of: Definition) -> str:

@@ -16,23 +16,34 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 
-from thymio_sim_ros.portable_ros.messages import cdr, definitions
-from thymio_sim_ros.portable_ros.messages.definitions import SERVICE_PARTS, Field, FieldType, Shape, definition
+from thymio_sim_ros.portable_ros.messages import cdr, interface_files
+from thymio_sim_ros.portable_ros.messages.action_class import action_type
+from thymio_sim_ros.portable_ros.messages.definitions import Field, FieldType, Shape, definition
+from thymio_sim_ros.portable_ros.messages.interface_files import (
+    ACTION_PARTS,
+    ACTION_SERVICES,
+    FEEDBACK_MESSAGE,
+    FORMS,
+    SERVICE_PARTS,
+)
 from thymio_sim_ros.portable_ros.messages.message_class import message_type, service_type
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
+from thymio_sim_ros.portable_ros.messages.type_descriptions import type_hash
 from thymio_sim_ros.ros.foxglove.schemas import share_folders
 
-NOT_IN_WHEELS = {"tf2_msgs"}
+NOT_IN_WHEELS = {"action_tutorials_interfaces", "example_interfaces", "tf2_msgs"}
 OPTIONAL = {one for one in ("test_msgs",) if PathFinder.find_spec(one) is None}  # not what our hook serves
-PACKAGES = sorted(definitions.PACKAGES - NOT_IN_WHEELS - OPTIONAL)
+PACKAGES = sorted(interface_files.PACKAGES - NOT_IN_WHEELS - OPTIONAL)
 
 
 def _messages() -> Iterator[str]:
     for package in PACKAGES:
-        for name in definitions.names(package, "msg"):
-            yield f"{package}/msg/{name}"
-        for name in definitions.names(package, "srv"):
-            yield from (f"{package}/srv/{name}_{part}" for part in SERVICE_PARTS)
+        for name in interface_files.interfaces(package):
+            yield from interface_files.messages(f"{package}/{name}")
+
+
+def _names(form: str) -> list[str]:
+    return [f"{package}/{form}/{short}" for package in PACKAGES for short in interface_files.names(package, form)]
 
 
 MESSAGES = tuple(_messages())
@@ -40,7 +51,9 @@ MESSAGES = tuple(_messages())
 
 def _real(name: str) -> Any:
     package, form, short = name.split("/")
-    return getattr(importlib.import_module(f"{package}.{form}"), short)
+    module = importlib.import_module(f"{package}.{form}")
+    # The module of a package does not have all parts of an action.
+    return getattr(module if hasattr(module, short) else importlib.import_module(message_type(name).__module__), short)
 
 
 def _share(package: str) -> Path:
@@ -50,17 +63,18 @@ def _share(package: str) -> Path:
 @pytest.mark.parametrize("package", PACKAGES)
 def test_the_definitions_are_all_those_of_the_package(package: str) -> None:
     share = _share(package)
-    for form in ("msg", "srv"):
-        assert sorted(definitions.names(package, form)) == sorted(one.stem for one in share.glob(f"{form}/*.{form}"))
+    for form in FORMS:
+        files = share.glob(f"{form}/*.{form}")
+        assert sorted(interface_files.names(package, form)) == sorted(one.stem for one in files)
 
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_hashes_of_all_types_are_those_of_the_package(package: str) -> None:
     share = _share(package)
-    for name in definitions.interfaces(package):
+    for name in interface_files.interfaces(package):
         found = json.loads((share / f"{name}.json").read_text())["type_hashes"]
         for one in found:
-            assert cdr.type_hash(one["type_name"]) == one["hash_string"], one["type_name"]
+            assert type_hash(one["type_name"]) == one["hash_string"], one["type_name"]
 
 
 @pytest.mark.parametrize("name", MESSAGES)
@@ -86,16 +100,39 @@ def _type_text(kind: Any) -> str:
     return f"{type(kind).__name__}{inner}"
 
 
-@pytest.mark.parametrize("package", [one for one in PACKAGES if any(definitions.names(one, "srv"))])
-def test_a_service_has_the_messages_of_the_real_one(package: str) -> None:
-    for short in definitions.names(package, "srv"):
-        ours, real = service_type(f"{package}/srv/{short}"), _real(f"{package}/srv/{short}")
-        assert (ours.__name__, ours.__module__) == (real.__name__, real.__module__)
-        for part in SERVICE_PARTS:
-            assert getattr(ours, part) is message_type(f"{package}/srv/{short}_{part}")
-            assert getattr(real, part).__name__ == getattr(ours, part).__name__
-        with pytest.raises(NotImplementedError):
-            ours()
+@pytest.mark.parametrize("name", _names("srv"))
+def test_a_service_has_the_messages_of_the_real_one(name: str) -> None:
+    ours, real = service_type(name), _real(name)
+    assert (ours.__name__, ours.__module__) == (real.__name__, real.__module__)
+    for part in SERVICE_PARTS:
+        assert getattr(ours, part) is message_type(f"{name}_{part}")
+        assert getattr(real, part).__name__ == getattr(ours, part).__name__
+    with pytest.raises(NotImplementedError, match=_refusal_to_make(real)):
+        ours()
+
+
+@pytest.mark.parametrize("name", _names("action"))
+def test_an_action_has_the_messages_and_services_of_the_real_one(name: str) -> None:
+    ours, real = action_type(name), _real(name)
+    assert (ours.__name__, ours.__module__) == (real.__name__, real.__module__)
+    for part in ACTION_PARTS:
+        assert getattr(ours, part) is message_type(f"{name}_{part}")
+        assert getattr(real, part).__name__ == getattr(ours, part).__name__
+    ends = [one for one in vars(real.Impl) if not one.startswith("_")]
+    assert [one for one in vars(ours.Impl) if not one.startswith("_")] == ends
+    for end in ends:
+        one, other = getattr(ours.Impl, end), getattr(real.Impl, end)
+        assert (one.__name__, one.__module__) == (other.__name__, other.__module__)
+    assert ours.Impl.FeedbackMessage is message_type(f"{name}_{FEEDBACK_MESSAGE}")
+    assert ours.Impl.SendGoalService is service_type(f"{name}_{ACTION_SERVICES[0]}")
+    with pytest.raises(NotImplementedError, match=_refusal_to_make(real)):
+        ours()
+
+
+def _refusal_to_make(kind: Any) -> str:
+    with pytest.raises(NotImplementedError) as caught:
+        kind()
+    return str(caught.value)
 
 
 def _values(of: FieldType, depth: int = 0) -> st.SearchStrategy[Any]:

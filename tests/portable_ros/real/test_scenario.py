@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,9 @@ import pytest
 from tests.patience import PATIENCE_S
 
 FOLDER = Path(__file__).parent.parent
+SCENARIOS = ["scenario.py", "scenario_details.py", "scenario_lifecycle.py"]
+if PathFinder.find_spec("test_msgs") is not None:  # a package that has actions
+    SCENARIOS.append("scenario_actions.py")
 HERE = ("-m", "thymio_sim_ros.portable_ros")
 
 
@@ -25,7 +29,7 @@ def _seen(*words: str) -> dict[str, Any]:
 
 @pytest.mark.process
 @pytest.mark.parametrize("executor", ["single", "multi"])
-@pytest.mark.parametrize("scenario", ["scenario.py", "scenario_details.py"])
+@pytest.mark.parametrize("scenario", SCENARIOS)
 def test_the_embedded_graph_does_what_rclpy_does(scenario: str, executor: str, ros_domain: object) -> None:
     file = str(FOLDER / scenario)
     real, ours = _seen(file, executor), _seen(*HERE, file, executor)

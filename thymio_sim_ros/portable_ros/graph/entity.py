@@ -59,6 +59,10 @@ class Entity(ABC):
         self._node: Callable[[], Any] = lambda: None
         self.context: Any = None
         """The context of the node that owns the entity."""
+        self.lets_pass = False
+        """Whether executors run everything else first that is ready when the turn of the entity comes."""
+        self.is_part = False
+        """Whether something else stands for the entity in lists of the node: the action that it is a part of."""
 
     @property
     def handle(self) -> Handle:

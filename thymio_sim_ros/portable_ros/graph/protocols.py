@@ -153,19 +153,19 @@ class GraphNode(Protocol):
 
     @property
     def all_publishers(self) -> Iterable[PublisherEnd]:
-        """The publishers, with that of the log."""
+        """The publishers, with those of the log and of actions."""
 
     @property
-    def subscriptions(self) -> Iterable[SubscriptionEnd]:
-        """The subscriptions."""
+    def all_subscriptions(self) -> Iterable[SubscriptionEnd]:
+        """The subscriptions, with those of actions."""
 
     @property
-    def services(self) -> Iterable[ServiceEnd]:
-        """The services."""
+    def all_services(self) -> Iterable[ServiceEnd]:
+        """The services, with those of actions."""
 
     @property
-    def clients(self) -> Iterable[ClientEnd]:
-        """The clients."""
+    def all_clients(self) -> Iterable[ClientEnd]:
+        """The clients, with those of actions."""
 
     def get_name(self) -> str:
         """The name."""

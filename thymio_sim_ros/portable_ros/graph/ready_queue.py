@@ -15,7 +15,9 @@ __all__ = ["ReadyQueue"]
 class ReadyQueue:
     """Entities, once for each event, and tasks, in the order in which they are run. The owner has the lock.
 
-    Entities and resumed tasks keep the order in which they became ready. Tasks that a program creates come before what
+    Entities and resumed tasks keep the order in which they became ready, but a client lets everything else that is
+    ready pass once: rclpy runs subscriptions before clients, so that what a server publishes while it answers comes
+    before the response. Tasks that a program creates come before what
     is ready, the newest first, as in rclpy. Those that are created meanwhile wait until all of this has been run, so
     that a task that always creates another one delays entities and does not stop them.
     """
@@ -27,6 +29,8 @@ class ReadyQueue:
         """How much of what was ready when tasks came to it has not been handed out."""
         self._held: list[Entity] = []
         """Entities that are ready while another callback of their group runs."""
+        self._passed: set[Entity] = set()
+        """Clients that have let others pass."""
         self._round: dict[Entity | Task, None] | None = None
         """What the present round still hands out, None outside of rounds."""
 
@@ -41,11 +45,13 @@ class ReadyQueue:
     def forget(self, node: Any) -> None:
         """Remove the entities of a node."""
         self._ready = deque(one for one in self._ready if isinstance(one, Task) or one.node is not node)
+        self._passed = {one for one in self._passed if one.node is not node}
 
     def clear(self) -> None:
         """Remove all."""
         self._ready.clear()
         self._created.clear()
+        self._passed.clear()
 
     def begin_round(self) -> None:
         """Hand out what is ready now, each entity once, and no more until `end_round`. No effect within a round."""
@@ -64,6 +70,10 @@ class ReadyQueue:
             self._left -= 1
             if isinstance(found, Task):
                 return found
+            if self._lets_pass(found):
+                self._left += 1
+                self._ready.append(found)
+                continue
             if not found.is_destroyed and found.node in nodes:
                 if found.callback_group is None or found.callback_group.beginning_execution(found):
                     return found
@@ -75,6 +85,14 @@ class ReadyQueue:
         if self._held:
             self._ready.extendleft(reversed(self._held))
             self._held.clear()
+
+    def _lets_pass(self, entity: Entity) -> bool:
+        """Whether an entity is a client that lets others pass now."""
+        if not entity.lets_pass or self._round is not None or entity in self._passed:
+            self._passed.discard(entity)
+            return False
+        self._passed.add(entity)
+        return True
 
     def _next_of_round(self) -> Entity | Task | None:
         if self._round is None:

@@ -1,8 +1,7 @@
-"""Serialized messages (CDR, with its encapsulation) and type hashes, by rosbags.
+"""Serialized messages (CDR, with its encapsulation), by rosbags.
 
 rosbags reads the attributes of a message by the names of its fields, and makes a message from values in their order.
-Its two type stores have the same messages: that for CDR has the attributes of our classes as fields, that for hashes
-has the fields themselves.
+Its type store has the attributes of our classes as fields.
 """
 
 from __future__ import annotations
@@ -15,22 +14,19 @@ from typing import Any, cast
 from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
-from rosbags.typesys.store import TIDMAP
 
-from thymio_sim_ros.portable_ros.messages.definitions import SERVICE_PARTS, FieldType, Shape, definition, is_service
+from thymio_sim_ros.portable_ros.messages.definitions import FieldType, Shape
 from thymio_sim_ros.portable_ros.messages.field_values import WideText
 from thymio_sim_ros.portable_ros.messages.message_class import EMPTY_FIELD, Message, MsgT, message_type
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 
-__all__ = ["deserialize", "serialize", "type_hash"]
+__all__ = ["deserialize", "serialize"]
 
 _CDR = get_typestore(Stores.EMPTY)
-_HASHES = get_typestore(Stores.EMPTY)
 _WIDE_TEXT = "embedded/msg/WideText"
 """The message that stands for a wstring: rosbags does not serialize texts of this type."""
 _CDR.fielddefs[_WIDE_TEXT] = cast(Any, ([], [("units", (Nodetype.SEQUENCE, ((Nodetype.BASE, ("uint32", 0)), 0)))]))
 _CDR.types[_WIDE_TEXT] = cast(Any, WideText)
-TIDMAP.setdefault("wstring", 18)  # as in type_description_interfaces/msg/FieldType
 _EMPTY = (EMPTY_FIELD, (Nodetype.BASE, ("uint8", 0)))
 _ENCAPSULATION = 4
 """Bytes before the content."""
@@ -66,48 +62,24 @@ def deserialize(data: bytes, kind: type[MsgT]) -> MsgT:
 
 
 @functools.cache
-def type_hash(name: str) -> str:
-    """The hash of a message or a service, such as `RIHS01_…`."""
-    if not is_service(name):
-        _describe(name)
-        return _HASHES.hash_rihs01(name)
-    parts = [f"{name}_{part}" for part in SERVICE_PARTS]
-    for part in parts:
-        _describe(part)
-    fields = [(f"{one.lower()}_message", (Nodetype.NAME, f"{name}_{one}")) for one in SERVICE_PARTS]
-    _HASHES.fielddefs[name] = cast(Any, ([], fields))
-    return _HASHES.hash_rihs01(name)
-
-
-@functools.cache
 def _register(name: str) -> None:
     """Add a message to the store for CDR, with all that it contains."""
     kind = message_type(name)
     for member in kind.members:
         if not member.field.type.is_primitive:
             _register(member.field.type.base)
-    fields = [(member.wire, _node(member.field.type, is_wire=True)) for member in kind.members]
+    fields = [(member.wire, _node(member.field.type)) for member in kind.members]
     _CDR.fielddefs[name] = cast(Any, ([], fields or [_EMPTY]))
     _CDR.types[name] = cast(Any, _maker(kind))
 
 
-@functools.cache
-def _describe(name: str) -> None:
-    """Add a message to the store for hashes, with all that it contains."""
-    of = definition(name)
-    for field in of.fields:
-        if not field.type.is_primitive:
-            _describe(field.type.base)
-    _HASHES.fielddefs[name] = cast(Any, ([], [(field.name, _node(field.type)) for field in of.fields] or [_EMPTY]))
-
-
-def _node(of: FieldType, *, is_wire: bool = False) -> Any:
-    """The type of a field as rosbags has it. rosidl has `char` as another name of `uint8`."""
+def _node(of: FieldType) -> Any:
+    """The type of a field as rosbags has it."""
     inner: tuple[Any, Any]
-    if of.base == "wstring" and is_wire:
+    if of.base == "wstring":
         inner = Nodetype.NAME, _WIDE_TEXT
     elif of.is_primitive:
-        inner = Nodetype.BASE, (PRIMITIVES[of.base].wire if is_wire or of.base == "char" else of.base, of.text_bound)
+        inner = Nodetype.BASE, (PRIMITIVES[of.base].wire, of.text_bound)
     else:
         inner = Nodetype.NAME, of.base
     if of.shape is Shape.SCALAR:

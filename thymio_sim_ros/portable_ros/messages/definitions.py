@@ -1,41 +1,29 @@
-"""The definitions of messages and services, read from the files of `definitions/`, one for each package.
-
-A file has the text of each `.msg` and `.srv` file of its package below a line such as `=== msg/Bool`.
-"""
+"""The definitions of messages: their fields and constants, as their texts have them or as rosidl adds them."""
 
 from __future__ import annotations
 
 import ast
 import functools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from importlib import resources
 from typing import Any
 
+from thymio_sim_ros.portable_ros.messages.interface_files import (
+    ACTION_PARTS,
+    ACTION_SERVICES,
+    FEEDBACK_MESSAGE,
+    SERVICE_PARTS,
+    is_action,
+    is_service,
+    sections,
+    snake_case,
+    text_of,
+)
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 
-__all__ = [
-    "PACKAGES",
-    "SERVICE_PARTS",
-    "Constant",
-    "Definition",
-    "Field",
-    "FieldType",
-    "Shape",
-    "definition",
-    "interfaces",
-    "is_service",
-]
-
-_FOLDER = resources.files(__package__).joinpath("definitions")
-_SUFFIX = ".txt"
-PACKAGES = frozenset(file.name.removesuffix(_SUFFIX) for file in _FOLDER.iterdir() if file.name.endswith(_SUFFIX))
-"""The packages that have definitions."""
-
-SERVICE_PARTS = ("Request", "Response", "Event")
-"""The messages of a service, which are named by it: `std_srvs/srv/Empty_Request`."""
+__all__ = ["Constant", "Definition", "Field", "FieldType", "Shape", "definition", "structure"]
 
 _TYPE = re.compile(
     r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<text_bound>\d+))?(?P<array>\[(?:(?P<bounded><=)?(?P<size>\d+))?\])?"
@@ -95,45 +83,54 @@ class Definition:
     fields: tuple[Field, ...]
     constants: tuple[Constant, ...] = ()
     text: str = ""
-    """The text of the .msg file, empty for a message that is made for a service."""
-
-
-@functools.cache
-def interfaces(package: str) -> Mapping[str, str]:
-    """The texts of a package by `msg/Name` or `srv/Name`."""
-    content = _FOLDER.joinpath(f"{package}{_SUFFIX}").read_text(encoding="utf-8")
-    _, *parts = re.split(r"^=== (.+)$", content, flags=re.MULTILINE)
-    return {name: text.lstrip("\n") for name, text in zip(parts[::2], parts[1::2], strict=True)}
-
-
-def is_service(name: str) -> bool:
-    """Whether there is a service of this full name."""
-    package, _, rest = name.partition("/")
-    return rest.startswith("srv/") and package in PACKAGES and rest in interfaces(package)
+    """The text, empty for a message that rosidl adds to a service or an action."""
 
 
 @functools.cache
 def definition(name: str) -> Definition:
     """The definition of a message by its full name. Raises KeyError if there is none."""
-    package, form, short = name.split("/")
-    if package not in PACKAGES:
-        raise KeyError(name)
-    if form == "msg":
-        return _parsed(name, interfaces(package)[f"msg/{short}"])
-    service, _, part = short.rpartition("_")
-    if not is_service(f"{package}/srv/{service}") or part not in SERVICE_PARTS:
-        raise KeyError(name)
-    if part == "Event":
-        return _event(f"{package}/srv/{service}")
-    request, _, response = re.split(r"^(---)$", interfaces(package)[f"srv/{service}"], maxsplit=1, flags=re.MULTILINE)
-    return _parsed(name, request if part == "Request" else response.lstrip("\n"))
+    if name.split("/")[1:2] == ["msg"]:
+        return _parsed(name, text_of(name))
+    owner, _, part = name.rpartition("_")
+    if part in sections(owner):
+        return _parsed(name, sections(owner)[part])
+    if part == "Event" and is_service(owner):
+        event = (Field(one.lower(), FieldType(f"{owner}_{one}", Shape.SEQUENCE, 1)) for one in SERVICE_PARTS[:2])
+        return Definition(name, (Field("info", FieldType("service_msgs/msg/ServiceEventInfo")), *event))
+    for added, fields in _ADDED.items():
+        action = name.removesuffix(f"_{added}")
+        if action != name and is_action(action):
+            return _composed(name, {field: base.format(action=action) for field, base in fields.items()})
+    raise KeyError(name)
 
 
-def _event(service: str) -> Definition:
-    parts = tuple(
-        Field(part.lower(), FieldType(f"{service}_{part}", Shape.SEQUENCE, 1)) for part in ("Request", "Response")
-    )
-    return Definition(f"{service}_Event", (Field("info", FieldType("service_msgs/msg/ServiceEventInfo")), *parts))
+_GOAL_ID = {"goal_id": "unique_identifier_msgs/msg/UUID"}
+_ADDED = {
+    "SendGoal_Request": {**_GOAL_ID, "goal": "{action}_Goal"},
+    "SendGoal_Response": {"accepted": "bool", "stamp": "builtin_interfaces/msg/Time"},
+    "GetResult_Request": _GOAL_ID,
+    "GetResult_Response": {"status": "int8", "result": "{action}_Result"},
+    FEEDBACK_MESSAGE: {**_GOAL_ID, "feedback": "{action}_Feedback"},
+}
+"""The messages that rosidl adds to an action: the types of their fields by their names."""
+
+
+def structure(name: str) -> Definition:
+    """What stands for an interface in descriptions and hashes of types: a service or an action has its parts as fields.
+
+    Raises KeyError if there is no such interface.
+    """
+    if is_service(name):
+        return _composed(name, {f"{part.lower()}_message": f"{name}_{part}" for part in SERVICE_PARTS})
+    if is_action(name):
+        services = {f"{snake_case(one)}_service": f"{name}_{one}" for one in ACTION_SERVICES}
+        parts = {part.lower(): f"{name}_{part}" for part in ACTION_PARTS}
+        return _composed(name, {**parts, **services, snake_case(FEEDBACK_MESSAGE): f"{name}_{FEEDBACK_MESSAGE}"})
+    return definition(name)
+
+
+def _composed(name: str, fields: Mapping[str, str]) -> Definition:
+    return Definition(name, tuple(Field(field, FieldType(base)) for field, base in fields.items()))
 
 
 def _parsed(name: str, text: str) -> Definition:
@@ -188,11 +185,3 @@ def _value(base: str, text: str) -> Any:
     if base == "byte":
         return bytes([value])
     return float(value) if base.startswith("float") else value
-
-
-def names(package: str, form: str) -> Iterator[str]:
-    """The names of all messages or services of a package, in the order of its file."""
-    for name in interfaces(package):
-        kind, _, short = name.partition("/")
-        if kind == form:
-            yield short

@@ -4,23 +4,16 @@ from __future__ import annotations
 
 import functools
 import os
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from thymio_sim_ros.portable_ros.messages.definitions import (
-    SERVICE_PARTS,
-    Field,
-    FieldType,
-    Shape,
-    definition,
-    is_service,
-)
+from thymio_sim_ros.portable_ros.messages.definitions import Field, FieldType, Shape, definition
 from thymio_sim_ros.portable_ros.messages.field_checks import Check, check_of
 from thymio_sim_ros.portable_ros.messages.field_values import FieldValues, values_of
+from thymio_sim_ros.portable_ros.messages.interface_files import SERVICE_PARTS, is_service, module_of
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 from thymio_sim_ros.portable_ros.rosidl_parser.definition import (
     AbstractNestableType,
@@ -151,7 +144,7 @@ def message_type(name: str) -> Any:
     )
     namespace: dict[str, Any] = {
         "__slots__": [member.slot for member in members],
-        "__module__": _module_of(name),
+        "__module__": module_of(name),
         "__doc__": f"Message class '{name.rpartition('/')[2]}'.",
         "SLOT_TYPES": tuple(_slot_type(field.type) for field in of.fields),
         "TYPE_NAME": name,
@@ -174,17 +167,7 @@ def service_type(name: str) -> Any:
     if not is_service(name):
         raise KeyError(name)
     parts = {part: message_type(f"{name}_{part}") for part in SERVICE_PARTS}
-    return type(name.rpartition("/")[2], (Service,), {"__module__": _module_of(name), "TYPE_NAME": name, **parts})
-
-
-def _module_of(name: str) -> str:
-    """The module in which rosidl has a class; tools make the name of the type from it."""
-    package, form, short = name.split("/")
-    for part in SERVICE_PARTS:
-        short = short.removesuffix(f"_{part}") if form == "srv" else short
-    words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", short)
-    words = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words)
-    return f"{package}.{form}._{words.lower()}"
+    return type(name.rpartition("/")[2], (Service,), {"__module__": module_of(name), "TYPE_NAME": name, **parts})
 
 
 def _property(member: Member) -> property:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-from thymio_sim_ros.portable_ros.messages.definitions import SERVICE_PARTS, names
+from thymio_sim_ros.portable_ros.messages.action_class import action_type
+from thymio_sim_ros.portable_ros.messages.interface_files import is_action, messages, names, services
 from thymio_sim_ros.portable_ros.messages.message_class import message_type, service_type
 
 __all__ = ["fill"]
@@ -16,19 +18,19 @@ def fill(module: ModuleType) -> None:
     package, _, form = module.__name__.partition(".")
     if not form:
         return
-    services = list(names(package, "srv")) if form == "srv" else []
-    messages = (
-        list(names(package, "msg"))
-        if form == "msg"
-        else [f"{one}_{part}" for one in services for part in SERVICE_PARTS]
-    )
-    known = {*services, *messages}
+    makers: dict[str, Callable[[str], Any]] = {}
+    for name in (f"{package}/{form}/{short}" for short in names(package, form)):
+        makers |= dict.fromkeys(messages(name), message_type)
+        makers |= dict.fromkeys(services(name), service_type)
+        if is_action(name):
+            makers[name] = action_type
+    known = {name.rpartition("/")[2]: name for name in makers}
 
-    def get(name: str) -> Any:
-        if name not in known:
-            raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-        made = (service_type if name in services else message_type)(f"{package}/{form}/{name}")
-        setattr(module, name, made)
+    def get(short: str) -> Any:
+        if short not in known:
+            raise AttributeError(f"module {module.__name__!r} has no attribute {short!r}")
+        made = makers[known[short]](known[short])
+        setattr(module, short, made)
         return made
 
     module.__dict__.update(__getattr__=get, __dir__=lambda: sorted(known), __all__=sorted(known))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Generic, NamedTuple, TypeVar
 
+from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
 from thymio_sim_ros.portable_ros.messages.message_class import SrvRequestT, SrvResponseT
@@ -16,13 +17,23 @@ from thymio_sim_ros.portable_ros.rclpy.task import Future
 
 __all__ = ["Client"]
 
+T = TypeVar("T")
+
+
+class _Request(NamedTuple, Generic[SrvResponseT]):
+    """A request without a response: its future, and what makes the result of the future of the response."""
+
+    future: Future[Any]
+    convert: Callable[[SrvResponseT], Any]
+
 
 class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
     """Calls a service."""
 
     def __init__(self, of: ServiceDescription[SrvRequestT, SrvResponseT]) -> None:
         super().__init__(of)
-        self._pending_requests: dict[int, Future[SrvResponseT]] = {}
+        self.lets_pass = True
+        self._pending_requests: dict[int, _Request[SrvResponseT]] = {}
         self._numbers = itertools.count(1)
         self._lock = threading.Lock()
         self._queue: EventQueue[tuple[int, bytes]] = EventQueue(of.qos_profile.kept)
@@ -38,15 +49,20 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
 
     def call_async(self, request: SrvRequestT) -> Future[SrvResponseT]:
         """Call; the future gets the response. Raises TypeError for a request of another type."""
+        return self.send(request, lambda response: response)
+
+    def send(self, request: SrvRequestT, convert: Callable[[SrvResponseT], T]) -> Future[T]:
+        """Call; the future gets what `convert` makes of the response. Raises TypeError for a wrong request."""
         with self._handle:
             if not isinstance(request, self.srv_type.Request):
                 raise TypeError
             data = cdr.serialize(request)
-            future: Future[SrvResponseT] = Future()
+            future: Future[T] = Future()
             with self._lock:
                 sequence = next(self._numbers)
-                self._pending_requests[sequence] = future
+                self._pending_requests[sequence] = _Request(future, convert)
             future.add_done_callback(self.remove_pending_request)
+            self._report(ros_types.ServiceEventInfo.REQUEST_SENT, self, sequence, request=request)
             for service in self.context.graph.services_for(self):
                 service.receive(self, sequence, data)
             return future
@@ -54,13 +70,13 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
     def get_pending_request(self, sequence_number: int) -> Future[SrvResponseT]:
         """The future of a request. Raises KeyError if it is answered."""
         with self._lock:
-            return self._pending_requests[sequence_number]
+            return self._pending_requests[sequence_number].future
 
-    def remove_pending_request(self, future: Future[SrvResponseT]) -> None:
+    def remove_pending_request(self, future: Future[Any]) -> None:
         """Ignore the response to a request."""
         with self._lock:
             self._pending_requests = {
-                number: one for number, one in self._pending_requests.items() if one is not future
+                number: one for number, one in self._pending_requests.items() if one.future is not future
             }
 
     def service_is_ready(self) -> bool:
@@ -72,8 +88,7 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait for a service; return whether there is one."""
-        self.context.on_shutdown(self.context.graph.notify)
-        self.context.graph.wait_for(lambda: not self.context.ok() or self.service_is_ready(), timeout_sec)
+        self.context.wait_for(self.service_is_ready, timeout_sec)
         return self.service_is_ready()
 
     def receive(self, sequence: int, response: bytes) -> None:
@@ -91,8 +106,19 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
         if found is None:
             return None
         with self._lock:
-            future = self._pending_requests.get(found[0])
-        if future is None or not future._pending():
+            request = self._pending_requests.pop(found[0], None)
+        if request is None:
+            self._report_unexpected()
             return None
-        future._set_executor(None if self.node is None else self.node.executor)
-        return future.set_result, (cdr.deserialize(found[1], self.srv_type.Response),)
+        if not request.future._pending():
+            return None
+        request.future._set_executor(None if self.node is None else self.node.executor)
+        response = cdr.deserialize(found[1], self.srv_type.Response)
+        self._report(ros_types.ServiceEventInfo.RESPONSE_RECEIVED, self, found[0], response=response)
+        return self._finish, (request, response)
+
+    def _finish(self, request: _Request[SrvResponseT], response: SrvResponseT) -> None:
+        request.future.set_result(request.convert(response))
+
+    def _report_unexpected(self) -> None:
+        """Ignore a response without a request: the future was canceled, or another service has answered."""

@@ -99,6 +99,14 @@ class Context:
                 return
         callback()
 
+    def wait_for(self, condition: Callable[[], bool], timeout_s: float | None) -> None:
+        """Wait until a condition of the graph is true, for a shutdown, or until the time is over.
+
+        None and negative times stand for a wait without end.
+        """
+        self.on_shutdown(self.graph.notify)
+        self.graph.wait_for(lambda: not self._is_ok or condition(), timeout_s)
+
     def get_domain_id(self) -> int:
         """The ROS domain. Raises RuntimeError before `init`."""
         if self._graph is None:

@@ -255,7 +255,7 @@ class Executor:
 
     def _due_s(self) -> float | None:
         """Seconds until a timer is due."""
-        waits = (timer.wait_s() for node in self._nodes for timer in node.timers)
+        waits = (timer.wait_s() for node in self._nodes for timer in node.all_timers)
         return min((wait_s for wait_s in waits if wait_s is not None), default=None)
 
     def turn_ended(self, task: Task) -> None:

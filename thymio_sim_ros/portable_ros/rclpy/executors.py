@@ -18,6 +18,7 @@ from thymio_sim_ros.portable_ros.rclpy.executor_base import (
     ShutdownException,
     TimeoutException,
 )
+from thymio_sim_ros.portable_ros.rclpy.task import await_or_execute
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context
@@ -31,6 +32,7 @@ __all__ = [
     "ShutdownException",
     "SingleThreadedExecutor",
     "TimeoutException",
+    "await_or_execute",
 ]
 
 

@@ -15,7 +15,7 @@ from thymio_sim_ros.portable_ros.rclpy.parameter import Parameter
 from thymio_sim_ros.portable_ros.rclpy.parameter_service import ParameterService
 from thymio_sim_ros.portable_ros.rclpy.qos import qos_profile_parameter_events
 from thymio_sim_ros.portable_ros.rclpy.time_source import TimeSource
-from thymio_sim_ros.portable_ros.rclpy.type_description_service import declare_start_parameter
+from thymio_sim_ros.portable_ros.rclpy.type_description_service import TypeDescriptionService
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context
@@ -50,7 +50,6 @@ class Node(NodeEndpoints, NodeGraph):
         self._prepare_entities()
         self._graph.add_node(self)
         self._rosout = Rosout(self) if enable_rosout and self._context.arguments.has_rosout else None
-        self._log_publisher = None if self._rosout is None else self._rosout.publisher
         self._prepare_parameters(
             self._overrides(parameter_overrides or ()), is_undeclared_allowed=allow_undeclared_parameters
         )
@@ -68,7 +67,7 @@ class Node(NodeEndpoints, NodeGraph):
             self._parameter_service = ParameterService(self)
         if enable_logger_service:
             self._logger_service = LoggingService(self)
-        declare_start_parameter(self)
+        self._type_description_service = TypeDescriptionService(self)
 
     def destroy_node(self) -> None:
         """Remove the node with all that it has."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypeVar, overload
 
 from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
 from thymio_sim_ros.portable_ros.messages.message_class import Message, MsgT, SrvRequestT, SrvResponseT
@@ -29,6 +29,9 @@ from thymio_sim_ros.portable_ros.rclpy.timer import Rate, Timer
 from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 
 __all__ = ["NodeEndpoints"]
+
+C = TypeVar("C", bound=Client[Any, Any])
+S = TypeVar("S", bound=Service)
 
 
 class NodeEndpoints(NodeEntities):
@@ -135,10 +138,7 @@ class NodeEndpoints(NodeEntities):
         callback_group: CallbackGroup | None = None,
     ) -> Client[SrvRequestT, SrvResponseT]:
         """Call a service. Raises InvalidServiceNameException and errors about the type."""
-        made = self._owned(Client(self._service_description(srv_type, srv_name, qos_profile, callback_group)))
-        made.handle.on_release(lambda: self._graph.remove_client(made))
-        self._graph.add_client(made)
-        return made
+        return self._add_client(Client(self._service_description(srv_type, srv_name, qos_profile, callback_group)))
 
     def create_service(
         self,
@@ -150,12 +150,8 @@ class NodeEndpoints(NodeEntities):
         callback_group: CallbackGroup | None = None,
     ) -> Service:
         """Offer a service. Raises InvalidServiceNameException and errors about the type."""
-        made = self._owned(
-            Service(self._service_description(srv_type, srv_name, qos_profile, callback_group), callback)
-        )
-        made.handle.on_release(lambda: self._graph.remove_service(made))
-        self._graph.add_service(made)
-        return made
+        of = self._service_description(srv_type, srv_name, qos_profile, callback_group)
+        return self._add_service(Service(of, callback))
 
     def create_timer(
         self,
@@ -217,6 +213,20 @@ class NodeEndpoints(NodeEntities):
         is_own = self.destroy_timer(rate._timer)
         rate.destroy()
         return is_own
+
+    def _add_client(self, made: C) -> C:
+        """Make this node the owner of a new client."""
+        self._owned(made)
+        made.handle.on_release(lambda: self._graph.remove_client(made))
+        self._graph.add_client(made)
+        return made
+
+    def _add_service(self, made: S) -> S:
+        """Make this node the owner of a new service."""
+        self._owned(made)
+        made.handle.on_release(lambda: self._graph.remove_service(made))
+        self._graph.add_service(made)
+        return made
 
     def _service_description(
         self,

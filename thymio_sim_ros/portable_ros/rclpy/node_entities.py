@@ -30,37 +30,57 @@ class NodeEntities(NodeParameters):
     def _prepare_entities(self) -> None:
         """Start without entities."""
         self._entities: dict[type, list[Any]] = {kind: [] for kind in _KINDS}
-        self._log_publisher: Publisher[Any] | None = None
+        self._actions: list[Any] = []
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:
-        """The publishers, without that of the log."""
-        yield from (one for one in self.all_publishers if one is not self._log_publisher)
+        """The publishers, without those of the log and of actions."""
+        yield from (one for one in self.all_publishers if not one.is_part)
 
     @property
     def all_publishers(self) -> Iterator[Publisher[Any]]:
-        """The publishers, with that of the log."""
+        """All publishers."""
         yield from list(self._entities[Publisher])
 
     @property
     def subscriptions(self) -> Iterator[Subscription]:
-        """The subscriptions."""
+        """The subscriptions, without those of actions."""
+        yield from (one for one in self.all_subscriptions if not one.is_part)
+
+    @property
+    def all_subscriptions(self) -> Iterator[Subscription]:
+        """All subscriptions."""
         yield from list(self._entities[Subscription])
 
     @property
     def clients(self) -> Iterator[Client[Any, Any]]:
-        """The clients."""
+        """The clients, without those of actions."""
+        yield from (one for one in self.all_clients if not one.is_part)
+
+    @property
+    def all_clients(self) -> Iterator[Client[Any, Any]]:
+        """All clients."""
         yield from list(self._entities[Client])
 
     @property
     def services(self) -> Iterator[Service]:
-        """The services."""
+        """The services, without those of actions."""
+        yield from (one for one in self.all_services if not one.is_part)
+
+    @property
+    def all_services(self) -> Iterator[Service]:
+        """All services."""
         yield from list(self._entities[Service])
 
     @property
     def timers(self) -> Iterator[Timer]:
-        """The timers."""
+        """The timers, without those of actions."""
+        yield from (one for one in self.all_timers if not one.is_part)
+
+    @property
+    def all_timers(self) -> Iterator[Timer]:
+        """All timers."""
         yield from list(self._entities[Timer])
 
     @property
@@ -69,9 +89,10 @@ class NodeEntities(NodeParameters):
         yield from list(self._entities[GuardCondition])
 
     @property
-    def waitables(self) -> Iterator[Waitable | EventHandler]:
-        """The handlers of events, and the waitables that were added."""
-        yield from [*self._entities[EventHandler], *(one.waitable for one in self._entities[WaitableEntity])]
+    def waitables(self) -> Iterator[Any]:
+        """The handlers of events, the waitables that were added, servers and clients of actions."""
+        added = (one.waitable for one in self._entities[WaitableEntity])
+        yield from [*self._entities[EventHandler], *added, *self._actions]
 
     def polled(self) -> list[Timer | WaitableEntity]:
         """What becomes ready without a notification of the executor."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.graph import names_and_types
 from thymio_sim_ros.portable_ros.graph.names import expanded
-from thymio_sim_ros.portable_ros.messages import cdr
+from thymio_sim_ros.portable_ros.messages.type_descriptions import HASH_PREFIX, type_hash
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration, Infinite
 from thymio_sim_ros.portable_ros.rclpy.node_base import NodeBase
@@ -24,7 +24,6 @@ __all__ = ["NodeGraph"]
 NamesAndTypes = list[tuple[str, list[str]]]
 
 _GID_BYTES = 16
-_HASH_PREFIX = "RIHS01_"
 
 
 class NodeGraph(NodeBase):
@@ -40,15 +39,15 @@ class NodeGraph(NodeBase):
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """The topics that a node subscribes to. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.subscriptions))
+        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.all_subscriptions))
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """The services that a node offers. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.services))
+        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.all_services))
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """The services that a node calls. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.clients))
+        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.all_clients))
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
         """All topics."""
@@ -114,7 +113,7 @@ class NodeGraph(NodeBase):
         """The subscriptions of a topic."""
         return [
             _info(node, end, TopicEndpointTypeEnum.SUBSCRIPTION)
-            for node, end in self._owned_ends(topic_name, "subscriptions", lambda one: one.subscriptions)
+            for node, end in self._owned_ends(topic_name, "subscriptions", lambda one: one.all_subscriptions)
         ]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
@@ -162,7 +161,7 @@ def _services(ends: Iterable[Any]) -> Iterable[tuple[str, Any]]:
 
 def _info(node: GraphNode, end: Any, of: TopicEndpointTypeEnum) -> TopicEndpointInfo:
     name = end.msg_type.TYPE_NAME
-    digest = bytes.fromhex(cdr.type_hash(name).removeprefix(_HASH_PREFIX))
+    digest = bytes.fromhex(type_hash(name).removeprefix(HASH_PREFIX))
     return TopicEndpointInfo(
         node_name=node.get_name(),
         node_namespace=node.get_namespace(),

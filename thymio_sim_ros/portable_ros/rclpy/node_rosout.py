@@ -29,7 +29,8 @@ class Rosout:
 
     def __init__(self, node: NodeEndpoints) -> None:
         self._context, self._name = node.context, node.get_logger().name
-        self.publisher = node.create_publisher(ros_types.Log, _TOPIC, _PROFILE)
+        self._publisher = node.create_publisher(ros_types.Log, _TOPIC, _PROFILE)
+        self._publisher.is_part = True
         add_sink(self._name, self._publish)
 
     def close(self) -> None:
@@ -42,4 +43,4 @@ class Rosout:
         seconds, nanoseconds = divmod(time_ns, S_TO_NS)
         message = ros_types.Log(level=level, name=name, msg=text, file=place[0], function=place[1], line=place[2])
         message.stamp.sec, message.stamp.nanosec = seconds, nanoseconds
-        self.publisher.publish(message)
+        self._publisher.publish(message)

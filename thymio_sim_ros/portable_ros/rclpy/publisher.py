@@ -44,6 +44,8 @@ class Publisher(Generic[MsgT]):
         self._handle = Handle("Publisher")
         self._lock = threading.RLock()
         self._count = 0
+        self.is_part = False
+        """Whether something else stands for the publisher in lists of the node: an action, or the log."""
         self.matched: tuple[SubscriptionEnd, ...] = ()
         self._retained: deque[Sample] | None = None
         if qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
 from thymio_sim_ros.portable_ros.messages.message_class import Message
 from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
+from thymio_sim_ros.portable_ros.rclpy.task import await_or_execute
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd
@@ -35,7 +37,9 @@ class Service(ServiceEntity[Any, Any]):
             if not isinstance(response, self.srv_type.Response):
                 raise TypeError
             client, sequence = header
-            client.receive(sequence, cdr.serialize(response))
+            data = cdr.serialize(response)
+            self._report(ros_types.ServiceEventInfo.RESPONSE_SENT, client, sequence, response=response)
+            client.receive(sequence, data)
 
     def pending(self) -> int:
         """The number of waiting requests."""
@@ -47,10 +51,10 @@ class Service(ServiceEntity[Any, Any]):
         if found is None:
             return None
         client, sequence, data = found
-        return self._answer, (cdr.deserialize(data, self.srv_type.Request), (client, sequence))
+        request = cdr.deserialize(data, self.srv_type.Request)
+        self._report(ros_types.ServiceEventInfo.REQUEST_RECEIVED, client, sequence, request=request)
+        return self._answer, (request, (client, sequence))
 
     async def _answer(self, request: Message, header: tuple[ClientEnd, int]) -> None:
-        response = self.callback(request, self.srv_type.Response())
-        if hasattr(response, "__await__"):
-            response = await response
+        response = await await_or_execute(self.callback, request, self.srv_type.Response())
         self.send_response(response, header)

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import Generic
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
-from thymio_sim_ros.portable_ros.messages.message_class import Service, SrvRequestT, SrvResponseT
+from thymio_sim_ros.portable_ros.messages.message_class import Message, Service, SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
+from thymio_sim_ros.portable_ros.rclpy.clock import Clock
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
+from thymio_sim_ros.portable_ros.rclpy.service_introspection import ServiceEvents, ServiceIntrospectionState
 
 __all__ = ["ServiceDescription", "ServiceEntity"]
 
@@ -32,6 +34,36 @@ class ServiceEntity(Entity, Generic[SrvRequestT, SrvResponseT]):
         super().__init__(of.callback_group)
         self.srv_type, self.srv_name, self.qos_profile = of.srv_type, of.srv_name, of.qos_profile
         self._full_name, self._logger_name = of.full_name, of.logger_name
+        self._events: ServiceEvents | None = None
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish the events of this end of the service from now on, stamped by a clock; `OFF` ends it."""
+        with self._handle:
+            if self._events is not None:
+                self._events.destroy()
+                self._events = None
+            if introspection_state is not ServiceIntrospectionState.OFF:
+                self._events = ServiceEvents(
+                    self.node,
+                    self.srv_type,
+                    self._full_name,
+                    clock,
+                    service_event_qos_profile,
+                    has_contents=introspection_state is ServiceIntrospectionState.CONTENTS,
+                )
+
+    def destroy(self) -> None:
+        """Release the end, with its events. Nodes have `destroy_client` and `destroy_service`."""
+        if self._events is not None:
+            self._events.destroy()
+        super().destroy()
+
+    def _report(self, event_type: int, client: object, sequence: int, **content: Message) -> None:
+        """Publish an event if that is configured."""
+        if (events := self._events) is not None:
+            events.publish(event_type, client, sequence, **content)
 
     @property
     def service_name(self) -> str:

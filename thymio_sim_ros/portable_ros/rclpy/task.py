@@ -14,13 +14,28 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import Scheduler, TaskCreator
 
-__all__ = ["Future", "Task"]
+__all__ = ["Future", "Task", "await_or_execute"]
 
 T = TypeVar("T")
 
 
+class _Driver(threading.local):
+    """What drives the coroutines of this thread: a task, or something else, such as asyncio."""
+
+    is_task = False
+
+
+_driver = _Driver()
+
+
 def _nothing() -> None:
     """Stand for a weak reference without an object."""
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """The result of a function, or of a coroutine once it is there."""
+    result = callback(*args)
+    return await result if hasattr(result, "__await__") else result
 
 
 class FutureState(Enum):
@@ -48,9 +63,10 @@ class Future(Generic[T]):
         if self._exception is not None and not self._is_raised:
             print(f"The following exception was never retrieved: {self._exception}", file=sys.stderr)
 
-    def __await__(self) -> Generator[Future[T], None, T | None]:
+    def __await__(self) -> Generator[Future[T] | None, None, T | None]:
         while self._pending():
-            yield self
+            # A task waits for the future; asyncio and other loops, which know None only, ask again.
+            yield self if _driver.is_task else None
         return self.result()
 
     def cancel(self) -> None:
@@ -208,11 +224,14 @@ class Task(Future[Any]):
             self._is_executing.release()
 
     def _advance(self) -> None:
+        before, _driver.is_task = _driver.is_task, True
         try:
             awaited = self._handler.send(None)
         except StopIteration as end:
             self.set_result(end.value)
             return
+        finally:
+            _driver.is_task = before
         scheduler = self._scheduler()
         if scheduler is None:
             return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from thymio_sim_ros.portable_ros.messages.action_class import is_action_type
 from thymio_sim_ros.portable_ros.messages.message_class import is_message_type, is_service_type
 from thymio_sim_ros.portable_ros.rclpy.exceptions import NoTypeSupportImportedException
 
@@ -11,11 +12,11 @@ __all__ = ["check_for_type_support", "check_is_valid_msg_type", "check_is_valid_
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
-    """Raise AttributeError for a class that is neither a message nor a service.
+    """Raise AttributeError for a class that is no message, service or action.
 
     Raises NoTypeSupportImportedException for those of an installed ROS, which this graph cannot serialize.
     """
-    if is_message_type(msg_or_srv_type) or is_service_type(msg_or_srv_type):
+    if any(check(msg_or_srv_type) for check in (is_message_type, is_service_type, is_action_type)):
         return
     if hasattr(type(msg_or_srv_type), "_TYPE_SUPPORT"):
         raise NoTypeSupportImportedException

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from thymio_sim_ros.portable_ros.messages.definitions import FieldType, Shape, definition, interfaces
+from thymio_sim_ros.portable_ros.messages.definitions import FieldType, Shape, definition
+from thymio_sim_ros.portable_ros.messages.interface_files import interfaces
 from thymio_sim_ros.portable_ros.messages.message_class import message_type
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 
