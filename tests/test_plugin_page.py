@@ -21,10 +21,12 @@ from thymio_sim_ros.files.loading import load_playground, read_program, shipped_
 from thymio_sim_ros.sim import actuators, sensors, shapes
 from thymio_sim_ros.sim.model.primitives import Disc
 from thymio_sim_ros.sim.playground import reader
+from thymio_sim_ros.sim.playground.drawings import drawings
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.web import Content
 
 SLALOM = Path(__file__).parent / "data" / "web" / "slalom.json"
+DRAWINGS = SLALOM.with_name("drawings.json")
 Variant = Callable[[str, str, str], AbstractContextManager[None]]
 
 
@@ -110,6 +112,14 @@ def test_the_server_of_the_page_declares_the_shape_with_its_labels_and_its_sampl
     assert slalom["fields"]["gap_m"]["default"] == 0.25
     assert [part["pose"]["x"] for part in slalom["primitives"]] == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
     assert slalom == json.loads(SLALOM.read_text()), "the declaration that tests/web_ui/plugin_shape.test.js reads"
+
+
+@pytest.mark.usefixtures("extras")
+def test_the_answers_that_the_tests_of_the_page_use_are_those_of_the_simulator() -> None:
+    records = json.loads(DRAWINGS.read_text())
+    assert "slalom" in {record["shape"]["kind"] for record in records}
+    found = json.loads(drawings(json.dumps([record["shape"] for record in records])))
+    assert found == [record["drawing"] for record in records]
 
 
 @pytest.mark.parametrize(

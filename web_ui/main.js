@@ -26,7 +26,7 @@ import { CreatorHost } from "./hosts/creator_host.js";
 import { ProgramHost } from "./hosts/program_host.js";
 import { TourHost } from "./hosts/tour_host.js";
 import { WelcomeHost } from "./hosts/welcome_host.js";
-import { Actions, isProgram } from "./input/actions.js";
+import { Actions, isProgram, PRIMITIVES } from "./input/actions.js";
 import { watchKeyboard } from "./input/keyboard.js";
 import { DragController } from "./move/drag_controller.js";
 import { fetchShapes } from "./playground/declarations.js";
@@ -154,7 +154,11 @@ class Page {
       report: (key, values) => announce(this.#pageText(key, values)),
     });
     this.scene = this.#createScene();
-    this.thumbnails = new ThumbnailCache((world) => this.scene.photographer.request(world));
+    const offered = this.store.until(({ services }) => services.includes(PRIMITIVES));
+    this.thumbnails = new ThumbnailCache(
+      (world) => this.scene.photographer.request(world),
+      (items) => offered.then(() => this.actions.learnParts(items)),
+    );
   }
 
   start() {

@@ -8,7 +8,8 @@ import { canTurn } from "../../web_ui/creator/place.js";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { lacksGround, itemsOffGround } from "../../web_ui/playground/validation.js";
 import { shapeKinds } from "../../web_ui/playground/kinds/index.js";
-import { down, prepared, session } from "./creator_support.js";
+import { learnParts } from "../../web_ui/playground/parts.js";
+import { down, prepared, recorded, session } from "./creator_support.js";
 
 test("every kind can be placed, moved, turned, copied and removed, and all of it undone", () => {
   for (const { name: kind } of shapeKinds()) {
@@ -86,13 +87,14 @@ test("the ring turns, points move one by one, and the ground moves by its knob o
   assert.equal(model.selected, "ground");
 });
 
-test("values are edited as numbers, and rejected with a reason", () => {
+test("values are edited as numbers, and rejected with a reason", async () => {
   const { model, click, item } = prepared();
   model.choose("box");
   click(0.3, 0.3);
   model.select("box_1");
   assert.equal(model.edit({ size_x_m: 0.05, mass_kg: 0.2 }), null);
   assert.equal(item("box_1")?.mass_kg, 0.2);
+  await learnParts(model.playground.items, recorded);
   assert.equal(model.edit({ name: "thymio" })?.word, "problem.name");
   assert.equal(model.edit({ name: "a b" })?.word, "problem.value");
   assert.equal(model.edit({ x_m: 0, y_m: 0 })?.word, "problem.blocked");
@@ -126,12 +128,13 @@ test("the ground becomes an octagon and back, or none, and keeps color and walls
   assert.equal(groundOf(grounded(model.playground, "none")), null);
 });
 
-test("items outside a smaller ground are reported, and can still be changed", () => {
+test("items outside a smaller ground are reported, and can still be changed", async () => {
   const { model, click, item } = prepared();
   model.choose("box");
   click(0.4, 0.4);
   model.select("ground");
   assert.equal(model.edit({ size_x_m: 0.5 }), null);
+  await learnParts(model.playground.items, recorded);
   assert.deepEqual(
     itemsOffGround(model.playground.items).map(({ name }) => name),
     ["box_1"],
@@ -154,7 +157,7 @@ test("the drawn world stays the same object while only the pointer moves", () =>
   clearTimeout(one.timer);
 });
 
-test("a playground without ground gets one below all items", () => {
+test("a playground without ground gets one below all items", async () => {
   const bare = grounded(newPlayground("Mine"), "none");
   assert.ok(lacksGround(bare.items));
   assert.ok(!lacksGround(newPlayground("Mine").items));
@@ -162,6 +165,7 @@ test("a playground without ground gets one below all items", () => {
   const far = { ...bare, items: [...bare.items, { kind: "robot", name: "other", x_m: 2, y_m: -0.5 }] };
   const whole = withGround(far);
   assert.ok(!lacksGround(whole.items));
+  await learnParts(whole.items, recorded);
   assert.deepEqual(itemsOffGround(whole.items), []);
   parse(write(whole));
 });

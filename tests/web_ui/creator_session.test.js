@@ -5,8 +5,14 @@ import { test } from "node:test";
 
 import { newPlayground } from "../../web_ui/creator/commands.js";
 import creatorTexts from "../../web_ui/i18n/creator.texts.js";
+import { learnParts, partsOf } from "../../web_ui/playground/parts.js";
 import { shapeKinds } from "../../web_ui/playground/kinds/index.js";
 import { session, titled } from "./creator_support.js";
+
+/** An answer that only a simulator can give: a wall that is longer than its ends are apart. */
+const DRAWN = JSON.stringify([
+  { primitives: [{ type: "solid", pose: { x: 0.3, y: 0, yaw: 0 }, size: [0.7, 0.02], height: 0.12, color: "#8a97a5" }] },
+]);
 
 test("what is built is kept and restored; a full storage is reported", () => {
   const { one, storage, again } = session();
@@ -72,4 +78,31 @@ test("the saved state survives a reload, and a playground equal to its file coun
   assert.equal(one.kept, "file");
   one.keep();
   assert.equal(again().one.kept, "file");
+});
+
+test("what is shown is asked for once, not again before the answer, and drawn as the simulator answers", async () => {
+  const { one } = session();
+  /** @type {((value: boolean) => void)[]} */ const answers = [];
+  /** @type {number[]} */ const asked = [];
+  one.learn = (items) => {
+    asked.push(items.filter((item) => !partsOf(item).isKnown).length);
+    return new Promise((resolve) => answers.push(resolve));
+  };
+  await one.ask();
+  assert.deepEqual(asked, [], "the sample and the ground are known");
+  one.model.choose("wall");
+  one.model.placing?.hover([-0.3, 0.2], false);
+  one.model.placing?.put();
+  one.model.placing?.hover([0.3, 0.2], false);
+  const asking = one.ask();
+  await one.ask();
+  assert.deepEqual(asked, [1], "the wall that is being placed");
+  one.model.placing?.put();
+  const { world } = one;
+  assert.ok(await learnParts(one.model.playground.items, async () => DRAWN));
+  answers[0](true);
+  await asking;
+  assert.notEqual(one.world, world);
+  assert.equal(one.world.markers.get("solid/wall_1/1")?.scale.x, 0.7);
+  one.keep();
 });

@@ -1,11 +1,28 @@
 // Helpers of the creator's tests.
 
+import { readFileSync } from "node:fs";
+
 import { CreatorModel } from "../../web_ui/creator/creator_model.js";
 import { newPlayground } from "../../web_ui/creator/commands.js";
 import { CreatorSession } from "../../web_ui/creator/creator_session.js";
 import { Drafts } from "../../web_ui/playground_tab/drafts.js";
 import { parse } from "../../web_ui/playground/document.js";
+import { learnParts } from "../../web_ui/playground/parts.js";
 import { newStorage } from "./support.js";
+
+/** Shapes and what the simulator has answered to them (tests/test_plugin_page.py). @type {{ shape: any, drawing: any }[]} */
+const RECORDS = JSON.parse(readFileSync(new URL("../data/web/drawings.json", import.meta.url), "utf8"));
+const DRAWINGS = new Map(RECORDS.map(({ shape, drawing }) => [JSON.stringify(shape), drawing]));
+
+/** The simulator's service: the drawings of recorded shapes. @param {string} shapes */
+export async function recorded(shapes) {
+  const requests = JSON.parse(shapes).map((/** @type {any} */ shape) => JSON.stringify(shape));
+  const missing = requests.filter((/** @type {string} */ request) => !DRAWINGS.has(request));
+  if (missing.length > 0) throw new Error(`tests/data/web/drawings.json has no ${missing.join("\n")}`);
+  return JSON.stringify(requests.map((/** @type {string} */ request) => DRAWINGS.get(request)));
+}
+
+await learnParts(newPlayground("Mine").items, recorded);
 
 /** Straight down. @param {number} x @param {number} y */
 export const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1 } });
@@ -32,7 +49,7 @@ export function prepared() {
 export function session(storage = newStorage()) {
   /** @type {string[]} */ const reported = [];
   const drafts = new Drafts(storage);
-  const one = new CreatorSession({ drafts, title: "Mine", report: ({ word }) => void reported.push(word), changed: () => {} });
+  const one = new CreatorSession({ drafts, title: "Mine", report: ({ word }) => void reported.push(word), changed: () => {}, learn: (items) => learnParts(items, recorded) });
   const again = () => {
     const next = session(storage);
     const [draft] = next.drafts.list();

@@ -4,19 +4,21 @@ import { test } from "node:test";
 
 import { parse } from "../../web_ui/playground/document.js";
 import { Markers } from "../../web_ui/playground/markers.js";
+import { learnParts } from "../../web_ui/playground/parts.js";
 import { groundColor, wallColor } from "../../web_ui/scene/colors.js";
 import { groundOf } from "../../web_ui/scene/ground_of.js";
 import { PlaygroundModel } from "../../web_ui/scene/playground.js";
+import { recorded } from "./creator_support.js";
 
 const FOLDER = new URL("../../playgrounds/", import.meta.url);
 const SHIPPED = readdirSync(FOLDER).filter((name) => name.endsWith(".json") && !name.includes("schema"));
 
 /** @param {string} name */
-function markersOf(name) {
-  const text = readFileSync(new URL(name, FOLDER), "utf8").replace("line_gradient.svg", "data:image/svg+xml;base64,");
-  const { items } = parse(text);
-  return new Markers(() => null).of(items);
-}
+const itemsOf = (name) =>
+  parse(readFileSync(new URL(name, FOLDER), "utf8").replace("line_gradient.svg", "data:image/svg+xml;base64,")).items;
+
+/** @param {string} name */
+const markersOf = (name) => new Markers(() => null).of(itemsOf(name));
 
 /** Lightness of a gray floor as drawn. @param {number} gray */
 function drawn(gray) {
@@ -74,12 +76,13 @@ for (const name of SHIPPED) {
   });
 }
 
-test("a table has a border on all sides, the desk playground has walls", () => {
+test("a table has a border on all sides, the desk playground has walls", async () => {
   const table = groundOf(markersOf("table.json").values());
   assert.ok(table !== null && !table.isWalled);
   const around = table.edges.reduce((sum, [[x, y], [toX, toY]]) => sum + Math.hypot(toX - x, toY - y), 0);
   const { min, max } = table.bounds;
   assert.ok(Math.abs(around - 2 * (max.x - min.x + max.y - min.y)) < 1e-6);
+  await learnParts(itemsOf("desk.json").slice(0, 1), recorded);
   const walled = [...markersOf("desk.json").values()];
   assert.equal(groundOf(walled)?.isWalled, true);
   const called = walled.map((marker) => (marker.ns.startsWith("solid/") ? { ...marker, ns: "solid/any name" } : marker));

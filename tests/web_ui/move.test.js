@@ -21,14 +21,21 @@ function solid(name, x, type, size) {
   return /** @type {any} */ ({ ns: `solid/${name}`, id: 1, type, pose, scale: { x: size, y: size, z: size }, points: [] });
 }
 
-/** A robot at the origin, a can 30 cm before it, a wall at 1 m. */
-function world() {
+/** The floor of a square ground. @param {number} size */
+function floorOf(size) {
+  const [a, b, c, d] = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => ({ x: (x * size) / 2, y: (y * size) / 2, z: 0 })); // prettier-ignore
+  const pose = { position: { x: 0, y: 0, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
+  return /** @type {any} */ ({ ns: "floor/ground", id: 0, type: 11, pose, scale: { x: 1, y: 1, z: 1 }, points: [a, b, c, a, c, d] });
+}
+
+/** A robot at the origin, a can 30 cm before it, a wall at 1 m. @param {number} [size]  of the ground */
+function world(size = 4) {
   const simulator = /** @type {any} */ ({ worldNames: { "": "thymio" }, movables: ["can"] });
   return /** @type {State} */ ({
     ...INITIAL,
     simulator,
     robots: { "": robotAt(0, 0) },
-    markers: new Map([["w", solid("wall", 1, 1, 0.1)]]),
+    markers: new Map([["f", floorOf(size)], ["w", solid("wall", 1, 1, 0.1)]]),
     objects: new Map([["c", solid("can", 0.3, 3, 0.06)], ["d", solid("door", -1, 1, 0.1)]]),
   });
 }
@@ -149,25 +156,22 @@ test("nothing is selected in an empty world", async () => {
   assert.equal(dragController.dragged, null);
 });
 
-/** A playground of ours with a floor, and one robot. @param {number} size @param {Record<string, any>} robot */
-function floor(size, robot) {
-  const shapes = [{ kind: "rectangle", name: "ground", size_x_m: size, size_y_m: size, color: "#ffffff" }];
-  return JSON.stringify({ format: 1, title: "Floor", shapes, robots: [{ name: "thymio", ...robot }] });
-}
+/** A playground of ours with one robot. @param {Record<string, any>} robot */
+const started = (robot) => JSON.stringify({ format: 1, title: "Floor", shapes: [], robots: [{ name: "thymio", ...robot }] });
 
 test("a fallen robot is returned to its start", () => {
-  const found = startOf(world(), floor(2, { x_m: -0.5, y_m: 0.5, yaw_rad: 1 }), "thymio");
+  const found = startOf(world(), started({ x_m: -0.5, y_m: 0.5, yaw_rad: 1 }), "thymio");
   assert.deepEqual(found, { x: -0.5, y: 0.5, yaw: 1 });
 });
 
 test("if the start is occupied, a fallen robot is placed next to it, on the ground", () => {
   const start = { x_m: 0.25, y_m: 0 }; // its front would be in the can
-  assert.deepEqual(startOf(world(), floor(2, start), "thymio"), { x: 0.4, y: 0, yaw: 0 });
-  const onSmallFloor = startOf(world(), floor(0.6, start), "thymio");
+  assert.deepEqual(startOf(world(), started(start), "thymio"), { x: 0.4, y: 0, yaw: 0 });
+  const onSmallFloor = startOf(world(0.6), started(start), "thymio");
   assert.deepEqual([onSmallFloor.x.toFixed(3), onSmallFloor.y.toFixed(3)], ["0.250", "0.150"]);
 });
 
 test("a robot without a start is placed at the start of another, or next to it", () => {
-  const found = startOf(world(), floor(2, { x_m: 0, y_m: 0 }), "anna");
+  const found = startOf(world(), started({ x_m: 0, y_m: 0 }), "anna");
   assert.ok(Math.hypot(found.x, found.y) > 0.1);
 });

@@ -3,39 +3,21 @@ import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { parse, write } from "../../web_ui/playground/document.js";
+import creatorTexts from "../../web_ui/i18n/creator.texts.js";
+import { translator } from "../../web_ui/i18n/index.js";
 import { containsPoint, overlap, placed, rectangle } from "../../web_ui/playground/geometry.js";
-import { blockerOf, isOnGround, findProblem } from "../../web_ui/playground/validation.js";
-import { BUILT_IN } from "../../web_ui/playground/declarations.js";
-import { kindNamed, ROBOT, shapeKinds } from "../../web_ui/playground/kinds/index.js";
+import { blockerOf, isOnGround, findProblem, problemsIn } from "../../web_ui/playground/validation.js";
+import { kindNamed, ROBOT } from "../../web_ui/playground/kinds/index.js";
+import { Labels } from "../../web_ui/playground/labels.js";
 import { Markers } from "../../web_ui/playground/markers.js";
-import { partsOf, valuesOf } from "../../web_ui/playground/parts.js";
+import { learnParts, partsOf, valuesOf } from "../../web_ui/playground/parts.js";
 import { Fault } from "../../web_ui/playground/rules.js";
 import { worldOf } from "../../web_ui/playground/world.js";
+import { recorded } from "./creator_support.js";
 
 const FOLDER = new URL("../../playgrounds/", import.meta.url);
 /** Playgrounds that page and simulator both read or both reject (tests/sim/playground/test_declarations.py). */
 const CASES = JSON.parse(readFileSync(new URL("../data/web/playground_cases.json", import.meta.url), "utf8"));
-
-test("every declared shape of the simulator has a drawing of its own", () => {
-  assert.deepEqual(shapeKinds().filter((kind) => !kind.isExact({})), []);
-  assert.deepEqual(shapeKinds().map(({ name }) => name), Object.keys(BUILT_IN.shapes));
-});
-
-/** With lengths in nanometers, and without images. @param {import("../../web_ui/playground/primitives.js").Primitive[]} primitives */
-const rounded = (primitives) =>
-  JSON.parse(
-    JSON.stringify(
-      primitives.filter(({ type }) => type !== "print"),
-      (_key, value) => (typeof value === "number" ? Math.round(value * 1e9) / 1e9 + 0 : value),
-    ),
-  );
-
-for (const kind of shapeKinds()) {
-  test(`a ${kind.name} is drawn of the primitives that the simulator makes of it`, () => {
-    const values = valuesOf({ name: "x", ...kind.sample, kind: kind.name });
-    assert.deepEqual(rounded(kind.draw(values)), rounded(BUILT_IN.shapes[kind.name].primitives));
-  });
-}
 
 test("the names of fields say how a kind is placed", () => {
   /** @param {string} name */
@@ -124,7 +106,8 @@ test("unnamed shapes get the same names as in the simulator", () => {
   assert.equal(parse(text([unnamed])).items[0].name, "box_0");
 });
 
-test("an item may not overlap a robot, but objects may overlap each other", () => {
+test("an item may not overlap a robot, but objects may overlap each other", async () => {
+  await learnParts([{ ...BOX, yaw_rad: 0 }], recorded);
   const [robot] = parse(text([], [{ name: "thymio", x_m: 0, y_m: 0 }])).items;
   const crate = { ...BOX, x_m: 0.05 };
   assert.equal(blockerOf([robot], crate), "thymio");
@@ -137,16 +120,19 @@ test("a value out of range is a problem with its key", () => {
   assert.equal(findProblem([], { ...BOX, height_m: 0 })?.values?.key, "height_m");
 });
 
-test("an item on a ground or on its edge is on the ground", () => {
+test("an item on a ground or on its edge is on the ground", async () => {
   const ground = { kind: "rectangle", name: "g", size_x_m: 1, size_y_m: 1, color: "#ffffff" };
+  assert.equal(isOnGround([ground], { ...BOX, x_m: 0.51 }), true, "only the simulator knows");
+  await learnParts([ground], recorded);
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.5 }), true);
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.51 }), false);
   assert.equal(isOnGround([], { ...BOX, x_m: 9 }), true);
 });
 
-test("unchanged items keep their markers", () => {
+test("unchanged items keep their markers", async () => {
   const markers = new Markers(() => null);
   const items = [{ kind: "rectangle", name: "g", size_x_m: 1, size_y_m: 1, color: "#ffffff", walls: {} }, BOX];
+  await learnParts(items, recorded);
   const before = markers.of(items);
   const after = markers.of([items[0], { ...BOX, x_m: 0.2 }]);
   assert.equal(before.size, 6);
@@ -165,4 +151,59 @@ test("a disc beside a corner does not overlap it", () => {
 test("a robot's kind needs a name", () => {
   assert.ok(ROBOT.fields.name.required);
   assert.equal(partsOf({ kind: "robot", name: "a", x_m: 0, y_m: 0 }).footprints.length, 1);
+});
+
+/** With lengths in nanometers. @param {Record<string, number>} pose */
+const rounded = (pose) => Object.fromEntries(Object.entries(pose).map(([key, value]) => [key, Math.round(value * 1e9) / 1e9]));
+
+/** A track around a corner. @param {number} radius */
+const bend = (radius) => ({
+  kind: "track", name: "line", points_m: [[0, 0], [1, 0], [1, 1]], width_m: 0.1, color: "#000000", corner_radius_m: radius,
+}); // prettier-ignore
+
+test("what the simulator refuses, and a robot in a shape, are problems of the playground once it has answered", async () => {
+  const lines = [bend(0.2), bend(0.01), bend(2), { ...bend(0), points_m: [[0, 0], [0, 0]] }]; // prettier-ignore
+  const items = [...lines, { ...BOX, size_x_m: 0.5, x_m: 0.3 }, { kind: "robot", name: "thymio", x_m: 0, y_m: 0 }];
+  assert.deepEqual(problemsIn(items), []);
+  await learnParts(items, async () => null);
+  assert.deepEqual(problemsIn(items), []);
+  await learnParts(items, recorded);
+  const words = problemsIn(items).map(({ problem: { word, values } }) => values?.reason ?? word);
+  assert.deepEqual(words, ["fault.radius", "fault.corners", "fault.places", "problem.blocked"]);
+  const labels = new Labels("de", translator("de", creatorTexts));
+  const field = labels.t("field.corner_radius_m");
+  assert.equal(labels.text(problemsIn(items)[0].problem), labels.t("fault.radius", { field }));
+  assert.ok(partsOf(lines[1]).primitives.length > 0, "its preview stays visible");
+});
+
+test("what is moved, or turned by its rotation, needs no answer; other values do, and are previewed until then", async () => {
+  const wall = { kind: "wall", name: "w", start_x_m: 0.1, start_y_m: 0.2, end_x_m: 0.4, end_y_m: 0.2, color: "#112233" };
+  await learnParts([BOX, wall, bend(0.2)], recorded);
+  const line = { ...bend(0.2), points_m: bend(0.2).points_m.map(([x, y]) => [x + 0.1, y - 0.7]) };
+  const known = [{ ...BOX, x_m: -0.7, y_m: 0.3, yaw_rad: 1.2 }, { ...wall, start_x_m: 0.7, end_x_m: 1 }, line];
+  assert.ok(known.every((item) => partsOf(item).isExact));
+  const poses = known.slice(0, 2).map((item) => rounded(/** @type {any} */ (partsOf(item).primitives[0]).pose));
+  assert.deepEqual(poses, [{ x: -0.7, y: 0.3, yaw: 1.2 }, { x: 0.85, y: 0.2, yaw: 0 }]);
+  const post = { kind: "cylinder", name: "c", x_m: 1, y_m: 0, radius_m: 0.2, height_m: 0.3, color: "#123456" };
+  const others = [post, { ...BOX, color: "#445566" }, { ...wall, end_x_m: 0.5 }, { ...line, closed: true }];
+  assert.ok(others.every((item) => !partsOf(item).isKnown && partsOf(item).primitives.length > 0));
+  const preview = { type: "solid", pose: { x: 1, y: 0, yaw: 0 }, radius: 0.2, height: 0.3, color: "#123456" };
+  assert.deepEqual(partsOf(post).primitives, [preview]);
+  const moved = { ...bend(0.2), points_m: [[0, 0], [1, 0.1], [1, 1]] }; // prettier-ignore
+  assert.deepEqual(partsOf(moved).primitives, partsOf(bend(0.2)).primitives, "rounded corners stay until the answer");
+  await learnParts([moved], async () => null);
+  assert.equal(partsOf(moved).primitives.length, 2, "strips, if there is none");
+  const far = { ...wall, start_x_m: -100, end_x_m: 100 };
+  const asked = kindNamed("wall")?.shape?.framed(valuesOf(far)).own;
+  assert.deepEqual([asked?.start_x_m, asked?.end_x_m], [-100, 100], "no coordinate is 200 m");
+});
+
+test("a convex solid is drawn as the simulator's prism, and stands in the way as it is", async () => {
+  const vertices = [[0, 0], [0.3, 0], [0, 0.3]]; // prettier-ignore
+  const part = { type: "solid", pose: { x: 0, y: 0, yaw: 0 }, vertices, height: 0.1, color: "#112233" };
+  const prism = { ...BOX, size_x_m: 0.3, size_y_m: 0.3 };
+  await learnParts([prism, prism], async (shapes) => JSON.stringify(JSON.parse(shapes).map(() => ({ primitives: [part] }))));
+  const marker = new Markers(() => null).of([prism]).get("solid/crate/1");
+  assert.deepEqual([marker?.points.length, marker?.pose.position.z], [3 + 3 * 6, 0.05]);
+  assert.equal(overlap(partsOf(prism).footprints[0], { middle: [0.25, 0.25], radius: 0.05 }), false);
 });

@@ -10,8 +10,9 @@ import { translator } from "../../web_ui/i18n/index.js";
 import { BUILT_IN, fetchShapes } from "../../web_ui/playground/declarations.js";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { kindNamed, registerShapes, shapeKinds } from "../../web_ui/playground/kinds/index.js";
-import { outlinesOf, partsOf } from "../../web_ui/playground/parts.js";
+import { learnParts, outlinesOf, partsOf } from "../../web_ui/playground/parts.js";
 import { findProblem } from "../../web_ui/playground/validation.js";
+import { recorded } from "./creator_support.js";
 
 /** The shape of docs/plugins.md, as the page's server declares it (tests/test_plugin_page.py). */
 const SLALOM = JSON.parse(readFileSync(new URL("../data/web/slalom.json", import.meta.url), "utf8"));
@@ -86,9 +87,10 @@ test("fields of a plug-in are checked when a file is read", () => {
   assert.throws(() => parse(JSON.stringify({ format: 1, title: "t", shapes: [shape] })), /shapes\[0\].length_m/);
 });
 
-test("the sample is drawn as the simulator builds it, in the color and at the pose of the item", () => {
-  const posts = { kind: "slalom", name: "s", x_m: 1, y_m: 2, length_m: 1, color: "#00ff00" };
-  const { primitives, isExact, footprints } = partsOf(posts);
+test("the sample is drawn as the simulator builds it, at the pose of the item, also in another color", () => {
+  const posts = { kind: "slalom", name: "s", x_m: 1, y_m: 2, length_m: 1 };
+  const { isExact, footprints } = partsOf(posts);
+  const { primitives } = partsOf({ ...posts, color: "#00ff00" });
   assert.ok(isExact);
   assert.equal(footprints.length, 5);
   assert.deepEqual(
@@ -99,14 +101,17 @@ test("the sample is drawn as the simulator builds it, in the color and at the po
   assert.equal(findProblem([posts], robot)?.word, "problem.blocked");
 });
 
-test("other values are drawn as a box that grows with the sizes, which is in nothing's way", () => {
+test("other values are stretched posts, which are in nothing's way, until the simulator has answered", async () => {
   const posts = { kind: "slalom", name: "s", x_m: 1, y_m: 2, length_m: 2, height_m: 0.3 };
-  const { isExact } = partsOf(posts);
-  assert.ok(!isExact);
-  const [{ outline, height }] = outlinesOf(posts);
-  assert.equal(height, 0.3);
-  assert.deepEqual([...new Set(outline.map(([x]) => Math.round(x * 1e6) / 1e6))], [0.98, 3.02]);
-  assert.equal(findProblem([posts], { kind: "robot", name: "r", x_m: 1, y_m: 2 }), null);
+  const robot = { kind: "robot", name: "r", x_m: 1, y_m: 2 };
+  const places = () => partsOf(posts).primitives.map((part) => part.type === "solid" && [part.pose.x, part.radius, part.height]);
+  assert.ok(!partsOf(posts).isExact);
+  assert.deepEqual(places(), [0, 0.5, 1, 1.5, 2].map((x) => [1 + x, 0.02, 0.3]));
+  assert.equal(findProblem([posts], robot), null);
+  await learnParts([posts], recorded);
+  assert.ok(partsOf(posts).isExact);
+  assert.deepEqual(places(), Array.from({ length: 9 }, (_, index) => [1 + index / 4, 0.01, 0.3]));
+  assert.equal(findProblem([posts], robot)?.word, "problem.blocked");
 });
 
 test("a shape with two ends is placed by two clicks, and one with a path by any number", () => {

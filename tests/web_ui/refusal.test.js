@@ -46,7 +46,7 @@ const ANSWERS = {
   "shapes[0].size: found an unknown key, expected 'size_x_m' (one of x_m)": "Thing 1: It has a value that this page does not know.",
   "found more than 24000000 bytes, expected a smaller file": "This file is too large.",
   "shapes: found 1001 items, expected at most 1000": "There are too many: at most 1000 are possible.",
-  "shapes[0]: found a single place, expected a valid track": "Thing 1: It needs two different points.",
+  "shapes[0].points_m: found a single place, expected two different points": "Thing 1: It needs two different points.",
   "shapes[0]: found something else, expected a valid thing": "Thing 1: There is a mistake in it.",
   'found 2 playgrounds in the archive ("a.json", "b.json"), expected the name of one, as FILE#a.json':
     "It holds several playgrounds. Open it again and choose one.",
@@ -123,6 +123,15 @@ for (const [message, sentence] of Object.entries(ANSWERS)) {
     for (const language of CODES) assertPlain(sentenceOf(labels(language), reason));
   });
 }
+
+test("rules between fields that only the simulator checks name the thing", () => {
+  const shape = { kind: "track", name: "lane", points_m: [[0, 0], [1, 0]], width_m: 0.1, color: "#000000", corner_radius_m: 0.01 }; // prettier-ignore
+  const text = JSON.stringify({ format: 1, title: "t", shapes: [shape] });
+  const fault = locate("shapes[0].corner_radius_m: found 0.01, expected 0 or at least half of the width (0.05)");
+  const [radius, room] = [fault, locate("shapes[0].corner_radius_m: found 2, expected room for the arcs on the piece from (0, 0) to (1, 0)")];
+  assert.equal(sentenceOf(labels("en"), reasonOfMessage(radius, text)), "Line “lane”: Roundness of the bends must be 0 or at least half of the width.");
+  assert.equal(sentenceOf(labels("en"), reasonOfMessage(room, text)), "Line “lane”: Roundness of the bends: the bends have no room.");
+});
 
 test("with the text of the file the page says more than the simulator's message", () => {
   const [case_] = CASES.filter(({ name }) => name === "text for a number");

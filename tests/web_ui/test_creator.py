@@ -167,7 +167,9 @@ def test_an_image_is_placed_on_the_ground(world, page, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone(suite, page, tmp_path, monkeypatch):
+def test_a_shape_of_a_plugin_is_placed_edited_saved_and_drawn_as_the_simulator_has_it(
+    suite, page, tmp_path, monkeypatch
+):
     installed = tmp_path / "site-packages"
     plugin_page.lay_out(installed, plugin_page.files())
     monkeypatch.setenv("PYTHONPATH", f"{installed}{os.pathsep}{os.environ.get('PYTHONPATH', '')}")
@@ -181,6 +183,11 @@ def test_a_shape_of_a_plugin_is_placed_edited_and_saved_by_its_declaration_alone
     click(page, -0.4, 0.3, 0.05)
     page.locator("[data-field=gap_m]").fill("50")
     page.locator("[data-field=gap_m]").press("Enter")
+    page.wait_for_function("() => window.thymio.built().drawn.filter((key) => key.includes('slalom_1')).length === 3")
+    page.locator("[data-field=length_m]").fill("5")
+    page.locator("[data-field=length_m]").press("Enter")
+    page.wait_for_function("() => window.thymio.built().drawn.filter((key) => key.includes('slalom_1')).length === 1")
+    page.click("[data-verb=undo]")
     assert page.locator(".field", has=page.locator("[data-field=gap_m]")).locator("label").text_content() == "Gap (cm)"
     page.locator("[data-field=gap_m]").fill("0")
     page.locator("[data-field=gap_m]").press("Enter")

@@ -193,3 +193,26 @@ def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(at_rest, 
     open_details(page)
     page.locator(".item-list summary").click()
     assert page.evaluate(FINDINGS) == []
+
+
+@pytest.mark.slow
+def test_bends_without_room_are_a_warning_until_they_have_it(at_rest, page):
+    open_creator(page, at_rest)
+    page.click("[data-tool=track]")
+    for x, y in ((-0.4, -0.4), (0.4, -0.4), (0.4, 0.1)):
+        click(page, x, y)
+    page.keyboard.press("Enter")
+    page.keyboard.press("Escape")
+    wait_for_items(page, 3)
+    click(page, 0.0, -0.4)
+    open_details(page)
+    radius = page.locator("[data-field=corner_radius_m]")
+    for value, text in (("1", " must be 0 or at least half of the width"), ("60", ": the bends have no room")):
+        radius.fill(value)
+        radius.press("Enter")
+        playwright.expect(page.locator(".creator .note-box:visible")).to_contain_text(
+            f"track_1: Roundness of the bends{text}"
+        )
+    radius.fill("20")
+    radius.press("Enter")
+    playwright.expect(page.locator(".creator .note-box:visible")).to_have_count(0)

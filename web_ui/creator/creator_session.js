@@ -3,6 +3,7 @@
 
 import { Markers } from "../playground/markers.js";
 import { fileNameOf, write } from "../playground/document.js";
+import { partsOf } from "../playground/parts.js";
 import { Pictures } from "../playground/pictures.js";
 import { worldOf } from "../playground/world.js";
 import { CreatorModel } from "./creator_model.js";
@@ -21,6 +22,9 @@ import { sketchOf } from "./sketch.js";
  */
 
 const KEEP_AFTER_MS = 400;
+const ASK_AFTER_MS = 100;
+/** After a request without an answer. */
+const ASK_AGAIN_AFTER_MS = 1000;
 
 export class CreatorSession {
   /**
@@ -29,9 +33,13 @@ export class CreatorSession {
    * @param {string} options.title      title of a new playground
    * @param {(phrase: Phrase) => void} options.report
    * @param {() => void} options.changed   requests a new frame
+   * @param {(items: readonly import("../playground/parts.js").Item[]) => Promise<boolean>} options.learn   asks the simulator for
+   *   exact parts; whether it has answered
    */
-  constructor({ drafts, title, report, changed }) {
+  constructor({ drafts, title, report, changed, learn }) {
     this.drafts = drafts;
+    this.learn = learn;
+    this.isAsking = false;
     this.onChange = changed;
     const first = this.#asDraft(newPlayground(title));
     this.model = new CreatorModel({ playground: first, report, changed: () => this.#changed() });
@@ -62,7 +70,7 @@ export class CreatorSession {
   /** The playground as the scene draws it, without the item being dragged. */
   get world() {
     const { playground, selecting } = this.model;
-    const dragged = selecting.ghost?.item.name;
+    const dragged = selecting.moving?.name;
     const { items } = playground;
     if (this.drawn === null || this.drawn.of !== items || this.drawn.dragged !== dragged) {
       const seen = dragged === undefined ? items : items.filter(({ name }) => name !== dragged);
@@ -74,6 +82,23 @@ export class CreatorSession {
   get sketch() {
     this.sketched ??= sketchOf(this.model);
     return this.sketched;
+  }
+
+  /** Call once per frame: asks the simulator for unknown parts of what is shown, a few times per second. */
+  async ask() {
+    const { playground, ghost } = this.model;
+    const items = ghost === null ? playground.items : [...playground.items, ghost.item];
+    if (this.isAsking || items.every((item) => partsOf(item).isKnown)) return;
+    this.isAsking = true;
+    const hasAnswer = await this.learn(items);
+    const goOn = () => {
+      this.isAsking = false;
+      if (hasAnswer) this.onChange(); // what was changed meanwhile
+    };
+    setTimeout(goOn, hasAnswer ? ASK_AFTER_MS : ASK_AGAIN_AFTER_MS);
+    if (!hasAnswer) return;
+    this.drawn = null;
+    this.#changed();
   }
 
   /** The playground as file content. */

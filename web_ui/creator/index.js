@@ -13,7 +13,6 @@ import { newPlayground } from "./commands.js";
 import { contextBar } from "./context_bar.js";
 import { CreatorSession } from "./creator_session.js";
 import { ItemForm } from "./form.js";
-import { groundWarnings } from "./ground_warnings.js";
 import { Head } from "./head.js";
 import { itemList } from "./item_list.js";
 import { watchCreatorKeys } from "./keys.js";
@@ -23,6 +22,7 @@ import { playgroundForm } from "./playground_form.js";
 import { watchCreatorPointer } from "./pointer.js";
 import { readPicture } from "./read_picture.js";
 import { stageTools } from "./stage_tools.js";
+import { warnings } from "./warnings.js";
 
 export { CreatorSession, newPlayground, WORDS };
 
@@ -59,12 +59,12 @@ export class Creator {
     const form = new ItemForm(setting, model);
     const whole = playgroundForm(setting, model);
     const list = itemList(labels, model);
-    const warnings = groundWarnings(t, model);
+    const notes = warnings(labels, model);
     const tools = palette({ labels, model, canvas });
     const hints = placingHint({ labels, model, canvas });
     const over = contextBar({ labels, model, scene });
     const views = stageTools({ labels, model, canvas });
-    this.parts = [tools, views, hints, over, this.bar, warnings, form, whole, list];
+    this.parts = [tools, views, hints, over, this.bar, notes, form, whole, list];
     const caret = h("span", { class: "turns" }, icon("caretDown", { small: true }));
     const summary = h("summary", {}, icon("keys", { small: true }), h("span", { class: "grow" }, t("keys.title")), caret);
     this.elements = {
@@ -76,7 +76,7 @@ export class Creator {
         { class: "creator", role: "region", "aria-label": t("creator") },
         ...this.head.elements,
         tools.element,
-        ...warnings.elements,
+        ...notes.elements,
         form.element,
         whole.element,
         list.element,

@@ -1,6 +1,6 @@
 // Position, rotation and control points of items. Pure: every function returns a new item.
 
-import { placed, wrapped } from "../playground/geometry.js";
+import { inFrame, placed, wrapped } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { outlinesOf, valuesOf } from "../playground/parts.js";
 import { poseOf } from "../playground/primitives.js";
@@ -91,7 +91,7 @@ export function withPoint(item, index, place) {
     return changed(item, { [keyX]: x, [keyY]: y });
   }
   const values = valuesOf(item);
-  const own = kind.isRelative ? inFrame(poseOf(values), [x, y]) : [x, y];
+  const own = kind.isRelative ? inFrame(poseOf(values), [x, y]).map(rounded) : [x, y];
   return changed(item, {
     [kind.path]: values[kind.path].map((/** @type {Point} */ point, /** @type {number} */ at) =>
       at === index ? own : point,
@@ -115,12 +115,6 @@ export function yawOf(item) {
 export function roundAngle(angle) {
   const degrees = (wrapped(angle) * 180) / Math.PI;
   return (Math.round(degrees * 1000) / 1000) * (Math.PI / 180) + 0;
-}
-
-/** @param {{ x: number, y: number, yaw: number }} pose @param {Point} place @returns {Point} */
-function inFrame({ x, y, yaw }, [px, py]) {
-  const [[u, v]] = placed({ x: 0, y: 0, yaw: -yaw }, [[px - x, py - y]]);
-  return [rounded(u), rounded(v)];
 }
 
 /** The center of the bounding box of points. @param {readonly Point[]} points @returns {Point} */

@@ -23,7 +23,12 @@ export class Selecting {
   constructor(model) {
     this.model = model;
     /** @type {{ item: Item, handle: Handle, from: Point, z: number } | null} */ this.grabbed = null;
-    /** @type {import("./creator_model.js").Ghost | null} */ this.ghost = null;
+    /** @type {Item | null} the dragged item at its current position */ this.moving = null;
+  }
+
+  /** @returns {import("./creator_model.js").Ghost | null} */
+  get ghost() {
+    return this.moving === null ? null : { item: this.moving, problem: this.model.problemOf(this.moving, this.moving.name) };
   }
 
   /** Pointer down; returns whether something was grabbed. @param {Ray} ray */
@@ -57,7 +62,7 @@ export class Selecting {
     const place = pointOn(ray, grabbed.z);
     if (place === null) return;
     const item = dragged(grabbed, place, model.gridFor(free));
-    this.ghost = item === grabbed.item ? null : { item, problem: model.problemOf(item, item.name) };
+    this.moving = item === grabbed.item ? null : item;
     model.changed();
   }
 
@@ -160,7 +165,7 @@ export class Selecting {
 
   cancel() {
     this.grabbed = null;
-    this.ghost = null;
+    this.moving = null;
     this.model.changed();
   }
 }

@@ -49,6 +49,7 @@ export class CreatorHost {
   render() {
     if (!this.isOpen || this.context === null) return;
     const { store, text } = this.context;
+    void this.session?.ask();
     this.creator?.render(disabledReason(store.state, text("page")));
   }
 
@@ -73,6 +74,7 @@ export class CreatorHost {
       title: this.#title(module),
       report: (phrase) => this.creator?.report(phrase),
       changed: () => this.scene().invalidate(),
+      learn: (items) => context.actions.learnParts(items),
     });
     if (playground !== undefined) {
       this.session.replacePlayground(playground, { word, values: { name: playground.title } }, inFile);
@@ -168,6 +170,7 @@ export class CreatorHost {
       problem: ghost?.problem?.word ?? null,
       cameraOn,
       steps: history.past.length,
+      drawn: [...this.session.world.markers.keys()],
       camera: this.scene().camera.camera.position.toArray(),
     };
   }

@@ -6,6 +6,8 @@ import { FILE, targets } from "../state/index.js";
 import { PARAMETERS, robotTopic } from "../state/names.js";
 import { kindOf, sentenceOf } from "../browser/foreign_files.js";
 import { textOf } from "../browser/text_file.js";
+import { learnParts } from "../playground/parts.js";
+import { textRequest } from "./check_service.js";
 import { RuntimeClient } from "./runtime_client.js";
 
 /** @typedef {import("../protocol/client.js").Client} Client */
@@ -30,10 +32,12 @@ const SHORTEST_PRESS_MS = 120;
 /** The reason for which the simulator does not place something: the name of what is there. */
 const OCCUPIED = /: occupied by '(.*)'$/s;
 
-/** File kinds by file name extension. */
 /** The service that has the log of the run. */
 export const RUN_LOG = "/simulator/get_run_log";
+/** The service that has the primitives of shapes. */
+export const PRIMITIVES = "/simulator/get_primitives";
 
+/** File kinds by file name extension. */
 const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
 
 /** What `kindOf` says of files that are loaded as a program, and as a playground. */
@@ -259,6 +263,19 @@ export class Actions {
     const answer = await this.client.call("/simulator/get_playground");
     this.#report("/simulator/get_playground", answer);
     return answer.ok ? answer.message : null;
+  }
+
+  /**
+   * Ask the simulator how it builds items of a playground; returns whether it has answered.
+   *
+   * @param {readonly import("../playground/parts.js").Item[]} items
+   */
+  learnParts(items) {
+    return learnParts(items, async (shapes) => {
+      const { value } = await this.client.call(PRIMITIVES, textRequest({ shapes }));
+      const [answer] = value?.results ?? [];
+      return answer?.successful ? answer.reason : null;
+    });
   }
 
   /** The log of the run since its last reset, a gzip file; null if the simulator does not give it. */

@@ -36,6 +36,12 @@ export function obstacles(state, name) {
   return [...robots(state), ...solids.map(bodyOf)].filter((body) => body.name !== name);
 }
 
+/** The ground, as convex polygons. @param {State} state */
+export function floors({ markers }) {
+  const all = [...markers.values()].filter(({ ns }) => ns.startsWith("floor/")).map(bodyOf);
+  return all.flatMap(({ outline, pose }) => placed(outline, pose));
+}
+
 /**
  * The first obstacle at a pose of a body, or null.
  *
@@ -70,7 +76,7 @@ export function hit(ray, bodies) {
     if (place === null) continue;
     const body = bodies.find(
       ({ outline, pose, height }) =>
-        z <= height && placed(outline, pose).some((polygon) => inside(polygon, [place.x, place.y])),
+        z <= height && placed(outline, pose).some((polygon) => isInside(polygon, place)),
     );
     if (body !== undefined) return { body, z, ...place };
   }
@@ -162,8 +168,8 @@ export function overlap(one, two) {
   );
 }
 
-/** @param {Point[]} polygon  counter-clockwise @param {Point} point */
-function inside(polygon, [px, py]) {
+/** @param {Point[]} polygon  counter-clockwise @param {{ x: number, y: number }} point */
+export function isInside(polygon, { x: px, y: py }) {
   return polygon.every(([x, y], index) => {
     const [nextX, nextY] = polygon[(index + 1) % polygon.length];
     return (nextX - x) * (py - y) - (nextY - y) * (px - x) >= 0;

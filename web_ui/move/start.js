@@ -2,8 +2,7 @@
 
 import { parse } from "../playground/document.js";
 import { ROBOT_HEIGHT_M, ROBOT_OUTLINE } from "../playground/robot_outline.js";
-import { isOnGround } from "../playground/validation.js";
-import { blocker, obstacles } from "./placed_bodies.js";
+import { blocker, floors, isInside, obstacles } from "./placed_bodies.js";
 
 /** @typedef {import("./placed_bodies.js").Pose} Pose */
 
@@ -26,11 +25,10 @@ export function startOf(state, text, name) {
   const start = { x: own?.x_m ?? 0, y: own?.y_m ?? 0, yaw: own?.yaw_rad ?? 0 };
   const body = { name, robot: name, pose: start, outline: [ROBOT_OUTLINE], height: ROBOT_HEIGHT_M };
   const others = obstacles(state, name);
-  const shapes = items.filter(({ kind }) => kind !== "robot");
+  const grounds = floors(state);
   /** @param {Pose} pose */
   const isFree = (pose) =>
-    blocker(body, pose, others) === null &&
-    isOnGround(shapes, { kind: "robot", name, x_m: pose.x, y_m: pose.y, yaw_rad: pose.yaw });
+    blocker(body, pose, others) === null && (grounds.length === 0 || grounds.some((ground) => isInside(ground, pose)));
   return [start, ...around(start)].find(isFree) ?? start;
 }
 

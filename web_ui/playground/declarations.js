@@ -25,14 +25,14 @@ import builtIn from "./declarations.json" with { type: "json" };
  * @property {"ground" | "paint" | "object"} group
  * @property {Record<string, DeclaredField>} fields   besides `kind` and `name`
  * @property {Record<string, any>} sample             values of a new item
- * @property {import("./primitives.js").Primitive[]} primitives   of the sample, without images
+ * @property {import("./primitives.js").Primitive[]} primitives   of the sample at the origin
  * @property {Record<string, string>} labels          name of the kind, by language
  * @property {Record<string, Record<string, string>>} field_labels   name of each field, by language
  */
 /**
  * @typedef {object} Declarations
  * @property {number} format
- * @property {{ shapes: number, robots: number, translations: number, primitives: number }} limits
+ * @property {{ shapes: number, robots: number, translations: number }} limits
  * @property {string} language           pattern of a language code
  * @property {DeclaredField} coordinate  rule of a coordinate of a point
  * @property {Record<string, DeclaredField>} titles

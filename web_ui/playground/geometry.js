@@ -21,6 +21,12 @@ export function placed({ x, y, yaw }, points) {
   return points.map(([u, v]) => [x + cos * u - sin * v, y + sin * u + cos * v]);
 }
 
+/** A point in the frame of a pose. @param {Pose} pose @param {Point} point @returns {Point} */
+export function inFrame({ x, y, yaw }, [px, py]) {
+  const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
+  return [cos * (px - x) + sin * (py - y), cos * (py - y) - sin * (px - x)];
+}
+
 /**
  * The corners of a rectangle about its center, counter-clockwise.
  *

@@ -5,6 +5,7 @@ import { partsOf } from "./parts.js";
 
 /** @typedef {import("../state/markers.js").Marker} Marker */
 /** @typedef {import("./parts.js").Item} Item */
+/** @typedef {import("./geometry.js").Point} Point */
 /** @typedef {import("./primitives.js").Primitive} Primitive */
 /** @typedef {{ image: ImageBitmap | HTMLCanvasElement, width: number, height: number }} Picture */
 
@@ -15,7 +16,7 @@ export class Markers {
   /** @param {(uri: string) => Picture | null} pictureOf  null while the image is loading */
   constructor(pictureOf) {
     this.pictureOf = pictureOf;
-    /** @type {WeakMap<Item, { layer: number, pictures: string, markers: Marker[] }>} */ this.known = new WeakMap();
+    /** @type {WeakMap<Item, { primitives: Primitive[], layer: number, pictures: string, markers: Marker[] }>} */ this.known = new WeakMap();
   }
 
   /**
@@ -37,7 +38,8 @@ export class Markers {
     const { primitives } = partsOf(item);
     const pictures = primitives.map((part) => part.type === "print" && this.pictureOf(part.image) !== null).join();
     const known = this.known.get(item);
-    if (known !== undefined && known.layer === layer && known.pictures === pictures) return known.markers;
+    const isSame = known?.primitives === primitives && known.layer === layer && known.pictures === pictures;
+    if (isSame) return known.markers;
     /** @type {Marker[]} */ const markers = [];
     const patches = primitives.flatMap((part) => (part.type === "floor" || part.type === "paint" ? [part] : []));
     if (patches.length > 0) markers.push(flat(item.name, patches, layer * LAYER_M));
@@ -48,18 +50,14 @@ export class Markers {
         if (picture !== null) markers.push(print(item.name, index + 1, part, picture, layer * LAYER_M));
       }
     });
-    this.known.set(item, { layer, pictures, markers });
+    this.known.set(item, { primitives, layer, pictures, markers });
     return markers;
   }
 }
 
 /** @param {string} name @param {import("./primitives.js").Patch[]} patches @param {number} z @returns {Marker} */
 function flat(name, patches, z) {
-  const points = patches.flatMap(({ vertices }) =>
-    vertices
-      .slice(2)
-      .flatMap((third, index) => [vertices[0], vertices[index + 1], third].map(([x, y]) => ({ x, y, z: 0 }))),
-  );
+  const points = patches.flatMap(({ vertices }) => fan(vertices, 0));
   return {
     ...marker(`${patches[0].type}/${name}`, 0, MARKER.TRIANGLE_LIST, patches[0].color),
     pose: pose(0, 0, z, 0),
@@ -68,14 +66,34 @@ function flat(name, patches, z) {
 }
 
 /** @param {string} name @param {number} id @param {import("./primitives.js").Solid} part @returns {Marker} */
-function solid(name, id, { pose: { x, y, yaw }, size, radius, height, color }) {
+function solid(name, id, { pose: { x, y, yaw }, size, radius = 0, vertices, height, color }) {
+  if (vertices !== undefined) {
+    const prism = marker(`solid/${name}`, id, MARKER.TRIANGLE_LIST, color);
+    return { ...prism, pose: pose(x, y, height / 2, yaw), points: prismOf(vertices, height / 2) };
+  }
   const [sizeX, sizeY] = size ?? [2 * radius, 2 * radius];
-  const type = size === null ? MARKER.CYLINDER : MARKER.CUBE;
+  const type = size === undefined ? MARKER.CYLINDER : MARKER.CUBE;
   return {
     ...marker(`solid/${name}`, id, type, color),
     pose: pose(x, y, height / 2, yaw),
     scale: { x: sizeX, y: sizeY, z: height },
   };
+}
+
+/** The triangles of a convex polygon. @param {readonly Point[]} vertices @param {number} z */
+function fan(vertices, z) {
+  return vertices
+    .slice(2)
+    .flatMap((third, index) => [vertices[0], vertices[index + 1], third].map(([x, y]) => ({ x, y, z })));
+}
+
+/** The triangles of the top and the sides of a prism. @param {readonly Point[]} vertices @param {number} half  of its height */
+function prismOf(vertices, half) {
+  const sides = vertices.flatMap(([bx, by], index) => {
+    const [ax, ay] = vertices.at(index - 1) ?? [bx, by];
+    return [[ax, ay, -half], [bx, by, -half], [bx, by, half], [ax, ay, -half], [bx, by, half], [ax, ay, half]]; // prettier-ignore
+  });
+  return [...fan(vertices, half), ...sides.map(([x, y, z]) => ({ x, y, z }))];
 }
 
 /**

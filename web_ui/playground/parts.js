@@ -1,8 +1,11 @@
-// The parts of an item, computed once per item: items are immutable.
+// The parts of an item, computed once per item and answer of the simulator: items are immutable.
 
+import { BUILT_IN } from "./declarations.js";
 import { circle, placed, rectangle } from "./geometry.js";
+import { answerCount, noteSilence } from "./kinds/generic.js";
 import { kindNamed } from "./kinds/index.js";
 import { footprintOf, poseOf } from "./primitives.js";
+import { filled } from "./rules.js";
 import { ROBOT_HEIGHT_M, ROBOT_OUTLINE } from "./robot_outline.js";
 
 /** @typedef {Readonly<Record<string, any> & { kind: string, name: string }>} Item  a shape, or the start pose of a robot (kind "robot") */
@@ -11,45 +14,63 @@ import { ROBOT_HEIGHT_M, ROBOT_OUTLINE } from "./robot_outline.js";
 /**
  * @typedef {object} Parts
  * @property {Record<string, any>} values       all values, including defaults
- * @property {import("./primitives.js").Primitive[]} primitives
+ * @property {import("./primitives.js").Primitive[]} primitives   a preview unless exact
+ * @property {boolean} isKnown           whether the simulator has answered for these values
  * @property {boolean} isExact           whether the primitives are those of the simulator
+ * @property {import("./rules.js").Fault | null} fault   why the simulator cannot build it
  * @property {Footprint[]} footprints    ground on which no other body can stand; empty unless exact
  * @property {Point[][]} floors
  */
 
-/** @type {WeakMap<Item, Parts>} */
+const NOTHING = { primitives: [], isKnown: true, fault: null };
+
+/** @type {WeakMap<Item, { parts: Parts, answers: number }>} */
 const KNOWN = new WeakMap();
 
-/** Throws a Fault if the item cannot be built. @param {Item} item @returns {Parts} */
+/** @param {Item} item @returns {Parts} */
 export function partsOf(item) {
   const known = KNOWN.get(item);
-  if (known !== undefined) return known;
-  const kind = kindNamed(item.kind);
+  if (known !== undefined && (known.parts.isKnown || known.answers === answerCount)) return known.parts;
   const values = valuesOf(item);
-  const primitives = kind?.draw(values) ?? [];
-  const isExact = kind === undefined || kind.isExact(values);
-  const solids = primitives.filter((part) => part.type === "solid");
+  const { primitives, isKnown, fault } = kindNamed(item.kind)?.shape?.draw(values) ?? NOTHING;
+  const isExact = isKnown && fault === null;
+  const solids = primitives.flatMap((part) => (part.type === "solid" ? [part] : []));
   const footprints = item.kind === "robot" ? [robotFootprint(values)] : isExact ? solids.map(footprintOf) : [];
   const floors = primitives.flatMap((part) => (part.type === "floor" ? [part.vertices] : []));
-  const parts = { values, primitives, isExact, footprints, floors };
-  KNOWN.set(item, parts);
+  const parts = { values, primitives, isKnown, isExact, fault, footprints, floors };
+  KNOWN.set(item, { parts, answers: answerCount });
   return parts;
+}
+
+/**
+ * Learn the exact parts of items from the simulator, which is asked for each shape once. Returns whether it has answered.
+ *
+ * @param {readonly Item[]} items
+ * @param {(shapes: string) => Promise<string | null>} ask   the drawings of a list of shapes, both in JSON
+ */
+export async function learnParts(items, ask) {
+  const shapes = new Map(
+    items.flatMap((item) => {
+      const shape = kindNamed(item.kind)?.shape;
+      return !shape || partsOf(item).isKnown ? [] : [[shape.framed(valuesOf(item)).request, shape]];
+    }),
+  );
+  const asked = [...shapes].slice(0, BUILT_IN.limits.shapes);
+  if (asked.length === 0) return true;
+  const answer = await ask(`[${asked.map(([request]) => request).join()}]`);
+  if (answer === null) {
+    noteSilence();
+    return false;
+  }
+  const drawings = JSON.parse(answer);
+  asked.forEach(([request, shape], index) => shape.learn(request, drawings[index]));
+  return true;
 }
 
 /** All values of an item, including defaults. @param {Item} item @returns {Record<string, any>} */
 export function valuesOf(item) {
   const fields = kindNamed(item.kind)?.fields ?? {};
   return filled(fields, item);
-}
-
-/** @param {import("./rules.js").Fields} fields @param {Record<string, any>} given @returns {Record<string, any>} */
-function filled(fields, given) {
-  const values = { ...given };
-  for (const [key, field] of Object.entries(fields)) {
-    if (!(key in given)) values[key] = field.default;
-    else if (field.type === "object" && given[key] !== null) values[key] = filled(field.fields ?? {}, given[key]);
-  }
-  return values;
 }
 
 /**

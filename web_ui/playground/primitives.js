@@ -1,4 +1,4 @@
-// The primitives of shapes. Pure; the same as in thymio_sim_ros/sim/model/primitives.py.
+// The primitives of shapes. Pure; as thymio_sim_ros/sim/model/primitive_declarations.py writes them.
 
 import { placed, rectangle } from "./geometry.js";
 
@@ -11,12 +11,13 @@ import { placed, rectangle } from "./geometry.js";
  * @typedef {object} Solid
  * @property {"solid"} type
  * @property {Pose} pose
- * @property {readonly [number, number] | null} size  of a box; null for a disc
- * @property {number} radius                          of a disc
+ * @property {readonly [number, number]} [size]   of a box
+ * @property {number} [radius]                    of a disc
+ * @property {readonly Point[]} [vertices]        of a convex polygon, in the frame of its pose
  * @property {number} height
  * @property {string} color
  */
-/** @typedef {{ type: "print", pose: Pose, sizeX: number, sizeY: number | null, image: string }} Print */
+/** @typedef {{ type: "print", pose: Pose, sizeX: number, sizeY: number | null, image: string }} Print  sizeY: null keeps the proportions of the image */
 /** @typedef {{ type: "trigger", vertices: Point[], door: string }} Trigger */
 /** @typedef {Patch | Solid | Print | Trigger} Primitive */
 
@@ -29,18 +30,13 @@ import { placed, rectangle } from "./geometry.js";
  * @returns {Solid}
  */
 export function boxSolid(pose, sizeX, sizeY, height, color) {
-  return { type: "solid", pose, size: [sizeX, sizeY], radius: 0, height, color };
-}
-
-/** @param {Pose} pose @param {number} radius @param {number} height @param {string} color @returns {Solid} */
-export function discSolid(pose, radius, height, color) {
-  return { type: "solid", pose, size: null, radius, height, color };
+  return { type: "solid", pose, size: [sizeX, sizeY], height, color };
 }
 
 /** The footprint of a solid. @param {Solid} solid @returns {import("./geometry.js").Footprint} */
-export function footprintOf({ pose, size, radius }) {
-  if (size === null) return { middle: [pose.x, pose.y], radius };
-  return { vertices: placed(pose, rectangle(...size)) };
+export function footprintOf({ pose, size: [sizeX, sizeY] = [0, 0], radius, vertices = rectangle(sizeX, sizeY) }) {
+  if (radius !== undefined) return { middle: [pose.x, pose.y], radius };
+  return { vertices: placed(pose, vertices) };
 }
 
 /** The pose of an item with these keys; 0 for a yaw that it lacks. @param {Record<string, any>} values @returns {Pose} */

@@ -81,6 +81,16 @@ export function fits({ type, low = -Infinity, high = Infinity, pattern, longest 
   return type === "image" ? value.startsWith("data:image/") : type === "text" && matches(pattern, value);
 }
 
+/** All values, including defaults. @param {Fields} fields @param {Record<string, any>} given @returns {Record<string, any>} */
+export function filled(fields, given) {
+  const values = { ...given };
+  for (const [key, field] of Object.entries(fields)) {
+    if (!(key in given)) values[key] = field.default;
+    else if (field.type === "object" && given[key] !== null) values[key] = filled(field.fields ?? {}, given[key]);
+  }
+  return values;
+}
+
 /** The expectation of a field, as a phrase. @param {Field} field @returns {Phrase} */
 export function expectation({ type, unit = "", low = 0, high = 0, format, meaning = "", longest = 0, fewest = 0, most = 0 }) {
   if (type === "number") return { word: "fault.number", values: { unit, low: short(low), high: short(high) } };

@@ -1,17 +1,15 @@
-// Checks a playground as a whole, and whether an item can be at its position. Pure.
-// The same rules as in thymio_sim_ros/sim/playground/checks.py: the simulator accepts what passes here.
+// Checks names and doors of a playground, and whether an item can be built and be at its position. Pure.
+// The rules are those of thymio_sim_ros/sim/playground/checks.py; what depends on primitives that the simulator has not
+// computed yet is not checked.
 
 import { containsPoint, overlap } from "./geometry.js";
 import { kindNamed, ROBOT } from "./kinds/index.js";
 import { partsOf, valuesOf } from "./parts.js";
-import { BUILT_IN } from "./declarations.js";
 import { check, Fault } from "./rules.js";
 
 /** @typedef {import("./parts.js").Item} Item */
 /** @typedef {import("./document.js").Playground} Playground */
 /** @typedef {import("./rules.js").Phrase} Phrase */
-
-const MOST_PARTS = BUILT_IN.limits.primitives;
 
 /**
  * The problem of an item among others; null if there is none.
@@ -26,7 +24,8 @@ export function findProblem(others, item) {
   try {
     const { kind: _kind, ...values } = item;
     check({ ...kind.fields, name: ROBOT.fields.name }, values, "");
-    partsOf(item);
+    const { fault } = partsOf(item);
+    if (fault !== null) throw fault;
   } catch (error) {
     if (!(error instanceof Fault)) throw error;
     const { word, values } = error.expected;
@@ -69,6 +68,20 @@ export function isOnGround(others, item) {
   return groundPoints(item).every((point) => floors.some((floor) => containsPoint(floor, point)));
 }
 
+/**
+ * What is wrong with items that were accepted before the simulator had answered, as their names and problems.
+ *
+ * @param {readonly Item[]} items
+ * @returns {{ name: string, problem: Phrase }[]}
+ */
+export function problemsIn(items) {
+  return items.flatMap((item) => {
+    const others = item.kind === "robot" ? items.filter((other) => other !== item) : [];
+    const problem = findProblem(others, item);
+    return problem === null ? [] : [{ name: item.name, problem }];
+  });
+}
+
 /** Items that extend over an edge: the simulator accepts them with a warning. @param {readonly Item[]} items */
 export function itemsOffGround(items) {
   return items.filter((item) => !isOnGround(items, item));
@@ -89,7 +102,7 @@ function groundPoints(item) {
 }
 
 /**
- * Check a playground whose items are valid individually. Throws a Fault with the key of the error.
+ * Check names and doors of a playground whose items are valid individually. Throws a Fault with the key of the error.
  *
  * @param {Playground} playground
  */
@@ -107,19 +120,6 @@ export function checkWhole({ items }) {
       throw new Fault(`${key}.name`, `"${item.name}"`, { word: "fault.ownName", values: { other } });
     seen.set(item.name, key);
   }
-  let count = 0;
-  for (const { item, key } of keyed) {
-    try {
-      count += partsOf(item).primitives.length;
-    } catch (error) {
-      throw error instanceof Fault ? new Fault(`${key}.${error.key}`, error.found, error.expected) : error;
-    }
-    if (count > MOST_PARTS) throw new Fault(key, String(count), { word: "fault.parts", values: { most: MOST_PARTS } });
-  }
-  robots.forEach((robot, index) => {
-    const blocker = blockerOf([...shapes, ...robots.slice(0, index)], robot);
-    if (blocker !== null) throw new Fault(`robots[${index}]`, `"${blocker}"`, { word: "fault.free" });
-  });
   const doors = shapes.filter(({ kind }) => kind === "door").map(({ name }) => name);
   for (const { item, key } of keyed) {
     if (item.kind !== "activation" || doors.includes(item.door)) continue;

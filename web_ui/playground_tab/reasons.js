@@ -22,7 +22,7 @@ const OTHER_KEYS = ["playground", "planes", "thymios"];
 const ITEM = /\b(shapes|robots)\[(\d+)\]\.?(.*)$/s;
 
 /** What the simulator expects, and the phrase that says it. The first that fits counts. */
-const EXPECTED = /** @type {[RegExp, (match: RegExpExecArray, found: string) => Phrase][]} */ ([
+const EXPECTED = /** @type {[RegExp, (match: RegExpExecArray) => Phrase][]} */ ([
   [/^a number of (.+?) from (\S+) to (\S+)$/, ([, unit, low, high]) => number(unit, low, high)],
   [/^a number above (\S+)$/, ([, low]) => ({ word: "fault.above", values: { low } })],
   [/^(?:a number|finite numbers)$/, () => ({ word: "fault.digits" })],
@@ -43,7 +43,9 @@ const EXPECTED = /** @type {[RegExp, (match: RegExpExecArray, found: string) => 
   [/^(?:a simpler playground|fewer|shorter)/, () => ({ word: "fault.tooMuch" })],
   [/^(?:a list|an object)/, () => ({ word: "fault.list" })],
   [/^the name of one, as /, () => ({ word: "fault.several" })],
-  [/^a valid track$/, (_match, found) => trackPhrase(found)],
+  [/^0 or at least half of the width/, () => ({ word: "fault.radius" })],
+  [/^room for the arcs/, () => ({ word: "fault.corners" })],
+  [/^two different points$/, () => ({ word: "fault.places" })],
 ]);
 
 /**
@@ -92,8 +94,9 @@ export function reasonOfMessage({ text: message, line, column }, text = null) {
   const refusal = refusalOf(message);
   if (refusal === null) return { phrase: { word: "fault.other" }, place: null, technical };
   if (isForeign(refusal)) return { phrase: { word: "fault.json" }, place: null, technical };
-  const { item, key } = placeOf(refusal.place);
+  const { list, item, key } = placeOf(refusal.place);
   const phrase = phraseOf(refusal, key);
+  if (text !== null && list !== null) return { ...reasonOfFault(new Fault(refusal.place, refusal.found, phrase), text), technical };
   return { phrase: { ...phrase, values: { key, ...phrase.values } }, place: item ?? lineOf(line, refusal.place), technical };
 }
 
@@ -194,7 +197,7 @@ function phraseOf({ found, expected }, key) {
   if (key === "kind") return { word: "fault.kind" };
   for (const [pattern, phrase] of EXPECTED) {
     const match = pattern.exec(expected);
-    if (match !== null) return phrase(match, found);
+    if (match !== null) return phrase(match);
   }
   return { word: "fault.other" };
 }
@@ -202,11 +205,4 @@ function phraseOf({ found, expected }, key) {
 /** @param {string} unit @param {string} low @param {string} high @returns {Phrase} */
 function number(unit, low, high) {
   return { word: "fault.number", values: { unit, low, high } };
-}
-
-/** What is wrong with a line on the ground. @param {string} found @returns {Phrase} */
-function trackPhrase(found) {
-  if (found === "a single place") return { word: "fault.places" };
-  const key = "corner_radius_m";
-  return found.startsWith("a corner radius") ? { word: "fault.radius", values: { key } } : { word: "fault.corners", values: { key } };
 }

@@ -2,6 +2,7 @@
 
 import { parse } from "../playground/document.js";
 import { Markers } from "../playground/markers.js";
+import { partsOf } from "../playground/parts.js";
 import { Pictures } from "../playground/pictures.js";
 import { worldOf } from "../playground/world.js";
 
@@ -11,9 +12,13 @@ import { worldOf } from "../playground/world.js";
 const SMALL = { width: 240, height: 160 };
 
 export class ThumbnailCache {
-  /** @param {(world: import("../state/index.js").State) => Promise<HTMLCanvasElement>} photograph */
-  constructor(photograph) {
+  /**
+   * @param {(world: import("../state/index.js").State) => Promise<HTMLCanvasElement>} photograph
+   * @param {(items: Playground["items"]) => Promise<unknown>} learn   asks the simulator for exact parts
+   */
+  constructor(photograph, learn) {
     this.photograph = photograph;
+    this.learn = learn;
     this.pictures = new Pictures(() => {});
     this.markers = new Markers((uri) => this.pictures.get(uri));
     /** @type {Map<string, Promise<Sample | null>>} */ this.samples = new Map();
@@ -48,8 +53,9 @@ export class ThumbnailCache {
 
   /** @param {Playground} playground @returns {Promise<Sample>} */
   async #make(playground) {
-    const images = playground.items.filter(({ kind }) => kind === "picture").map(({ image }) => image);
-    await Promise.all(images.map((uri) => this.pictures.read(uri)));
+    await this.learn(playground.items);
+    const parts = playground.items.flatMap((item) => partsOf(item).primitives);
+    await Promise.all(parts.map((part) => part.type === "print" && this.pictures.read(part.image)));
     const drawn = await this.photograph(worldOf(playground.items, this.markers));
     return { playground, picture: smaller(drawn).toDataURL("image/png") };
   }

@@ -19,6 +19,15 @@ export class Store {
     for (const listener of this.listeners) listener();
   }
 
+  /** Resolve when the state meets a condition. @param {(state: State) => boolean} condition @returns {Promise<void>} */
+  until(condition) {
+    return new Promise((resolve) => {
+      const check = () => condition(this.state) && resolve();
+      this.subscribe(check);
+      check();
+    });
+  }
+
   /** @param {() => void} listener */
   subscribe(listener) {
     this.listeners.push(listener);

@@ -170,7 +170,7 @@ def test_a_token_given_as_a_parameter_cannot_be_read(ros, monkeypatch):
 
 def test_read_only_services_are_those_of_this_project_that_only_read():
     is_read_only_service = allow_list(FoxgloveParams().read_only_services)
-    reading = ("/aseba/get_variables", "/a/aseba/list_variables", "/aseba_runtime/check", "/simulator/get_playground")
+    reading = ("/aseba/get_variables", "/a/aseba/list_variables", "/aseba_runtime/check", "/simulator/get_primitives")
     changing = ("/aseba/set_variables", "/aseba/stop", "/simulator/reset", "/simulator/set_poses", "/x/get_coffee")
     assert all(map(is_read_only_service, reading))
     assert not any(map(is_read_only_service, changing))

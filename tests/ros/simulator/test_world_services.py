@@ -58,6 +58,21 @@ def test_the_playground_is_returned_as_json(ros, simulation):
     assert (reported.shapes, reported.robots) == (given.shapes, given.robots)
 
 
+def test_the_primitives_of_shapes_are_returned_as_json(ros, simulation):
+    simulation(playground=ROOM)
+    wall = {"kind": "wall", "start_x_m": 0, "start_y_m": 0, "end_x_m": 1, "end_y_m": 0, "color": "#112233"}
+    shapes = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=json.dumps([wall, {"kind": "hill"}]))
+    request = SetParameters.Request(
+        parameters=[Parameter(name="a", value=shapes), Parameter(name="b", value=numbers(1.0))]
+    )
+    answer, refused = ros.call(SetParameters, "/simulator/get_primitives", request).results
+    drawn, faulty = json.loads(answer.reason)
+    assert drawn["primitives"][0]["size"] == [1.02, 0.02]
+    assert faulty["fault"]["key"] == "kind"
+    assert [answer.successful, refused.successful] == [True, False]
+    assert "expected JSON" in refused.reason
+
+
 def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulation):
     simulation(playground=ROOM)
     states = ros.collect(String, "/simulator/_state")

@@ -71,7 +71,7 @@ def test_every_shape_of_ours_has_a_sample_that_the_simulator_builds(kind: ShapeK
         "rectangle": "ground", "octagon": "ground", "picture": "paint", "track": "paint",
     }.get(kind.name, "object")  # fmt: skip
     assert set(declared["sample"]) <= set(declared["fields"])
-    assert declared["primitives"] or kind.name == "picture"
+    assert declared["primitives"]
 
 
 def test_a_shape_that_cannot_be_built_from_its_fields_alone_counts_as_an_object() -> None:
@@ -89,4 +89,4 @@ def test_the_simulator_gives_the_verdict_of_the_table(case: dict[str, Any]) -> N
         return
     with pytest.raises(reader.PlaygroundError) as refused:
         reader.loads(text, "case")
-    assert refused.value.key == case.get("simulator_key", case["key"])
+    assert refused.value.key == case["key"]

@@ -28,6 +28,7 @@ from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
 from thymio_sim_ros.sim.playground import writer
+from thymio_sim_ros.sim.playground.drawings import drawings
 from thymio_sim_ros.sim.playground.reader import RobotStart
 
 if TYPE_CHECKING:
@@ -53,6 +54,11 @@ SERVICES: Mapping[str, Service] = {
     "~/set_poses": Service(SetParameters, "move robots and objects: name → [x, y, yaw]"),
     "~/get_poses": Service(
         GetParameters, "poses of robots, objects and doors: names → [x, y, yaw]; NOT_SET for unknown names"
+    ),
+    "~/get_primitives": Service(
+        SetParameters,
+        "any name → a JSON list of shapes as in a playground file, without names; `reason`: a JSON list with the"
+        " `primitives` of each, or its `fault` with `key`, `found`, `expected`, `word`",
     ),
     "~/get_playground": Service(Trigger, "`message` is the playground as JSON, with its images"),
     "~/get_run_log": Service(
@@ -99,6 +105,7 @@ class WorldServices:
             "~/remove": self._each(self._remove),
             "~/set_poses": self._each(self._set_pose),
             "~/get_poses": self._get_poses,
+            "~/get_primitives": self._each(self._get_primitives),
             "~/get_playground": self._get_playground,
             "~/get_run_log": self._get_run_log,
         }
@@ -128,9 +135,9 @@ class WorldServices:
         return response
 
     def _each(
-        self, act: Callable[[str, ParameterValue], None]
+        self, act: Callable[[str, ParameterValue], str | None]
     ) -> Callable[[SetParameters.Request, SetParameters.Response], SetParameters.Response]:
-        """Return a service handler that applies `act` to each name and returns a reason where it fails."""
+        """Return a service handler that applies `act` to each name: its answer, or the reason where it fails."""
 
         def answer(request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
             response.results = [self._attempt(act, parameter.name, parameter.value) for parameter in request.parameters]
@@ -140,15 +147,15 @@ class WorldServices:
         return answer
 
     def _attempt(
-        self, act: Callable[[str, ParameterValue], None], name: str, value: ParameterValue
+        self, act: Callable[[str, ParameterValue], str | None], name: str, value: ParameterValue
     ) -> SetParametersResult:
         try:
-            act(name, value)
-        except (FieldError, ValueError) as error:
+            answer = act(name, value)
+        except (FieldError, ValueError, InterruptedError) as error:
             return SetParametersResult(successful=False, reason=str(error))
         except RuntimeError:  # raised by parameter_value_to_python
             return SetParametersResult(successful=False, reason=f"{name}: found a value of unknown type {value.type}")
-        return SetParametersResult(successful=True)
+        return SetParametersResult(successful=True, reason=answer or "")
 
     def _spawn(self, name: str, value: ParameterValue) -> None:
         x, y, yaw = _pose_of(name, value)
@@ -182,6 +189,9 @@ class WorldServices:
                 value.double_array_value = [pose.x_m, pose.y_m, pose.yaw_rad]
             response.values.append(value)
         return response
+
+    def _get_primitives(self, _name: str, value: ParameterValue) -> str:
+        return self._runner.run_beside(lambda: drawings(value.string_value))
 
     def _get_run_log(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         log = self._runner.run_log()

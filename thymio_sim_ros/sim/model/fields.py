@@ -70,14 +70,18 @@ def _clipped(text: str) -> str:
 
 
 class FieldError(ThymioSimError):
-    """A value that a field refuses: the key's path, what was found, what was expected."""
+    """A value that a field refuses: the key's path, what was found, what was expected.
 
-    def __init__(self, key: str, found: str, expected: str) -> None:
+    `word` names the rule in the texts of the page (`fault.<word>`), if it is one between fields of a shape.
+    """
+
+    def __init__(self, key: str, found: str, expected: str, word: str = "") -> None:
         key, found, expected = (_clipped(part) for part in (key, found, expected))
         super().__init__(f"{key}: found {found}, expected {expected}")
         self.key = key
         self.found = found
         self.expected = expected
+        self.word = word
 
 
 @dataclass(frozen=True, slots=True)

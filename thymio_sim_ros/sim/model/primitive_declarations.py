@@ -1,7 +1,9 @@
 """Primitives as JSON, as the page draws them (`web_ui/playground/primitives.js`).
 
-- `solid`: `pose`, `size` of a box or null for a disc with `radius`, `height`, `color`
+- `solid`: `pose`, `height`, `color` and its outline: `size` of a box, `radius` of a disc, or `vertices` of a convex
+  polygon in the frame of the pose
 - `floor` and `paint`: `vertices`, `color`
+- `print`: `pose`, `sizeX`, `sizeY`
 - `trigger`: `vertices`, `door`
 
 Lengths are in m, poses have `x`, `y` and `yaw` in rad, colors are `#rrggbb`.
@@ -13,40 +15,43 @@ from collections.abc import Iterable
 from typing import Any
 
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.model.primitives import Box, Color, Disc, Floor, Outline, Paint, Primitive, Solid, Trigger
+from thymio_sim_ros.sim.model.primitives import Box, Disc, Floor, Outline, Paint, Primitive, Print, Solid, Trigger
 
 __all__ = ["primitive_declarations"]
 
 
 def primitive_declarations(primitives: Iterable[Primitive]) -> list[dict[str, Any]]:
-    """Each primitive as an object; images on the ground are left out, since the page has them as files."""
+    """Each primitive as an object, prints without their pixels."""
     found: list[dict[str, Any]] = []
     for primitive in primitives:
         match primitive:
             case Solid(_, pose, outline, height_m, color):
-                found.append({"type": "solid", **_solid(pose, outline), "height": height_m, "color": _hex(color)})
+                outlined = {"pose": _pose(pose), **_outline(outline)}
+                found.append({"type": "solid", **outlined, "height": height_m, "color": _hex(color)})
             case Floor(_, vertices, color):
                 found.append({"type": "floor", "vertices": vertices, "color": _hex(color)})
             case Paint(_, vertices, color):
                 found.append({"type": "paint", "vertices": vertices, "color": _hex(color)})
+            case Print(_, pose, size_x_m, size_y_m):
+                found.append({"type": "print", "pose": _pose(pose), "sizeX": size_x_m, "sizeY": size_y_m})
             case Trigger(_, vertices, door):
                 found.append({"type": "trigger", "vertices": vertices, "door": door})
     return found
 
 
-def _solid(pose: Pose, outline: Outline) -> dict[str, Any]:
-    """Pose, size and radius; of a polygon those of its bounding box, since the page draws boxes and discs only."""
+def _outline(outline: Outline) -> dict[str, Any]:
     match outline:
-        case Disc(radius_m):
-            size, radius = None, radius_m
         case Box(size_x_m, size_y_m):
-            size, radius = [size_x_m, size_y_m], 0.0
+            return {"size": (size_x_m, size_y_m)}
+        case Disc(radius_m):
+            return {"radius": radius_m}
         case _:
-            xs, ys = zip(*outline.vertices, strict=True)
-            size, radius = [max(xs) - min(xs), max(ys) - min(ys)], 0.0
-            pose = Pose(*pose.place(((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)), pose.yaw_rad)
-    return {"pose": {"x": pose.x_m, "y": pose.y_m, "yaw": pose.yaw_rad}, "size": size, "radius": radius}
+            return {"vertices": outline.vertices}
 
 
-def _hex(color: Color) -> str:
+def _pose(pose: Pose) -> dict[str, float]:
+    return {"x": pose.x_m, "y": pose.y_m, "yaw": pose.yaw_rad}
+
+
+def _hex(color: tuple[float, ...]) -> str:
     return "#" + "".join(f"{round(255 * part):02x}" for part in color)

@@ -15,7 +15,7 @@ from typing import Any
 from thymio_sim_ros.sim.model.field_declarations import field_declarations, number_declaration
 from thymio_sim_ros.sim.model.fields import LANGUAGE, Coordinate, hinted_rule
 from thymio_sim_ros.sim.playground.model import RobotStart, Translation
-from thymio_sim_ros.sim.playground.reader import FORMAT, MAX_PRIMITIVES, MAX_ROBOTS, MAX_SHAPES, MAX_TRANSLATIONS
+from thymio_sim_ros.sim.playground.reader import FORMAT, MAX_ROBOTS, MAX_SHAPES, MAX_TRANSLATIONS
 from thymio_sim_ros.sim.shapes import ShapeKind, declaration, own_shapes
 
 __all__ = ["as_json", "declarations"]
@@ -33,7 +33,6 @@ def declarations(kinds: Iterable[ShapeKind]) -> dict[str, Any]:
             "shapes": MAX_SHAPES,
             "robots": MAX_ROBOTS,
             "translations": MAX_TRANSLATIONS,
-            "primitives": MAX_PRIMITIVES,
         },
         "language": LANGUAGE,
         "coordinate": number_declaration(hinted_rule(Coordinate)[0]),

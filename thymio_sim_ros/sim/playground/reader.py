@@ -39,7 +39,7 @@ from thymio_sim_ros.sim.playground.model import (
     Translation,
 )
 from thymio_sim_ros.sim.playground.start_poses import set_free
-from thymio_sim_ros.sim.shapes import ShapeKind, all_shapes
+from thymio_sim_ros.sim.shapes import ShapeKind, all_shapes, primitives_of
 
 __all__ = [
     "Headline",
@@ -282,14 +282,10 @@ def _primitives(shapes: tuple[NamedShape, ...], notes: list[str]) -> list[Primit
     for index, named in enumerate(shapes):
         known = len(notes)
         try:
-            found.extend(named.shape.primitives(named.name))
+            found.extend(primitives_of(named.kind, named.shape, named.name))
         except FieldError as error:
-            raise FieldError(f"shapes[{index}].{error.key}", error.found, error.expected) from error
-        except ValueError as error:
-            raise FieldError(f"shapes[{index}]", str(error), f"a valid {named.kind}") from error
-        except Exception as error:  # of a shape that another package added
-            found_error = f"{type(error).__name__}: {error}"
-            raise FieldError(f"shapes[{index}]", found_error, f"a valid {named.kind}") from error
+            key = f"shapes[{index}].{error.key}".removesuffix(".")
+            raise FieldError(key, error.found, error.expected) from error
         notes[known:] = [f"shapes[{index}].{note}" for note in notes[known:]]
         if len(found) > MAX_PRIMITIVES:
             raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts", "a simpler playground")

@@ -10,7 +10,7 @@ import itertools
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.model.fields import Extent, Points, Radius, Shade, as_color
+from thymio_sim_ros.sim.model.fields import Extent, FieldError, Points, Radius, Shade, as_color
 from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Paint, Primitive
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -47,16 +47,17 @@ class Track:
     def stations(self) -> tuple[_Station, ...]:
         """The middle line: x, y in m and direction in rad, two stations for each straight piece and arc step.
 
-        ValueError when all points are one, when arcs are tighter than half the width, or when the arcs at both
+        FieldError when all points are one, when arcs are tighter than half the width, or when the arcs at both
         ends of a piece need more than its length.
         """
         if 0.0 < self.corner_radius_m < self.width_m / 2:
-            raise ValueError("a corner radius below half of the width")
+            expected = f"0 or at least half of the width ({self.width_m / 2:g})"
+            raise FieldError("corner_radius_m", f"{self.corner_radius_m:g}", expected, "radius")
         points = [point for index, point in enumerate(self.points_m) if index == 0 or point != self.points_m[index - 1]]
         if self.closed and len(points) > 1 and points[0] == points[-1]:
             points.pop()
         if len(points) < 2:
-            raise ValueError("a single place")
+            raise FieldError("points_m", "a single place", "two different points", "places")
         ring = [*points, points[0]] if self.closed else points
         directions = [math.atan2(by - ay, bx - ax) for (ax, ay), (bx, by) in itertools.pairwise(ring)]
         stations: list[_Station] = []
@@ -67,7 +68,8 @@ class Track:
             after = direction if is_last else directions[(index + 1) % len(directions)]
             cut_begin, cut_end = self._cut(before, direction), self._cut(direction, after)
             if cut_begin + cut_end > math.dist(begin, end) + _SAME_PLACE_M:
-                raise ValueError(f"the piece from {begin} to {end} is too short for its corners")
+                expected = f"room for the arcs on the piece from {begin} to {end}"
+                raise FieldError("corner_radius_m", f"{self.corner_radius_m:g}", expected, "corners")
             cos, sin = math.cos(direction), math.sin(direction)
             stations.append((begin[0] + cut_begin * cos, begin[1] + cut_begin * sin, direction))
             stations.append((end[0] - cut_end * cos, end[1] - cut_end * sin, direction))

@@ -1,21 +1,9 @@
-// The kinds of items in a playground: what is declared of them in Python, and how the page draws and places them.
-// A kind without a function here is drawn by its declaration (`generic.js`).
+// The kinds of items in a playground: what is declared of them in Python, and how the page places them.
 
 import { BUILT_IN } from "../declarations.js";
-import { activation } from "./activation.js";
-import { box } from "./box.js";
-import { cylinder } from "./cylinder.js";
-import { door } from "./door.js";
 import { GenericShape } from "./generic.js";
-import { octagon } from "./octagon.js";
-import { picture } from "./picture.js";
-import { rectangle } from "./rectangle.js";
-import { track } from "./track.js";
-import { uFigure } from "./u_figure.js";
-import { wall } from "./wall.js";
 
 /** @typedef {import("../declarations.js").DeclaredShape} DeclaredShape */
-/** @typedef {(values: Record<string, any>) => import("../primitives.js").Primitive[]} Draw  from all values */
 /**
  * How an item is placed: by one point, by its two ends, or by any number of points.
  *
@@ -33,12 +21,9 @@ import { wall } from "./wall.js";
  * @property {string | undefined} path     key of a list of points
  * @property {boolean} isRelative          whether the path is in the frame of the item
  * @property {Placement} placement
- * @property {Draw} draw                   its primitives
- * @property {(values: Record<string, any>) => boolean} isExact   whether they are those of the simulator
+ * @property {GenericShape | null} shape   its drawing; null for robots
  */
 
-/** @type {Record<string, Draw>} */
-const DRAWN = { activation, box, cylinder, door, octagon, picture, rectangle, track, u_figure: uFigure, wall };
 const ENDS = ["start_x_m", "start_y_m", "end_x_m", "end_y_m"];
 
 export const ROBOT = kindOf("robot", "robot", {
@@ -93,10 +78,7 @@ function kindOf(name, group, declared) {
   const hasEnds = ENDS.every((key) => points.flat().includes(key));
   /** @type {Placement} */ const placement = hasEnds ? "ends" : path !== undefined && !isRelative ? "path" : "center";
   const kind = { name, group, fields, sample, labels, fieldLabels, points, path, isRelative, placement };
-  const draw = group === "robot" ? () => [] : DRAWN[name];
-  if (draw !== undefined) return { ...kind, draw, isExact: () => true };
-  const shape = new GenericShape(kind, declared.primitives);
-  return { ...kind, draw: (values) => shape.draw(values), isExact: (values) => shape.isSample(values) };
+  return { ...kind, shape: group === "robot" ? null : new GenericShape(kind, declared.primitives) };
 }
 
 /**
