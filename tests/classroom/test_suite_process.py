@@ -92,3 +92,19 @@ def test_a_suite_that_cannot_be_forked_is_an_error_of_the_system(tmp_path: Path)
         [sys.executable, "start.py"], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=PROGRAM_S
     )
     assert "has ended" in done.stdout, done.stderr
+
+
+@pytest.mark.process
+def test_the_suites_of_a_class_share_the_installed_playgrounds() -> None:
+    program = textwrap.dedent("""\
+        import thymio_sim_ros.cli.preload
+        from thymio_sim_ros.files.loading import load_playground
+        from thymio_sim_ros.sim.playground import reader
+
+        del reader.load
+        print(load_playground("maze")[0])
+    """)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False, timeout=PROGRAM_S
+    )
+    assert done.stdout == "maze\n", done.stderr

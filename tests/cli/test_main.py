@@ -143,6 +143,22 @@ def test_the_runner_repeats_itself_bit_for_bit(capsys):
 
 
 @pytest.mark.process
+def test_only_the_chosen_subcommand_is_imported():
+    script = (
+        "import sys\n"
+        "from thymio_sim_ros.cli import main as cli\n"
+        "try:\n"
+        "    cli.main(['--version'])\n"
+        "finally:\n"
+        "    print([word for word in ('suite', 'grade', 'sweep') if f'{cli.__package__}.{word}' in sys.modules])\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=PATIENCE_S, check=False
+    )
+    assert result.stdout.splitlines()[-1] == "['suite']", result.stderr
+
+
+@pytest.mark.process
 def test_the_runner_needs_no_ros():
     script = (
         "import sys\n"

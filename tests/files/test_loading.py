@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import errno
 import json
+import os
 import zipfile
 from pathlib import Path
 
@@ -79,6 +80,20 @@ def test_one_of_several_playgrounds_in_an_upload_is_a_part_of_it(tmp_path: Path)
     content = base64.b64encode(several(tmp_path).read_bytes()).decode()
     name, loaded = load_playground(f"data:application/octet-stream;name=maps.zip;part=maps%2Fb.json;base64,{content}")
     assert (name, loaded.title) == ("maps.zip#maps/b.json", "Ours")
+
+
+def test_an_installed_playground_is_read_once_until_its_file_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "ours.json"
+    monkeypatch.setattr(resources, "playgrounds", lambda: {"ours": file})
+    file.write_text(OURS)
+    os.utime(file, ns=(0, 1_000_000_000))
+    _, first = load_playground("ours")
+    assert load_playground(str(file))[1] is first
+    file.write_text(OURS.replace("Ours", "Mine"))
+    os.utime(file, ns=(0, 2_000_000_000))
+    assert load_playground("ours")[1].title == "Mine"
 
 
 def test_errors_of_an_upload_name_its_file() -> None:

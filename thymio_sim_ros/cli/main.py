@@ -8,32 +8,34 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 
 from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal
-from thymio_sim_ros.cli import classroom, convert, doctor, env, foxglove_layout, grade, replay, runner, suite, sweep
 from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
 
-COMMANDS: Mapping[str, Callable[[Sequence[str]], int]] = {
-    "runner": runner.run,
-    "class": classroom.run,
-    "convert": convert.run,
-    "doctor": doctor.run,
-    "env": env.run,
-    "foxglove-layout": foxglove_layout.run,
-    "grade": grade.run,
-    "replay": replay.run,
-    "sweep": sweep.run,
+COMMANDS: Mapping[str, str] = {
+    "runner": "runner",
+    "class": "classroom",
+    "convert": "convert",
+    "doctor": "doctor",
+    "env": "env",
+    "foxglove-layout": "foxglove_layout",
+    "grade": "grade",
+    "replay": "replay",
+    "sweep": "sweep",
 }
+"""The module of each subcommand. Only that of the chosen one is imported, which makes the start of the suite faster."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv` (default: that of the process); return the exit code."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    command: Callable[[Sequence[str]], int] = suite.run
+    module = "suite"
     if arguments and arguments[0] in COMMANDS:
-        command = COMMANDS[arguments.pop(0)]
+        module = COMMANDS[arguments.pop(0)]
+    command: Callable[[Sequence[str]], int] = import_module(f"thymio_sim_ros.cli.{module}").run
     try:
         return command(arguments)
     except BrokenPipeError:  # the reader has closed the pipe, as `head` does

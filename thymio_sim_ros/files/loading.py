@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import functools
 import itertools
 import logging
 import re
@@ -39,6 +40,8 @@ _UPLOAD = re.compile(
 )
 _PART = "#"
 """Before the name of one of several playgrounds in an archive."""
+_MAX_KEPT = 32
+"""Number of installed playgrounds that are kept."""
 _UNNAMED = "uploaded playground"
 _PLAYGROUNDS = 'JSON with "format": 1, XML with <aseba-playground>, or a zip that holds one'
 _FOREIGN_PROGRAMS = frozenset(f"foreign-{kind}" for kind in ("blocks", "python", "ros", "scratch", "tdmclient", "vpl3"))
@@ -72,12 +75,21 @@ def load_playground(value: str) -> tuple[str, Playground]:
         return loaded.title, loaded
     path, part = _archive_and_part(value)
     try:
-        loaded = playgrounds.load(path, part)
+        if path in resources.playgrounds().values():
+            loaded = _load_installed(path, path.stat().st_mtime_ns)
+        else:
+            loaded = playgrounds.load(path, part)
         return loaded.name, loaded
     except PlaygroundError:
         if _may_be_quoted(path):
             raise
         raise PlaygroundError(str(path), "", "a file that is not a playground", _PLAYGROUNDS + _hint(path)) from None
+
+
+@functools.lru_cache(maxsize=_MAX_KEPT)
+def _load_installed(path: Path, _changed_ns: int) -> Playground:
+    """A playground that is installed with the code, read once per process."""
+    return playgrounds.load(path)
 
 
 def _hint(path: Path) -> str:

@@ -97,6 +97,7 @@ def folders(group: str) -> tuple[Path, ...]:
 
 def clear_cache() -> None:
     """Clear the caches, so that plug-ins of other packages are searched again."""
+    _installed.cache_clear()
     folders.cache_clear()
     _external.cache_clear()
 
@@ -125,8 +126,14 @@ def _external(
     return tuple(found.values())
 
 
+@functools.cache
+def _installed() -> importlib.metadata.SelectableGroups | importlib.metadata.EntryPoints:
+    """The entry points of all packages, which takes a file of each to read."""
+    return importlib.metadata.entry_points()
+
+
 def _entries(group: str) -> list[importlib.metadata.EntryPoint]:
-    return sorted(importlib.metadata.entry_points(group=group), key=lambda entry: (entry.name, entry.value))
+    return sorted(_installed().select(group=group), key=lambda entry: (entry.name, entry.value))
 
 
 def _log_skipped(entry: importlib.metadata.EntryPoint, error: Exception) -> None:
