@@ -95,8 +95,11 @@ def test_a_suite_that_cannot_be_forked_is_an_error_of_the_system(tmp_path: Path)
 
 
 @pytest.mark.process
-def test_the_suites_of_a_class_share_the_installed_playgrounds() -> None:
+def test_the_suites_of_a_class_share_its_playground() -> None:
     program = textwrap.dedent("""\
+        from thymio_sim_ros.classroom.suite_process import preload
+
+        preload("thymio_sim_ros.cli.preload", "maze")
         import thymio_sim_ros.cli.preload
         from thymio_sim_ros.files.loading import load_playground
         from thymio_sim_ros.sim.playground import reader

@@ -23,12 +23,23 @@ from pathlib import Path
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.classroom.folder import Place
 
-__all__ = ["SuiteOptions", "SuiteProcess", "command", "discovery", "environment", "preload", "reason_of_end"]
+__all__ = [
+    "PLAYGROUND_VARIABLE",
+    "SuiteOptions",
+    "SuiteProcess",
+    "command",
+    "discovery",
+    "environment",
+    "preload",
+    "reason_of_end",
+]
 
 END_S = 6.0
 """Time until a suite that was asked to end is killed; it ends within 5 s."""
 BATCH_TICKS, CLOCK_HZ = 3, 20.0
 """Readings reach programs up to 30 ms later, and a suite takes almost half less of a processor (docs/classroom.md)."""
+PLAYGROUND_VARIABLE = "THYMIO_SIM_CLASS_PLAYGROUND"
+"""Environment variable of the process from which suites are forked: the playground of the class."""
 _LAST_BYTES = 4096
 _PROCESSES = (
     multiprocessing.get_context("forkserver") if sys.platform == "linux" else multiprocessing.get_context("spawn")
@@ -88,8 +99,9 @@ def discovery(given: Mapping[str, str]) -> dict[str, str]:
     return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **given}
 
 
-def preload(module: str) -> None:
-    """Import a module for all suites that start from now on, where they are forked."""
+def preload(module: str, playground: str = "") -> None:
+    """Import a module for all suites that start from now on, where they are forked; it finds the playground's name."""
+    os.environ[PLAYGROUND_VARIABLE] = playground
     _PROCESSES.set_forkserver_preload([module])
 
 

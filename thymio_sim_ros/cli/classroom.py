@@ -53,7 +53,7 @@ def run(argv: Sequence[str]) -> int:
     check_files(given.playground, given.program, "", THYMIO)
     options = SuiteOptions(given.address, given.first_port, given.playground, given.program, _first_domain(given))
     if options.first_domain is None:
-        preload(PRELOADED)
+        preload(PRELOADED, given.playground)
     with contextlib.ExitStack() as stack:
         path = given.folder or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="thymio-class-")))
         try:

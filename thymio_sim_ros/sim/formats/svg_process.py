@@ -25,7 +25,7 @@ MAX_SECONDS = 2.0
 
 Processor time, so that a picture that is drawn alone is also drawn while the computer is busy.
 """
-_PATIENCE = 1 if sys.platform == "win32" else 5
+_PATIENCE = 1 if sys.platform == "win32" else 30
 """Wall time that a process has, in units of its processor time, which Windows does not limit."""
 MAX_MEMORY = 512 * 1024 * 1024
 """Bytes of address space that drawing one may take, where the system can limit it."""
