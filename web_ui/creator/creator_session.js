@@ -84,13 +84,22 @@ export class CreatorSession {
     return this.sketched;
   }
 
+  /** What is shown, with the item that is being placed. */
+  get #items() {
+    const { playground, ghost } = this.model;
+    return ghost === null ? playground.items : [...playground.items, ghost.item];
+  }
+
+  /** Whether the simulator has answered for all that is shown. */
+  get isKnown() {
+    return this.#items.every((item) => partsOf(item).isKnown);
+  }
+
   /** Call once per frame: asks the simulator for unknown parts of what is shown, a few times per second. */
   async ask() {
-    const { playground, ghost } = this.model;
-    const items = ghost === null ? playground.items : [...playground.items, ghost.item];
-    if (this.isAsking || items.every((item) => partsOf(item).isKnown)) return;
+    if (this.isAsking || this.isKnown) return;
     this.isAsking = true;
-    const hasAnswer = await this.learn(items);
+    const hasAnswer = await this.learn(this.#items);
     const goOn = () => {
       this.isAsking = false;
       if (hasAnswer) this.onChange(); // what was changed meanwhile

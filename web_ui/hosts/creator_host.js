@@ -13,6 +13,7 @@ import { keepFocus } from "../ui/focus.js";
 /** @typedef {import("../creator/index.js").Creator} Creator */
 /** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
 /** @typedef {import("../playground/document.js").Playground} Playground */
+/** @typedef {import("../playground/parts.js").Item} Item */
 /** @typedef {import("../shell/context.js").Context} Context */
 
 export class CreatorHost {
@@ -29,6 +30,8 @@ export class CreatorHost {
     this.isOpen = false;
     /** Whether the tab continues the session when it is shown again. */
     this.isSuspended = false;
+    /** Whether what was opened is seen as a preview, whose size is not exact. */
+    this.isPreview = false;
     /** @type {typeof import("../creator/index.js") | null} */ this.module = null;
     /** @type {CreatorSession | null} */ this.session = null;
     /** @type {Creator | null} */ this.creator = null;
@@ -69,17 +72,19 @@ export class CreatorHost {
     const module = await this.#load();
     const { context } = this;
     if (module === null || context === null) return;
+    const isFirst = this.session === null;
     this.session ??= new module.CreatorSession({
       drafts: this.drafts,
       title: this.#title(module),
       report: (phrase) => this.creator?.report(phrase),
       changed: () => this.scene().invalidate(),
-      learn: (items) => context.actions.learnParts(items),
+      learn: (items) => this.#learn(items),
     });
     if (playground !== undefined) {
       this.session.replacePlayground(playground, { word, values: { name: playground.title } }, inFile);
       this.scene().reframe();
     }
+    this.isPreview = (isFirst || playground !== undefined) && !this.session.isKnown;
     this.isSuspended = false;
     context.workspace.select("playground");
     if (!this.isOpen) {
@@ -182,6 +187,16 @@ export class CreatorHost {
   }
 
   #keep = () => this.session?.keep();
+
+  /** Ask the simulator for exact parts; the first ones of what was opened are framed. @param {readonly Item[]} items */
+  async #learn(items) {
+    const hasAnswer = (await this.context?.actions.learnParts(items)) ?? false;
+    if (hasAnswer && this.isPreview) {
+      this.isPreview = false;
+      this.scene().reframe();
+    }
+    return hasAnswer;
+  }
 
   /** The creator's module; null if the page's server is gone. */
   async #load() {
