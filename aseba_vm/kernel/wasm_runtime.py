@@ -68,13 +68,15 @@ class WasmRuntime:
         atexit.register(self._close)
 
     def _config(self) -> Any:
-        """A configuration in which memories reserve only the address space of their size.
+        """A configuration in which memories reserve only the address space of their size, and no thread compiles.
 
         The default of 4 GB each fails where address space is limited (`ulimit -v`, batch systems). The memories never
-        grow, so no space behind them is needed either; bounds are checked explicitly, which measured no slower.
+        grow, so no space behind them is needed either; bounds are checked explicitly, which measured no slower. The
+        threads that would compile large modules do not survive a fork, and modules are small.
         """
         config = self.wasmtime.Config()
         for name, value in (
+            ("parallel_compilation", False),
             ("memory_reservation", _PAGE),
             ("memory_reservation_for_growth", 0),
             ("memory_guard_size", _PAGE),

@@ -95,19 +95,24 @@ def test_a_suite_that_cannot_be_forked_is_an_error_of_the_system(tmp_path: Path)
 
 
 @pytest.mark.process
-def test_the_suites_of_a_class_share_its_playground() -> None:
+def test_the_suites_of_a_class_share_what_one_has_made() -> None:
     program = textwrap.dedent("""\
+        import threading
         from thymio_sim_ros.classroom.suite_process import preload
 
         preload("thymio_sim_ros.cli.preload", "maze")
         import thymio_sim_ros.cli.preload
+        from aseba_vm.kernel.wasm_runtime import WasmRuntime
+        from thymio_sim_ros.engine.engine import Engine
         from thymio_sim_ros.files.loading import load_playground
         from thymio_sim_ros.sim.playground import reader
 
-        del reader.load
-        print(load_playground("maze")[0])
+        del reader.load, WasmRuntime.compile
+        name, playground = load_playground("maze")
+        Engine(playground).run(1.0)
+        print(name, threading.active_count())
     """)
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=False, timeout=PROGRAM_S
     )
-    assert done.stdout == "maze\n", done.stderr
+    assert done.stdout == "maze 1\n", done.stderr

@@ -8,17 +8,27 @@ Simulator and Aseba runtime share one thread and one engine.
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 
+import rclpy
 from rclpy.context import Context
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
 from thymio_sim_ros.ros.compat import dds_profile
-from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, RunnableNode, StartError, announce, run_main
+from thymio_sim_ros.ros.rclpy_ext.node_runner import (
+    SPIN_SLICE_S,
+    AnnouncedNode,
+    NodeRunner,
+    RunnableNode,
+    StartError,
+    announce,
+    run_main,
+)
 from thymio_sim_ros.ros.rclpy_ext.peers import PeerContext
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.suite_config import SuiteConfig
@@ -101,6 +111,24 @@ def _log(node: Node, warnings: Sequence[str]) -> None:
 def run(suite: SuiteConfig, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:
     """Run the suite until SIGINT or SIGTERM; return the exit code. `args` are ROS arguments (None: of the process)."""
     return _run(suite, args, lambda nodes: nodes, on_ready)
+
+
+def run_ticks(suite: SuiteConfig, ticks: int) -> None:
+    """Run the suite until its world has made so many ticks, and end it; no thread remains. Raises StartError."""
+    context = Context()
+    rclpy.init(context=context, args=[])
+    runner = NodeRunner(context)
+    try:
+        nodes = list(suite_nodes(context, suite))
+        for node in nodes:
+            runner.start(node)
+        simulator = nodes[0]
+        assert isinstance(simulator, Simulator)
+        while simulator.runner.engine.tick < ticks and runner.failure is None:
+            time.sleep(SPIN_SLICE_S)
+    finally:
+        runner.close()
+        rclpy.shutdown(context=context)
 
 
 def main(args: Sequence[str] | None = None) -> int:
