@@ -61,12 +61,13 @@ test-all: $(VENV)/.ready-test web  ## every night: all tests, also the long ones
 	@echo "Hypothesis explores with seed $(SEED); make test-all SEED=$(SEED) repeats it."
 	@$(TEST) --hypothesis-profile explore --hypothesis-seed $(SEED) $(ARGS)
 
-# The suite on another computer, with that computer's Python on this one (docs/platforms.md).
+# The suite on another computer, with that computer's Python on this one (docs/platforms.md), also driven by the page.
+OTHER_COMPUTER := tests/platforms tests/web_ui/test_page_run_log.py -m 'not slow'
 windows-test: build/platforms/windows/python $(VENV)/.ready-test web  ## the suite with Python for Windows, under Wine
-	@THYMIO_TEST_PYTHON=$< $(TEST) tests/platforms $(ARGS)
+	@THYMIO_TEST_PYTHON=$< $(TEST) $(OTHER_COMPUTER) $(ARGS)
 
 arm64-test: build/platforms/arm64/python $(VENV)/.ready-test web  ## the suite with Python for ARM64, under QEMU
-	@THYMIO_TEST_PYTHON=$< $(TEST) tests/platforms $(ARGS)
+	@THYMIO_TEST_PYTHON=$< $(TEST) $(OTHER_COMPUTER) $(ARGS)
 
 build/platforms/%/python: .ci/%-python .ci/lib-platforms pyproject.toml
 	@.ci/$*-python build/platforms/$*
