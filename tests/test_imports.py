@@ -65,6 +65,7 @@ RULES = {
     f"{OURS}.files": Rule(_names("aseba_vm", "device", "files", "sim")),
     f"{OURS}.names": Rule(_names("bridge.access", "names")),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
+    f"{OURS}.bridge.rosbridge": Rule(_names("bridge"), frozenset({"cbor2"}), NO_WALL_CLOCK),
     f"{OURS}.web": Rule(
         _names("web", "bridge", "files.playground_index", "files.resources", "sim"), frozenset({"aiohttp"})
     ),
@@ -91,6 +92,7 @@ RULES = {
     f"{OURS}.classroom.server": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
+    f"{OURS}.ros.foxglove.rosbridge.values": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS | {"cbor2", "numpy"}),
     f"{OURS}.tf": Rule(
         _names("course_packages", "tf", "ros.compat.tf2_messages", "ros.rclpy_ext.throttled_log"),
         ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},

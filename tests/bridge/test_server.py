@@ -63,7 +63,7 @@ def test_a_client_connects_with_either_version_of_tls(tmp_path: Path, version: s
 
 def test_a_client_of_another_protocol_is_rejected() -> None:
     async def scenario() -> None:
-        async with bridge() as server, connect(server.url):
+        async with bridge() as server, connect(server.url, subprotocols=[Subprotocol("chat")]):
             pass
 
     with pytest.raises(InvalidStatus, match="400"):

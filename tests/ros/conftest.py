@@ -75,3 +75,12 @@ def simulator_with(ros):
     for simulator in made:
         simulator.close()
     context.try_shutdown()
+
+
+@pytest.fixture
+def roslib(ros, bridge):
+    """A client of rosbridge, of a bridge with default parameters."""
+    from tests.bridge.ros_client import RosClient
+
+    with RosClient(bridge().port, ros.until) as client:
+        yield client

@@ -1,6 +1,7 @@
-"""A Foxglove WebSocket server for any data source, independent of ROS and of robots.
+"""A server of Foxglove WebSocket and of rosbridge for any data source, independent of ROS and of robots.
 
     protocol/                      messages of the protocol and their encoding
+    rosbridge/                     a second protocol: operations and their encoding
     switchboard/                   clients, channels and subscriptions: all state and decisions, without sockets;
                                    events to the data source and commands from it
     server, server_thread          sockets and their event loop

@@ -16,6 +16,7 @@ from thymio_sim_ros.bridge.framing import data_frame, framed
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.protocol.messages import Status
 from thymio_sim_ros.bridge.protocol.wire import encode_server
+from thymio_sim_ros.bridge.rosbridge import frames
 from thymio_sim_ros.bridge.transport import SharedConnection
 
 SendFunction = Callable[[int, bytes], bool]
@@ -23,18 +24,18 @@ SendFunction = Callable[[int, bytes], bool]
 
 _CONTROL_FACTOR = 8
 _WARNING_PERIOD_S = 30.0
-_WARNING = framed(
-    encode_server(
-        # The vendor's clients recognize the first words and show a hint.
-        Status(StatusLevel.WARNING, "Send buffer limit reached: this connection is slow, only newest messages are sent")
-    )
-)
+# The vendor's clients recognize the first words and show a hint.
+_WARNING = "Send buffer limit reached: this connection is slow, only newest messages are sent"
+_FOXGLOVE_WARNING = framed(encode_server(Status(StatusLevel.WARNING, _WARNING)))
+_ROSBRIDGE_WARNING = framed(frames.as_json(frames.status("warning", _WARNING)))
 
 
 class ClientSendQueue:
     """Frames for one connection. Any thread may call it, but only one at a time."""
 
     def __init__(self, connection: SharedConnection, limit: int) -> None:
+        """`limit`: bytes in the socket's buffer above which data frames are kept."""
+        self._warning = _ROSBRIDGE_WARNING if connection.is_rosbridge else _FOXGLOVE_WARNING
         self._protocol = connection.protocol
         self._transport = connection.transport
         self._limit = limit
@@ -86,7 +87,7 @@ class ClientSendQueue:
         now_s = time.monotonic()
         if now_s >= self._next_warning_s:
             self._next_warning_s = now_s + _WARNING_PERIOD_S
-            self.send_control(_WARNING)
+            self.send_control(self._warning)
 
     def flush(self) -> None:
         """Send kept frames while there is room."""

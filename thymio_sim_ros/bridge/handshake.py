@@ -19,6 +19,7 @@ from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.protocol.messages import Status
 from thymio_sim_ros.bridge.protocol.wire import encode_server
 from thymio_sim_ros.bridge.report_limiter import ReportLimiter
+from thymio_sim_ros.bridge.rosbridge import frames
 from thymio_sim_ros.bridge.transport import SharedConnection
 
 __all__ = ["WRONG_TOKEN", "HandshakeCheck", "select_subprotocol"]
@@ -72,17 +73,27 @@ class HandshakeCheck:
         """Send a status with the reason why the token was not accepted, and close the connection."""
         assert connection.request is not None
         text = _token_text(connection.request)
+        status = (
+            frames.as_json(frames.status("error", text, "access"))
+            if connection.is_rosbridge
+            else encode_server(Status(StatusLevel.ERROR, text, "access"))
+        )
         with contextlib.suppress(ConnectionClosed):
-            await connection.send(encode_server(Status(StatusLevel.ERROR, text, "access")))
+            await connection.send(status)
             await connection.close(WRONG_TOKEN, "wrong or missing token")
 
 
-def select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol:
-    """The first of `SUBPROTOCOLS` that a client offers. Raises NegotiationError if it offers none."""
+def select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol | None:
+    """The first of `SUBPROTOCOLS` that a client offers; None if it offers nothing, as clients of rosbridge do.
+
+    Raises NegotiationError if it offers others only.
+    """
+    if not offered:
+        return None
     for name in SUBPROTOCOLS:
         if name in offered:
             return name
-    raise NegotiationError(f"offer one of the sub-protocols {', '.join(SUBPROTOCOLS)}")
+    raise NegotiationError(f"offer one of the sub-protocols {', '.join(SUBPROTOCOLS)}, or none for rosbridge")
 
 
 def _address(connection: ServerConnection) -> str:

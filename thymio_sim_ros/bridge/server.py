@@ -39,7 +39,16 @@ from thymio_sim_ros.bridge.protocol.messages import (
     Unsubscribe,
 )
 from thymio_sim_ros.bridge.protocol.wire import decode_client, encode_server
-from thymio_sim_ros.bridge.switchboard.events import Command, Data, Event, RemoveChannels
+from thymio_sim_ros.bridge.rosbridge import frames
+from thymio_sim_ros.bridge.switchboard.events import (
+    Command,
+    Data,
+    Event,
+    RemoveChannels,
+    RosbridgeJoined,
+    RosbridgeLeft,
+    RosbridgeReceived,
+)
 from thymio_sim_ros.bridge.switchboard.outcome import Delivery
 from thymio_sim_ros.bridge.switchboard.subscriptions import Routes
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
@@ -203,6 +212,21 @@ class BridgeServer:
         finally:
             self._lock.release()
 
+    def send(self, client: int, messages: Iterable[str | bytes], slot: int | None = None) -> None:
+        """Send messages to a rosbridge client, if it is connected; from any thread.
+
+        With a `slot`, a client that is slow gets only the newest messages of that number, all or none.
+        """
+        frame = b"".join(map(framed, messages))
+        with self._lock:
+            queue = self._queues.get(client)
+            if queue is None:
+                return
+            if slot is None:
+                queue.send_control(frame)
+            elif not queue.send_data(slot, frame):
+                self._schedule_flush()
+
     def _schedule_flush(self) -> None:
         if not self._flush_is_due:
             self._flush_is_due = True
@@ -242,8 +266,11 @@ class BridgeServer:
         began_s = time.thread_time()
         with self._lock:
             self._queues[client] = queue
-            for message in self._board.join(client, connection.role):
-                queue.send_control(self._handshake_frame(message))
+            if not connection.is_rosbridge:
+                for message in self._board.join(client, connection.role):
+                    queue.send_control(self._handshake_frame(message))
+        if connection.is_rosbridge:
+            self._sink.post(RosbridgeJoined(client, connection.role))
         self._is_limit_logged = self._is_limit_logged and len(self._queues) >= self._settings.max_clients
         try:
             await self._throttle.pause(time.thread_time() - began_s)
@@ -254,17 +281,18 @@ class BridgeServer:
             with self._lock:
                 del self._queues[client]
                 self._senders.clear()  # they refer to the removed queue
-                events = self._board.leave(client)
+                events = [RosbridgeLeft(client)] if connection.is_rosbridge else self._board.leave(client)
             self._post_events(events)
 
     async def _read(self, client: int, connection: SharedConnection) -> None:
         """Process messages of a client until it disconnects."""
         spent = self._throttle.client()
+        receive = self._receive_rosbridge if connection.is_rosbridge else self._receive
         async for frame in connection:
             if self._is_closing:
                 return
             with spent.measured():
-                self._receive(client, frame)
+                receive(client, frame)
             while self._sink.is_full(client) and not self._is_closing:
                 await asyncio.sleep(_FULL_PAUSE_S)
             await spent.pause_if_busy()
@@ -296,13 +324,22 @@ class BridgeServer:
             self._deliver(outcome.deliveries)
         self._post_events(outcome.events)
 
+    def _receive_rosbridge(self, client: int, frame: str | bytes) -> None:
+        if len(frame) <= self._settings.max_message_size:
+            self._sink.post(RosbridgeReceived(client, frame))
+        else:
+            self.send(client, [frames.as_json(frames.status("error", str(self._too_long(frame))))])
+
+    def _too_long(self, frame: str | bytes) -> FrameError:
+        return FrameError(
+            "frame", f"at most {self._settings.max_message_size} bytes (max_message_size)", str(len(frame))
+        )
+
     def _decode(self, client: int, frame: str | bytes) -> ClientMessage:
         """Decode a frame. Raises FrameError, also for one that is too long; a service call gets its failure as well."""
         if len(frame) <= self._settings.max_message_size:
             return decode_client(frame)
-        error = FrameError(
-            "frame", f"at most {self._settings.max_message_size} bytes (max_message_size)", str(len(frame))
-        )
+        error = self._too_long(frame)
         if isinstance(frame, bytes):  # decoding copies no more than the payload
             request = decode_client(frame)
             if isinstance(request, ServiceRequest):

@@ -134,6 +134,8 @@ class ServerThread:
         self._server = BridgeServer(board, sink, settings)
         self.publish: Callable[[int, int, bytes], None] = self._server.publish
         """Send a message of a channel to its subscribers: channel ID, time in ns, payload; from any thread."""
+        self.send = self._server.send
+        """Send messages to a rosbridge client; from any thread."""
         # Not the default loop of Windows: it has no `add_reader` and `add_writer`, and its socket stays the wakeup
         # descriptor of signals when a thread other than the main thread, which made the loop, closes it.
         self._loop = asyncio.SelectorEventLoop()

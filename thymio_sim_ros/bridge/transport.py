@@ -239,6 +239,11 @@ class SharedConnection(ServerConnection):
     role: Role | None = None
     """Role of its client; None: the client gave no valid token, and the connection has to be closed."""
 
+    @property
+    def is_rosbridge(self) -> bool:
+        """Whether its client uses the rosbridge protocol, which has no sub-protocol name."""
+        return self.subprotocol is None
+
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Wrap the transport of a new connection."""
         self._unread = bytearray()

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph
+from thymio_sim_ros.bridge.protocol.constants import Role
 from thymio_sim_ros.bridge.protocol.messages import (
     Channel,
     ClientChannel,
@@ -112,6 +113,29 @@ class GraphSubscriptionChanged:
     wanted: bool
 
 
+@dataclass(frozen=True, slots=True)
+class RosbridgeJoined:
+    """A client connected that uses the rosbridge protocol."""
+
+    client: int
+    role: Role
+
+
+@dataclass(frozen=True, slots=True)
+class RosbridgeReceived:
+    """A message of a rosbridge client."""
+
+    client: int
+    frame: str | bytes
+
+
+@dataclass(frozen=True, slots=True)
+class RosbridgeLeft:
+    """A rosbridge client disconnected."""
+
+    client: int
+
+
 Event = (
     ChannelSubscribed
     | ChannelUnsubscribed
@@ -124,6 +148,9 @@ Event = (
     | ParametersWatched
     | AssetRequested
     | GraphSubscriptionChanged
+    | RosbridgeJoined
+    | RosbridgeReceived
+    | RosbridgeLeft
 )
 
 # --- commands to the bridge ----------------------------------------------------------------------------------------
@@ -257,9 +284,11 @@ _PARAMETER_SIZE = 2048
 
 
 def size_of(event: Event) -> int:
-    """Size of the client's data in an event: payload or parameters, bytes. Other events have 0."""
+    """Size of the client's data in an event: payload, message or parameters, bytes. Other events have 0."""
     if isinstance(event, ClientMessageReceived):
         return len(event.payload)
+    if isinstance(event, RosbridgeReceived):
+        return len(event.frame)
     if isinstance(event, ServiceCalled):
         return len(event.request.payload)
     if isinstance(event, ParametersSet):

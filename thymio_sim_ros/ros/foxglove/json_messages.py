@@ -1,6 +1,7 @@
 """Conversion of JSON objects and ROS messages, for clients that use the encoding `json`.
 
-Missing keys have their default values, unknown keys are rejected; arrays are lists, byte arrays also base64 text
+Missing keys have their default values, unknown keys are rejected; arrays are lists, byte arrays also base64 text, and
+NaN is null
 (docs/spec/foxglove.md section 5). In Jazzy the setters of rosidl check values only if an environment variable is set;
 therefore ranges and lengths are checked here.
 """
@@ -12,6 +13,7 @@ import json
 import math
 import re
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.bridge.protocol import bounded_json
@@ -21,11 +23,14 @@ from thymio_sim_ros.ros.foxglove.types import full_name, load_type
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message, MsgT
 
-__all__ = ["JsonMessageError", "from_json", "to_json"]
+__all__ = ["JsonMessageError", "finite", "from_json", "from_value", "numbers", "to_json", "to_value"]
 
 _LIST = re.compile(r"^(?:sequence<(?P<item>[^,]+)(?:, (?P<most>\d+))?>|(?P<cell>.+)\[(?P<exactly>\d+)\])$")
 _INTEGER = re.compile(r"^(u?)int(8|16|32|64)$")
 _TEXT = re.compile(r"^w?string(?:<(\d+)>)?$")
+
+_ROS_1_NAMES = {"secs": "sec", "nsecs": "nanosec"}
+"""Fields of times and durations, which older clients write in another way."""
 
 MAX_MESSAGES = 2000
 """Nested messages in one message."""
@@ -41,10 +46,15 @@ def from_json(data: bytes, message_type: type[MsgT]) -> MsgT:
         value = bounded_json.loads(data.decode())
     except (ValueError, RecursionError) as error:
         raise JsonMessageError(f"not JSON: {error}") from error
+    return from_value(value, message_type)
+
+
+def from_value(value: object, message_type: type[MsgT], where: str = "message") -> MsgT:
+    """Convert decoded JSON to a message of the class. Raises JsonMessageError, with the place in the value `where`."""
     if _messages_in(value) > MAX_MESSAGES:
-        raise JsonMessageError(f"message: expected at most {MAX_MESSAGES} objects, found more")
+        raise JsonMessageError(f"{where}: expected at most {MAX_MESSAGES} objects, found more")
     message = message_type()
-    _fill(message, value, "message")
+    _fill(message, value, where)
     return message
 
 
@@ -57,14 +67,46 @@ def _messages_in(value: object) -> int:
 
 def to_json(message: Message) -> bytes:
     """Convert a message to UTF-8 JSON; NaN and infinity, which JSON does not have, become null."""
-    return json.dumps(_plain(message), allow_nan=False, separators=(",", ":")).encode()
+    return json.dumps(to_value(message, finite, numbers), allow_nan=False, separators=(",", ":")).encode()
+
+
+def finite(number: float) -> float | None:
+    """A number as JSON has it."""
+    return number if math.isfinite(number) else None
+
+
+def numbers(values: Any) -> list[Any]:
+    """Several numbers, an array of NumPy or of `array`, as JSON has them."""
+    plain = values.tolist()
+    return list(map(finite, plain)) if plain and isinstance(plain[0], float) else list(plain)
+
+
+def to_value(message: Message, of_float: Callable[[float], Any], of_numbers: Callable[[Any], Any]) -> dict[str, Any]:
+    """The fields of a message as objects, lists, texts and numbers.
+
+    `of_float` converts a number with a fraction, `of_numbers` an array of NumPy or of `array`.
+    """
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, float):
+            return of_float(value)
+        if isinstance(value, (str, bool, int)):
+            return value
+        if isinstance(value, bytes):
+            return value[0] if len(value) == 1 else list(value)
+        if hasattr(value, "get_fields_and_field_types"):
+            return {name: plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
+        return of_numbers(value) if hasattr(value, "tolist") else [plain(item) for item in value]
+
+    return plain(message)  # type: ignore[no-any-return]
 
 
 def _fill(message: Message, value: object, where: str) -> None:
     if not isinstance(value, dict):
         raise JsonMessageError(f"{where}: expected an object, found {value!r:.40}")
     fields = message.get_fields_and_field_types()
-    for key, item in value.items():
+    for given, item in value.items():
+        key = given if given in fields else _ROS_1_NAMES.get(str(given), str(given))
         kind = fields.get(key)
         if kind is None:
             raise JsonMessageError(f"{where}: no field {key}; fields are {', '.join(fields)}")
@@ -108,6 +150,8 @@ def _convert_scalar(value: object, kind: str, where: str) -> object:
     elif kind == "boolean":
         if isinstance(value, bool):
             return value
+    elif value is None and kind in ("float", "double"):
+        return math.nan
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
         number = _number(value, kind)
         if number is not None:
@@ -142,15 +186,3 @@ def _is_utf8(text: str) -> bool:
 
 def _limits(*, unsigned: bool, bits: int) -> tuple[int, int]:
     return (0, (1 << bits) - 1) if unsigned else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, (str, bool, int)):
-        return value
-    if isinstance(value, bytes):
-        return value[0] if len(value) == 1 else list(value)
-    if hasattr(value, "get_fields_and_field_types"):
-        return {name: _plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
-    return [_plain(item) for item in value.tolist()] if hasattr(value, "tolist") else [_plain(item) for item in value]

@@ -43,6 +43,8 @@ from thymio_sim_ros.ros.foxglove.graph import (
 from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, check, server_capabilities, tls_context
 from thymio_sim_ros.ros.foxglove.parameters import Parameters
 from thymio_sim_ros.ros.foxglove.publishers import ClientPublishers
+from thymio_sim_ros.ros.foxglove.rosbridge.host import Host
+from thymio_sim_ros.ros.foxglove.rosbridge.sessions import Sessions
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 from thymio_sim_ros.ros.foxglove.services import Services
 from thymio_sim_ros.ros.foxglove.time_share import TimeShare
@@ -166,6 +168,7 @@ class FoxgloveBridge:
         """Stop the server, end all endpoints, and destroy the node."""
         self.stop()
         self._jump_handle.unregister()
+        self._rosbridge.close()
         self._topics.close()
         self._publishers.close_all()
         self.node.destroy_node()
@@ -229,6 +232,24 @@ class FoxgloveBridge:
         self._publishers = ClientPublishers(
             self._publisher, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._poll_soon
         )
+        self._rosbridge = Sessions(
+            Host(
+                node=self.node,
+                subscriber=self._subscriber,
+                publisher=self._publisher,
+                calls=self._calls,
+                send=self._server.send,
+                now_ns=self._now_ns,
+                wake=self._poll_soon,
+                offered=server_capabilities(values, uses_sim_time=self._uses_sim_time),
+                max_size=values.max_message_size,
+                depths=(values.min_qos_depth, values.max_qos_depth),
+                is_topic=self._is_topic,
+                is_client_topic=allow_list(values.client_topic_whitelist),
+                is_service=self._is_service,
+                is_read_only_service=allow_list(values.read_only_services),
+            )
+        )
         self._published_count = -1
         self._count = (
             self.node.create_publisher(UInt32, "~/client_count", TRANSIENT_LOCAL)
@@ -270,6 +291,7 @@ class FoxgloveBridge:
         """Poll the graph and pass changes on."""
         self._mailbox.drain()
         self._check_publishers()
+        self._rosbridge.refresh()
         if self._wants_graph and self._is_graph_outdated:
             self._send_graph()
         if not self._discovery.is_due:
@@ -316,6 +338,7 @@ class FoxgloveBridge:
 
     def _poll_waiting(self) -> None:
         waits = [self._calls.poll(), self._publishers.poll(), self._topics.poll(), self._parameters.poll()]
+        waits.append(self._rosbridge.poll())
         if not any(waits):
             self._fast_poll_timer.cancel()
 
@@ -356,6 +379,8 @@ class FoxgloveBridge:
                 self._on_graph_subscription(event)
             case ev.AssetRequested():
                 self._on_asset_requested(event)
+            case ev.RosbridgeJoined() | ev.RosbridgeReceived() | ev.RosbridgeLeft():
+                self._rosbridge.handle(event)
             case _:
                 assert_never(event)
 

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from geometry_msgs.msg import Twist, TwistStamped
 from rclpy._rclpy_pybind11 import RCLError, RMWError
-from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
@@ -25,6 +22,7 @@ from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
+from thymio_sim_ros.ros.foxglove.held_publisher import HeldPublisher
 from thymio_sim_ros.ros.foxglove.qos import publisher_qos
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
 from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
@@ -32,21 +30,10 @@ from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message
 
-__all__ = ["ClientPublishers"]
-
-_MAX_HELD = 10
-_DISCOVERY_S = 1.0
-"""A new publisher holds its last `_MAX_HELD` messages until it has matched all subscribers, at most for this time.
-
-They are published at the intervals at which they arrived: a button that was pressed and released during discovery was
-pressed for that time.
-"""
+__all__ = ["ClientPublishers", "velocity_fault"]
 
 _SLICE_S = 0.005
 """Longest time for which one `poll` creates publishers; each takes some milliseconds in DDS."""
-
-_NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
-"""No event handlers: each would be one more entity that the executor waits for, in every iteration."""
 
 
 class _RefusalError(ThymioSimError):
@@ -59,18 +46,8 @@ class _SharedPublisher:
 
     topic: str
     type_name: str
-    message_type: type[Message]
-    publisher: Publisher[Message]
-    discovery_end_s: float
+    held: HeldPublisher
     users: int = 0
-    held: deque[tuple[float, Message | bytes]] = field(default_factory=lambda: deque(maxlen=_MAX_HELD))
-    """Messages that are not published yet, with the time of arrival, s."""
-    is_waiting: bool = False
-    """Whether messages are held because of discovery."""
-    delay_s: float = 0.0
-    matched_s: float = 0.0
-    """Messages that arrived until `matched_s`, the end of discovery, are published `delay_s` after their arrival; later
-    ones as soon as all earlier ones are published."""
 
 
 class ClientPublishers:
@@ -127,7 +104,7 @@ class ClientPublishers:
         shared.users -= 1
         if shared.users == 0:
             del self._by_topic[shared.topic, shared.type_name]
-            self._node.destroy_publisher(shared.publisher)
+            shared.held.destroy()
 
     def publish(self, client: int, channel_id: int, payload: bytes) -> None:
         """Publish a message of a client, or report to the client why it is rejected."""
@@ -143,8 +120,7 @@ class ClientPublishers:
         except _RefusalError as error:
             self._refuse(client, f"{shared.topic}: {error}")
             return
-        shared.held.append((self._now_s(), message))
-        if not self._flush(shared):
+        if not shared.held.publish(message):
             self._wake()
 
     def poll(self) -> bool:
@@ -153,40 +129,17 @@ class ClientPublishers:
         while self._order and time.monotonic() < end_s:
             client, channel_id = self._order.pop()
             self._create(client, self._opening.pop((client, channel_id)))
-        flushed = [self._flush(shared) for shared in self._by_topic.values()]
+        flushed = [shared.held.flush() for shared in self._by_topic.values()]
         return bool(self._order) or not all(flushed)
 
     def close_all(self) -> None:
         """End all publishers."""
         for shared in self._by_topic.values():
-            self._node.destroy_publisher(shared.publisher)
+            shared.held.destroy()
         self._by_topic.clear()
         self._channels.clear()
         self._opening.clear()
         self._order = FairQueue()
-
-    def _flush(self, shared: _SharedPublisher) -> bool:
-        """Publish messages that are due, unless discovery is going on; return whether none is left."""
-        now_s = self._now_s()
-        if shared.held and now_s < shared.discovery_end_s and not self._has_matched_all(shared):
-            shared.is_waiting = True
-            return False
-        if shared.is_waiting:
-            shared.is_waiting, shared.delay_s, shared.matched_s = False, now_s - shared.held[0][0], now_s
-        while shared.held:
-            arrived_s, message = shared.held[0]
-            if arrived_s <= shared.matched_s and arrived_s + shared.delay_s > now_s:
-                return False
-            shared.held.popleft()
-            try:
-                shared.publisher.publish(message)
-            except RCLError as error:  # above a bound of its type, which deserialization does not check
-                self._node.get_logger().warning(f"{shared.topic}: message of a client rejected: {error}")
-        return True
-
-    def _has_matched_all(self, shared: _SharedPublisher) -> bool:
-        known = self._node.count_subscribers(shared.topic)
-        return 0 < known <= shared.publisher.get_subscription_count()
 
     def _publisher_for(self, channel: ClientChannel) -> _SharedPublisher:
         topic = channel.topic if channel.topic.startswith("/") else f"/{channel.topic}"
@@ -202,7 +155,7 @@ class ClientPublishers:
             profile = publisher_qos(
                 self._node.get_publishers_info_by_topic(topic), self._node.get_subscriptions_info_by_topic(topic)
             )
-            publisher = self._node.create_publisher(message_type, topic, profile, event_callbacks=_NO_EVENTS)
+            held = HeldPublisher(self._node, message_type, topic, profile, self._now_s)
         except InvalidTopicNameException as error:
             raise _RefusalError(f"{topic}: not a valid topic name") from error
         except MissingTypeError as error:
@@ -211,9 +164,7 @@ class ClientPublishers:
             raise _RefusalError(f"{topic}: cannot publish {type_name}, the topic has another type") from error
         except (ValueError, TypeError, RuntimeError) as error:  # invalid Unicode, or not a message type
             raise _RefusalError(f"{topic!r}: cannot publish {type_name}: {error}") from error
-        shared = self._by_topic[topic, type_name] = _SharedPublisher(
-            topic, type_name, message_type, publisher, self._now_s() + _DISCOVERY_S
-        )
+        shared = self._by_topic[topic, type_name] = _SharedPublisher(topic, type_name, held)
         return shared
 
     def _refuse(self, client: int, text: str) -> None:
@@ -224,14 +175,14 @@ def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Message 
     """Decode and check a message; return its bytes if there is no class for it. Raises _RefusalError."""
     try:
         if shared.type_name == tf2_messages.TF_TYPE_NAME and encoding != JSON:
-            check_parts(payload, shared.message_type)
+            check_parts(payload, shared.held.message_type)
             tf2_messages.decode(payload)
             return payload
         if encoding == JSON:
-            message = json_messages.from_json(payload, shared.message_type)
+            message = json_messages.from_json(payload, shared.held.message_type)
         else:
-            check_parts(payload, shared.message_type)
-            message = deserialize_message(payload, shared.message_type)
+            check_parts(payload, shared.held.message_type)
+            message = deserialize_message(payload, shared.held.message_type)
     except (
         RMWError,
         json_messages.JsonMessageError,
@@ -242,10 +193,16 @@ def _decode(payload: bytes, encoding: str, shared: _SharedPublisher) -> Message 
         raise _RefusalError(f"expected a {shared.type_name} in {encoding}: {first_line}") from error
     except TypeError as error:  # the type has no Python class
         raise _RefusalError(f"{shared.type_name} is accepted in encoding cdr only") from error
-    twist = message.twist if isinstance(message, TwistStamped) else message
-    if isinstance(twist, Twist) and not _is_finite(twist):
-        raise _RefusalError("expected finite velocities, found NaN or infinity")
+    if fault := velocity_fault(message):
+        raise _RefusalError(fault)
     return message
+
+
+def velocity_fault(message: Message) -> str:
+    """Why a message of a client must not be published: velocities that are not finite; otherwise an empty string."""
+    twist = message.twist if isinstance(message, TwistStamped) else message
+    is_wrong = isinstance(twist, Twist) and not _is_finite(twist)
+    return "expected finite velocities, found NaN or infinity" if is_wrong else ""
 
 
 def _is_finite(twist: Twist) -> bool:

@@ -32,7 +32,9 @@ def full_name(name: str, kind: str = "msg") -> str:
 
 @functools.lru_cache(maxsize=4096)
 def load_type(name: str) -> Any:
-    """The class of `pkg/msg/Type` or `pkg/srv/Type`, ready for publishers, subscriptions and clients.
+    """The class of `pkg/msg/Type`, `pkg/srv/Type` or `pkg/action/Type`, ready for endpoints of nodes.
+
+    The services and the message of an action are `pkg/action/Type_SendGoal`, `…_GetResult` and `…_FeedbackMessage`.
 
     Without the package tf2_msgs, TFMessage is replaced by a class that only works with serialized messages.
     Raises MissingTypeError.
@@ -42,17 +44,32 @@ def load_type(name: str) -> Any:
             raise MissingTypeError(name, "tf2_msgs is not installed and cannot be replaced")
         return tf2_messages.TFMessage
     words = name.split("/")
-    if len(words) != 3 or words[1] not in ("msg", "srv") or not all(word.isidentifier() for word in words):
+    if len(words) != 3 or words[1] not in ("msg", "srv", "action") or not all(word.isidentifier() for word in words):
         raise MissingTypeError(name, "expected package/msg/Type")
     if not _has_interfaces(words[0], words[1]):
         raise MissingTypeError(name, f"there is no package {words[0]} with {words[1]} types")
     try:
-        cls = getattr(importlib.import_module(".".join(words[:2])), words[2])
+        cls = _attribute(importlib.import_module(".".join(words[:2])), words[2])
         if words[1] == "msg":
             check_for_type_support(cls)
     except (ImportError, AttributeError) as error:
         raise MissingTypeError(name, str(error)) from error
     return cls
+
+
+_PARTS_OF_ACTIONS = {
+    "SendGoal": "SendGoalService",
+    "GetResult": "GetResultService",
+    "FeedbackMessage": "FeedbackMessage",
+}
+
+
+def _attribute(module: Any, name: str) -> Any:
+    """A class of a module by its name. Raises AttributeError."""
+    action, _, part = name.rpartition("_")
+    if part in _PARTS_OF_ACTIONS and hasattr(module, action):
+        return getattr(getattr(module, action).Impl, _PARTS_OF_ACTIONS[part])
+    return getattr(module, name)
 
 
 def _has_interfaces(package: str, kind: str) -> bool:
