@@ -110,7 +110,11 @@ def _fill(message: Message, value: object, where: str) -> None:
         kind = fields.get(key)
         if kind is None:
             raise JsonMessageError(f"{where}: no field {key}; fields are {', '.join(fields)}")
-        setattr(message, key, _convert(item, kind, f"{where}.{key}"))
+        inner = getattr(message, key)
+        if hasattr(inner, "get_fields_and_field_types"):
+            _fill(inner, item, f"{where}.{key}")
+        else:
+            setattr(message, key, _convert(item, kind, f"{where}.{key}"))
 
 
 def _convert(value: object, kind: str, where: str) -> object:
