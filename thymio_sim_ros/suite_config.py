@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
+from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 
-HTTP_PORT = 8080
-FOXGLOVE_PORT = 8765
 ADDRESS = "localhost"
 """Loopback only, unless the network is requested."""
 OUT_OF_RANGE = ("rep117", "driver")

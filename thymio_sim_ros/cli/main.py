@@ -23,6 +23,7 @@ COMMANDS: Mapping[str, str] = {
     "env": "env",
     "foxglove-layout": "foxglove_layout",
     "grade": "grade",
+    "node": "node",
     "replay": "replay",
     "sweep": "sweep",
 }

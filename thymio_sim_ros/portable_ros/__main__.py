@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import runpy
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from thymio_sim_ros.portable_ros.import_hook import install
+from thymio_sim_ros.portable_ros.program import run_program
 
 _USAGE = "usage: python -m thymio_sim_ros.portable_ros [-m MODULE | FILE] [ARGUMENT ...]"
 _WRONG_USAGE = 2
@@ -22,13 +21,7 @@ def main(words: Sequence[str] | None = None) -> int:
     install(is_forced=True)
     is_module = words[0] == "-m"
     target, arguments = (words[1], words[2:]) if is_module else (words[0], words[1:])
-    sys.argv = [target, *arguments]
-    if is_module:
-        sys.path[0] = str(Path.cwd())
-        runpy.run_module(target, run_name="__main__", alter_sys=True)
-    else:
-        sys.path[0] = str(Path(target).resolve().parent)
-        runpy.run_path(target, run_name="__main__")
+    run_program(target, arguments, is_module=is_module)
     return 0
 
 

@@ -8,7 +8,15 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from thymio_sim_ros.portable_ros.graph.deadline import Deadline
-from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd, GraphNode, PublisherEnd, ServiceEnd, SubscriptionEnd
+from thymio_sim_ros.portable_ros.graph.protocols import (
+    ClientEnd,
+    GraphNode,
+    PublisherEnd,
+    Sample,
+    ServiceEnd,
+    SubscriptionEnd,
+)
+from thymio_sim_ros.portable_ros.graph.transport import Transport
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.qos import incompatibilities
 
@@ -34,6 +42,22 @@ class Graph:
         self.topics: defaultdict[str, _Topic] = defaultdict(_Topic)
         self.services: defaultdict[str, list[ServiceEnd]] = defaultdict(list)
         self.clients: defaultdict[str, list[ClientEnd]] = defaultdict(list)
+        self._transport: Transport | None = None
+
+    @property
+    def is_carried(self) -> bool:
+        """Whether a transport delivers all messages of topics."""
+        return self._transport is not None and self._transport.is_connected
+
+    def attach(self, transport: Transport | None) -> None:
+        """Connect the graph with another one by a transport; None ends that."""
+        with self._changed:
+            self._transport = transport
+            self._note_change()
+
+    def carry(self, publisher: PublisherEnd, sample: Sample) -> bool:
+        """Send a message by the transport; return whether it delivers the message to all subscriptions."""
+        return self._transport is not None and self._transport.publish(publisher, sample)
 
     def wait_for(self, condition: Callable[[], bool], timeout_s: float | None) -> bool:
         """Wait until a condition of the graph is true; return whether it is."""
@@ -50,14 +74,14 @@ class Graph:
         """Add a node."""
         with self._changed:
             self.nodes.append(node)
-            self._changed.notify_all()
+            self._note_change()
 
     def remove_node(self, node: GraphNode) -> None:
         """Remove a node."""
         with self._changed:
             if node in self.nodes:
                 self.nodes.remove(node)
-            self._changed.notify_all()
+            self._note_change()
 
     def require_topic_type(self, name: str, msg_type: Any, context: object) -> None:
         """Raise RCLError if a context uses the topic with another type: a participant of DDS has one for each."""
@@ -81,7 +105,7 @@ class Graph:
             topic.publishers.append(publisher)
             for subscription in topic.subscriptions:
                 self._meet(publisher, subscription)
-            self._changed.notify_all()
+            self._note_change()
 
     def remove_publisher(self, publisher: PublisherEnd) -> None:
         """Remove a publisher."""
@@ -100,7 +124,7 @@ class Graph:
             topic.subscriptions.append(subscription)
             for publisher in topic.publishers:
                 self._meet(publisher, subscription)
-            self._changed.notify_all()
+            self._note_change()
 
     def remove_subscription(self, subscription: SubscriptionEnd) -> None:
         """Remove a subscription."""
@@ -116,27 +140,27 @@ class Graph:
         """Add a service."""
         with self._changed:
             self.services[service.service_name].append(service)
-            self._changed.notify_all()
+            self._note_change()
 
     def remove_service(self, service: ServiceEnd) -> None:
         """Remove a service."""
         with self._changed:
             if service in self.services[service.service_name]:
                 self.services[service.service_name].remove(service)
-            self._changed.notify_all()
+            self._note_change()
 
     def add_client(self, client: ClientEnd) -> None:
         """Add a client."""
         with self._changed:
             self.clients[client.service_name].append(client)
-            self._changed.notify_all()
+            self._note_change()
 
     def remove_client(self, client: ClientEnd) -> None:
         """Remove a client."""
         with self._changed:
             if client in self.clients[client.service_name]:
                 self.clients[client.service_name].remove(client)
-            self._changed.notify_all()
+            self._note_change()
 
     def services_for(self, client: ClientEnd) -> list[ServiceEnd]:
         """The services that a client calls."""
@@ -157,11 +181,16 @@ class Graph:
         else:
             publisher.match(subscription)
 
+    def _note_change(self) -> None:
+        self._changed.notify_all()
+        if self._transport is not None:
+            self._transport.graph_changed()
+
     def _forget(self, name: str) -> None:
         topic = self.topics[name]
         if not topic.publishers and not topic.subscriptions:
             del self.topics[name]
-        self._changed.notify_all()
+        self._note_change()
 
 
 def _require_one_type(name: str, kind: Any, found: Iterable[Any]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind, QoSProfile
@@ -66,6 +66,10 @@ class PublisherEnd(Protocol):
 
     msg_type: Any
     qos_profile: QoSProfile
+
+    @property
+    def retained(self) -> Sequence[Sample]:
+        """The messages that late subscriptions get."""
 
     @property
     def context(self) -> object:

@@ -15,7 +15,7 @@ from thymio_sim_ros.portable_ros.graph.graph import Graph, graph_of
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError
 from thymio_sim_ros.portable_ros.rclpy.exceptions import NotInitializedException
 
-__all__ = ["Context"]
+__all__ = ["Context", "default_domain"]
 
 _DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 
@@ -57,7 +57,7 @@ class Context:
                 self.arguments = parse(args)
             except RCLInvalidROSArgsError as error:
                 raise RCLError(f"failed to initialize rcl: {error}") from error
-            self._graph = graph_of(_default_domain() if domain_id is None else domain_id)
+            self._graph = graph_of(default_domain() if domain_id is None else domain_id)
             self._handle, self._is_ok = Handle("Context"), True
             if initialize_logging:
                 self.arguments.apply_log_levels()
@@ -140,5 +140,6 @@ class _Method:
             method()
 
 
-def _default_domain() -> int:
+def default_domain() -> int:
+    """The domain of contexts that choose none."""
     return int(os.environ.get(_DOMAIN_VARIABLE) or 0)

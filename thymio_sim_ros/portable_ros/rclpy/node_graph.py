@@ -161,16 +161,23 @@ def _services(ends: Iterable[Any]) -> Iterable[tuple[str, Any]]:
 
 def _info(node: GraphNode, end: Any, of: TopicEndpointTypeEnum) -> TopicEndpointInfo:
     name = end.msg_type.TYPE_NAME
-    digest = bytes.fromhex(type_hash(name).removeprefix(HASH_PREFIX))
     return TopicEndpointInfo(
         node_name=node.get_name(),
         node_namespace=node.get_namespace(),
         topic_type=name,
-        topic_type_hash=TypeHash(1, digest),
+        topic_type_hash=_hash_of(name),
         endpoint_type=of,
         endpoint_gid=list(id(end).to_bytes(_GID_BYTES, "little")),
         qos_profile=_discovered(end.qos_profile, of),
     )
+
+
+def _hash_of(name: str) -> TypeHash:
+    """The hash of a type; an invalid one for a type that only another process knows."""
+    try:
+        return TypeHash(1, bytes.fromhex(type_hash(name).removeprefix(HASH_PREFIX)))
+    except KeyError:
+        return TypeHash()
 
 
 def _discovered(profile: QoSProfile, of: TopicEndpointTypeEnum) -> QoSProfile:

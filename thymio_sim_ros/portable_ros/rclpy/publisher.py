@@ -74,8 +74,7 @@ class Publisher(Generic[MsgT]):
             if isinstance(msg, bytes):
                 data: bytes | None = msg
             elif isinstance(msg, self.msg_type):
-                # Without subscriptions the bytes have no reader.
-                data = cdr.serialize(msg) if self.matched or self._retained is not None else None
+                data = cdr.serialize(msg) if self._has_reader() else None
             else:
                 raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
             if not self.context.ok():
@@ -105,8 +104,9 @@ class Publisher(Generic[MsgT]):
         with self._lock:
             self.matched = (*self.matched, subscription)
             subscription.add_match(self)
-            if self._retained is not None and subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
-                for sample in self._retained:
+            is_late = subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+            if is_late and not self.context.graph.is_carried:
+                for sample in self.retained:
                     subscription.receive(sample)
         self.events.report_match(1)
         subscription.events.report_match(1)
@@ -117,6 +117,15 @@ class Publisher(Generic[MsgT]):
             self.matched = tuple(one for one in self.matched if one is not subscription)
         self.events.report_match(-1)
 
+    @property
+    def retained(self) -> tuple[Sample, ...]:
+        """The messages that late subscriptions get."""
+        # A copy without the lock, which a publishing thread holds; the thread of the transport must not wait for it.
+        return () if self._retained is None else tuple(self._retained.copy())
+
+    def _has_reader(self) -> bool:
+        return bool(self.matched) or self._retained is not None or self.context.graph.is_carried
+
     def _send(self, data: bytes | None) -> None:
         with self._lock:
             self._count += 1
@@ -125,5 +134,7 @@ class Publisher(Generic[MsgT]):
             sample = Sample(data, time.time_ns(), self._count)
             if self._retained is not None:
                 self._retained.append(sample)
+            if self.context.graph.carry(self, sample):
+                return
             for subscription in self.matched:
                 subscription.receive(sample)

@@ -19,13 +19,14 @@ import thymio_sim_ros
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.names.addresses import describe_urls
+from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
 from thymio_sim_ros.ros.web import tokens as node_tokens
-from thymio_sim_ros.suite_config import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
+from thymio_sim_ros.suite_config import ADDRESS
 from thymio_sim_ros.web import Content, PageThread, Settings
 from thymio_sim_ros.web.settings import max_connections
 
