@@ -195,6 +195,7 @@ class Session:
             "service": service.service_name,
             "type": type_name,
             "args": self._payloads.outgoing(request, f"{type_name}_Request"),
+            "timeout": 0,  # the program decides how long it waits: results of actions take their time
         }
         if self._payloads.is_serialized:
             operation["compression"] = "cbor-raw"
@@ -216,7 +217,8 @@ class Session:
 
     def _receive_request(self, operation: Operation) -> None:
         name = field(operation, "service", str)
-        services = self._ready().named(Kind.SERVICE, name)
+        served = self._ready().endpoint(operation.get("served"))
+        services = self._ready().named(Kind.SERVICE, name) if served is None else [served]
         answer = {"op": "service_response", "service": name, "id": operation.get("id")}
         if not services:
             self._queue(self, answer | {"values": f"{name}: this program has no such service", "result": False})
