@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import itertools
 import os
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,8 @@ from thymio_sim_ros.portable_ros import import_hook
 __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
+_WITH_VALUE = ("--connect", "--token")
+"""Options of this command behind the program, too."""
 
 EPILOG = """\
 The program is run unchanged: `import rclpy` and the packages of messages need no ROS 2, and its nodes have topics,
@@ -34,25 +37,43 @@ server. Without one, the command waits for it; a lost connection is made again. 
 
 def run(argv: Sequence[str]) -> int:
     """Run the program; return the exit code. Raises UsageError for a program that there is not, and a wrong server."""
-    words = list(argv)
-    place = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
-    options, others = _parser().parse_known_args(words[:place])
+    own, arguments = _split(argv)
+    options = _parser().parse_args(own)
     target = options.module or options.file
     if target is None:
         raise UsageError("node: found no program, expected FILE or -m MODULE")
-    arguments = [*([options.file] if options.module and options.file else []), *others, *words[place:]]
     if options.module is None and not Path(target).is_file():
         raise UsageError(f"{target}: found no such file, expected a program in Python")
     field_checks.switch_on()
     import_hook.install(is_forced=True)
     course_packages.add_to_path()
-    _run_connected(options, target, arguments)
-    return 0
+    return _run_connected(options, target, arguments)
 
 
-def _run_connected(options: argparse.Namespace, target: str, arguments: Sequence[str]) -> None:
+def _split(words: Iterable[str]) -> tuple[list[str], list[str]]:
+    """The words of this command, with the program, and those of the program."""
+    own: list[str] = []
+    arguments: list[str] = []
+    rest = iter(words)
+    has_program = False
+    for word in rest:
+        if word == ROS_ARGS:
+            return own, [*arguments, word, *rest]
+        is_module = word == "-m" and not has_program
+        if is_module or word.partition("=")[0] in _WITH_VALUE:
+            own += [word] if "=" in word else [word, *itertools.islice(rest, 1)]
+            has_program = has_program or is_module
+        elif has_program:
+            arguments.append(word)
+        else:
+            own.append(word)
+            has_program = not word.startswith("-")
+    return own, arguments
+
+
+def _run_connected(options: argparse.Namespace, target: str, arguments: Sequence[str]) -> int:
     from thymio_sim_ros.portable_ros.graph.graph import graph_of
-    from thymio_sim_ros.portable_ros.program import join_threads, run_program
+    from thymio_sim_ros.portable_ros.program import run_program
     from thymio_sim_ros.portable_ros.rclpy.context import default_domain
     from thymio_sim_ros.portable_ros.rosbridge.transport import RosbridgeError, RosbridgeTransport
 
@@ -64,8 +85,7 @@ def _run_connected(options: argparse.Namespace, target: str, arguments: Sequence
         raise UsageError(f"node: {error}") from error
     try:
         with _interruptible():
-            run_program(target, arguments, is_module=options.module is not None)
-            join_threads()
+            return run_program(target, arguments, is_module=options.module is not None)
     finally:
         transport.close()
 

@@ -21,8 +21,7 @@ def main(words: Sequence[str] | None = None) -> int:
     install(is_forced=True)
     is_module = words[0] == "-m"
     target, arguments = (words[1], words[2:]) if is_module else (words[0], words[1:])
-    run_program(target, arguments, is_module=is_module)
-    return 0
+    return run_program(target, arguments, is_module=is_module)
 
 
 if __name__ == "__main__":

@@ -7,22 +7,45 @@ import sys
 import threading
 from collections.abc import Sequence
 from pathlib import Path
+from types import TracebackType
 
-__all__ = ["join_threads", "run_program"]
+__all__ = ["run_program"]
+
+_FAILED = 1
+_NOT_ITS_OWN = (__file__, "<frozen runpy>", runpy.__file__)
 
 
-def run_program(target: str, arguments: Sequence[str], *, is_module: bool) -> None:
-    """Run a file, or a module, as the main program, with its arguments. The import hook has to be installed."""
+def run_program(target: str, arguments: Sequence[str], *, is_module: bool) -> int:
+    """Run a file, or a module, as the main program, until its threads have ended, too; return the exit code.
+
+    An exception is printed as Python prints it, from the program on. The import hook has to be installed. Raises what
+    ends programs: SystemExit and KeyboardInterrupt.
+    """
     sys.argv = [target, *arguments]
-    if is_module:
-        sys.path[0] = str(Path.cwd())
-        runpy.run_module(target, run_name="__main__", alter_sys=True)
-    else:
-        sys.path[0] = str(Path(target).resolve().parent)
-        runpy.run_path(target, run_name="__main__")
+    try:
+        if is_module:
+            sys.path[0] = str(Path.cwd())
+            runpy.run_module(target, run_name="__main__", alter_sys=True)
+        else:
+            sys.path[0] = str(Path(target).resolve().parent)
+            runpy.run_path(target, run_name="__main__")
+    except Exception as error:
+        trace = _from_program(error.__traceback__)
+        sys.excepthook(type(error), error.with_traceback(trace), trace)
+        return _FAILED
+    finally:
+        _join_threads()
+    return 0
 
 
-def join_threads() -> None:
+def _from_program(trace: TracebackType | None) -> TracebackType | None:
+    """The part of a traceback that begins in the program."""
+    while trace is not None and trace.tb_frame.f_code.co_filename in _NOT_ITS_OWN:
+        trace = trace.tb_next
+    return trace
+
+
+def _join_threads() -> None:
     """Wait for the threads of the program, as the end of the interpreter does."""
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:

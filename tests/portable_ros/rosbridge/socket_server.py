@@ -21,6 +21,7 @@ class SocketServer:
     def __init__(self, port: int, rejection: str = "") -> None:
         self.received: list[Operation] = []
         self.connections: list[ServerConnection] = []
+        self.rejected = 0
         self._rejection = rejection
         self._server = serve(self._serve, "127.0.0.1", port, process_request=self._check)
         self._thread = threading.Thread(target=self._server.serve_forever)
@@ -42,6 +43,7 @@ class SocketServer:
     def _check(self, connection: ServerConnection, request: Request) -> Response | None:
         if not self._rejection:
             return None
+        self.rejected += 1
         return connection.respond(HTTPStatus.UNAUTHORIZED, f"{self._rejection}\nmore\n")
 
     def _serve(self, connection: ServerConnection) -> None:

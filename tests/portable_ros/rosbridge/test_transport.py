@@ -81,6 +81,21 @@ def test_a_lost_connection_and_its_return_are_said_once_and_all_is_announced_aga
     ]
 
 
+def test_a_server_that_rejects_the_token_after_its_return_is_said_once(client: _Client) -> None:
+    with SocketServer(_port(client)):
+        client.transport.start()
+    until(lambda: client.reports)
+    with SocketServer(_port(client), "the token is wrong") as server:
+        until(lambda: server.rejected >= 2)
+    with SocketServer(_port(client)):
+        until(lambda: client.reports[-1].startswith("connected to"))
+        client.transport.close()
+    assert [one.partition(": ")[2] for one in client.reports][1:] == [
+        "the token is wrong; waiting for another answer",
+        "",
+    ]
+
+
 def test_what_is_published_last_arrives_before_the_end(client: _Client) -> None:
     publisher = client.program.node("student").create_publisher(String, "topic", 1000)
     with SocketServer(_port(client)) as server:

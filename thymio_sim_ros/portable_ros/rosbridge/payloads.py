@@ -25,9 +25,10 @@ class JsonCodec(Protocol):
 class Payloads:
     """Converts between serialized messages and what operations contain."""
 
-    def __init__(self, codec: JsonCodec, *, is_serialized: bool) -> None:
-        """`is_serialized`: whether the server accepts serialized messages."""
-        self._codec, self.is_serialized = codec, is_serialized
+    def __init__(self, codec: JsonCodec) -> None:
+        self._codec = codec
+        self.is_serialized = False
+        """Whether the server accepts serialized messages."""
 
     def outgoing(self, data: bytes, type_name: str) -> object:
         """The payload of a serialized message."""

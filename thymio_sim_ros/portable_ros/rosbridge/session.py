@@ -9,14 +9,15 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from thymio_sim_ros.portable_ros.graph.graph import Graph
-from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd, PublisherEnd, Sample
+from thymio_sim_ros.portable_ros.graph.protocols import PublisherEnd, Sample
 from thymio_sim_ros.portable_ros.rosbridge.descriptions import Kind, NodeDescription, read_graph
 from thymio_sim_ros.portable_ros.rosbridge.local_endpoints import Announcements, LocalEndpoint
 from thymio_sim_ros.portable_ros.rosbridge.operations import Operation, OperationError, decode, encode, field
 from thymio_sim_ros.portable_ros.rosbridge.outbox import Outbox
 from thymio_sim_ros.portable_ros.rosbridge.payloads import JsonCodec, Payloads
-from thymio_sim_ros.portable_ros.rosbridge.remote_graph import RemoteGraph, RemoteService
+from thymio_sim_ros.portable_ros.rosbridge.remote_graph import RemoteGraph
 from thymio_sim_ros.portable_ros.rosbridge.rosapi import RosapiPoll
+from thymio_sim_ros.portable_ros.rosbridge.service_calls import ServiceCalls
 
 __all__ = ["FOREIGN", "Session"]
 
@@ -27,8 +28,6 @@ FOREIGN = (
 _GRAPH = "graph"
 ACTION_PART = "/_action/"
 """Within the names of the services and topics of an action."""
-_MOST_CALLS = 10_000
-"""Calls whose responses are awaited; older ones are forgotten."""
 _MOST_REPORTS = 100
 """Different reports of a connection."""
 
@@ -37,12 +36,6 @@ class _Publication(NamedTuple):
     topic: str
     type_name: str
     sample: Sample
-
-
-class _Pending(NamedTuple):
-    client: ClientEnd
-    sequence: int
-    response_type: str
 
 
 class Session:
@@ -60,19 +53,18 @@ class Session:
         report: Callable[[str], None],
     ) -> None:
         """`context`: that of remote endpoints; `wake` has `frames` called soon; `report` gets lines for the user."""
-        self._graph, self._codec, self._wake, self._report = graph, codec, wake, report
-        self._remote = RemoteGraph(graph, context, self._call)
+        self._graph, self._wake, self._report = graph, wake, report
+        self._remote = RemoteGraph(graph, context, lambda *call: self._calls.call(*call))
         self._outbox: Outbox[_Publication | Operation] = Outbox()
         self._greetings: deque[Operation] = deque([{"op": _GRAPH, "id": _GRAPH}])
-        self._payloads = Payloads(codec, is_serialized=False)
+        self._payloads = Payloads(codec)
+        self._calls = ServiceCalls(self._payloads, self._queue, self._report_once)
         self._announcements: Announcements | None = None
         self._is_changed = True
         self._is_removal_due = False
         self._sent: dict[int, int] = {}
         """Publisher, by identity → the sequence number of its last message that was sent."""
         self._received = itertools.count(1)
-        self._calls: dict[str, _Pending] = {}
-        self._numbers = itertools.count(1)
         self._poll: RosapiPoll | None = None
         self._service_types: dict[str, str] = {}
         self._reported: set[str] = set()
@@ -97,7 +89,6 @@ class Session:
         """Remove the remote nodes, and drop what has not been sent."""
         self._announcements = None
         self._outbox.clear()
-        self._calls.clear()
         self._remote.update(())
 
     def graph_changed(self) -> None:
@@ -182,25 +173,6 @@ class Session:
         operation["msg"] = self._payloads.outgoing(item.sample.data, item.type_name)
         return operation
 
-    def _call(self, service: RemoteService, client: ClientEnd, sequence: int, request: bytes) -> None:
-        """Queue the request of a client of this process."""
-        type_name = service.srv_type.TYPE_NAME
-        call_id = f"call{next(self._numbers)}"
-        if len(self._calls) >= _MOST_CALLS:
-            del self._calls[next(iter(self._calls))]
-        self._calls[call_id] = _Pending(client, sequence, f"{type_name}_Response")
-        operation = {
-            "op": "call_service",
-            "id": call_id,
-            "service": service.service_name,
-            "type": type_name,
-            "args": self._payloads.outgoing(request, f"{type_name}_Request"),
-            "timeout": 0,  # the program decides how long it waits: results of actions take their time
-        }
-        if self._payloads.is_serialized:
-            operation["compression"] = "cbor-raw"
-        self._queue(client, operation)
-
     def _queue(self, sender: object, operation: Operation) -> None:
         if not self._outbox.put(sender, operation, None):
             self._report_once("the connection is too slow: requests or responses were dropped")
@@ -219,32 +191,15 @@ class Session:
         name = field(operation, "service", str)
         served = self._ready().endpoint(operation.get("served"))
         services = self._ready().named(Kind.SERVICE, name) if served is None else [served]
-        answer = {"op": "service_response", "service": name, "id": operation.get("id")}
-        if not services:
-            self._queue(self, answer | {"values": f"{name}: this program has no such service", "result": False})
-            return
-        service = services[0]
-        try:
-            request = self._payloads.incoming(operation.get("args"), f"{service.type_name}_Request")
-        except OperationError as error:
-            self._queue(self, answer | {"values": f"{name}: {error}", "result": False})
-            return
-        service.end.receive(_Caller(self, service, answer), 0, request)
+        self._calls.receive_request(operation, services[0] if services else None)
 
     def _receive_response(self, operation: Operation) -> None:
         call_id = field(operation, "id", str)
-        is_success = operation.get("result") is True
-        values = operation.get("values")
-        if self._poll is not None and self._poll.receive(call_id, values if is_success else None):
+        values = operation.get("values") if operation.get("result") is True else None
+        if self._poll is not None and self._poll.receive(call_id, values):
             self._continue_poll(self._poll)
-            return
-        pending = self._calls.pop(call_id, None)
-        if pending is None:
-            return
-        if not is_success:
-            self._report_once(f"{operation.get('service')}: {values}")
-            return
-        pending.client.receive(pending.sequence, self._payloads.incoming(values, pending.response_type))
+        else:
+            self._calls.receive_response(operation)
 
     def _receive_status(self, operation: Operation) -> None:
         if operation.get("level") in ("error", "warning"):
@@ -275,7 +230,7 @@ class Session:
         self._wake()
 
     def _begin(self, *, is_extended: bool) -> None:
-        self._payloads = Payloads(self._codec, is_serialized=is_extended)
+        self._payloads.is_serialized = is_extended
         self._announcements = Announcements(self._graph, self._remote.is_own, is_extended=is_extended)
         self._wake()
 
@@ -312,18 +267,3 @@ class Session:
 
 def _ignore(_operation: Operation) -> None:
     """Need nothing: the server confirms."""
-
-
-class _Caller:
-    """The client of one remote request to a service of this process."""
-
-    def __init__(self, session: Session, service: LocalEndpoint, answer: Operation) -> None:
-        self._session, self._service, self._answer = session, service, answer
-        self.srv_type, self.service_name = service.end.srv_type, service.name
-        self.context: object = session
-
-    def receive(self, sequence: int, response: bytes) -> None:
-        """Send the response."""
-        session = self._session
-        values = session._payloads.outgoing(response, f"{self._service.type_name}_Response")
-        session._queue(self._service.end, self._answer | {"values": values, "result": True})

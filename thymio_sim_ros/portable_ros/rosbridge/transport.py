@@ -43,7 +43,7 @@ class RosbridgeTransport:
         self._is_woken = False
         self._session: Session | None = None
         self._is_closing = False
-        self._is_lost = False
+        self._is_lost = self._is_rejected = False
         self._is_ready = threading.Event()
         self._rejection: RosbridgeError | None = None
         self._thread = threading.Thread(target=lambda: asyncio.run(self._run()), name="rosbridge", daemon=True)
@@ -94,7 +94,8 @@ class RosbridgeTransport:
             try:
                 await self._connect()
             except (OSError, WebSocketException) as error:
-                self._note_failure(error)
+                if not self._is_closing:
+                    self._note_failure(error)
             if self._rejection is not None:
                 return
             if not self._is_closing:
@@ -144,7 +145,7 @@ class RosbridgeTransport:
             if session.is_ready and not self._is_ready.is_set():
                 self._is_ready.set()
             if session.is_ready and self._is_lost:
-                self._is_lost = False
+                self._is_lost = self._is_rejected = False
                 self._report(f"connected to {self._shown}")
 
     async def _write(self, connection: ClientConnection, session: Session) -> None:
@@ -176,14 +177,18 @@ class RosbridgeTransport:
             self._is_lost = True
             what = f"connection with {self._shown} lost" if self._is_ready.is_set() else f"no server at {self._shown}"
             self._report(f"{what} ({_reason(error)}); waiting for it")
+        elif isinstance(error, InvalidStatus) and not self._is_rejected:
+            self._is_rejected = True
+            self._report(f"{self._shown}: {_reason(error)}; waiting for another answer")
 
 
 def _reason(error: Exception) -> str:
     """One line about an error."""
     if isinstance(error, InvalidStatus):
-        body = (error.response.body or b"").decode(errors="replace").strip()
-        if body:
-            return body.splitlines()[0]
+        response = error.response
+        if (response.body or b"").strip() and response.headers.get("Content-Type", "").startswith("text/plain"):
+            return (response.body or b"").decode(errors="replace").strip().splitlines()[0]
+        return f"found HTTP status {response.status_code}, expected a rosbridge server"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return str(error).splitlines()[0] if str(error) else type(error).__name__
