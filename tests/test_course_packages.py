@@ -96,6 +96,20 @@ def test_a_prepared_terminal_has_them(tmp_path):
 
 
 @pytest.mark.process
+def test_a_program_on_the_embedded_graph_has_them(tmp_path):
+    (tmp_path / "node.py").write_text(
+        NODE.partition("class")[0]
+        + "from tf2_ros.buffer_client import BufferClient\n"
+        + "import tf2_ros\n"
+        + "assert tf2_ros.BufferClient is BufferClient and not hasattr(tf2_ros, 'Nothing')\n"
+        + "print(TFMessage.__module__)\n"
+    )
+    command = [sys.executable, "-m", "thymio_sim_ros.portable_ros", "node.py"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert done.stdout == "tf2_msgs.msg._tf_message\n", done.stderr
+
+
+@pytest.mark.process
 def test_installed_packages_and_files_beside_the_node_have_priority(tmp_path):
     real, beside = tmp_path / "lib" / "site-packages", tmp_path / "beside"
     for place, answer in ((real, "real"), (beside, "own")):

@@ -100,6 +100,7 @@ RULES = {
     # rclpy and messages in pure Python: know no robot
     f"{OURS}.portable_ros": Rule(_names("portable_ros"), frozenset({"numpy", "rosbags", "yaml"})),
     f"{OURS}.portable_ros.rosbridge": Rule(_names("errors", "portable_ros"), frozenset({"cbor2", "websockets"})),
+    f"{OURS}.portable_ros.__main__": Rule(_names("course_packages", "portable_ros")),
     f"{OURS}.portable_ros.ros_types": Rule(_names("portable_ros"), MESSAGES),  # for their types
     # the packages of other names, which only programs of students import
     f"{OURS}.course_packages": Rule(

@@ -99,7 +99,7 @@ def test_can_transform_with_the_reason():
 
 
 class CountedClock:
-    """The clock of a node: time passes by `step_ns` with each reading."""
+    """A node and its clock: time passes by `step_ns` with each reading."""
 
     def __init__(self, step_ns):
         self.readings = 0
@@ -111,6 +111,9 @@ class CountedClock:
     def now(self):
         self.readings += 1
         return Time(nanoseconds=self.readings * self._step_ns)
+
+    def create_service(self, *_arguments):
+        return None
 
 
 def test_waiting_ends_with_the_transform():

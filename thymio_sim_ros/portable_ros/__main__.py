@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.portable_ros.import_hook import install
 from thymio_sim_ros.portable_ros.program import run_program
 
@@ -19,6 +20,7 @@ def main(words: Sequence[str] | None = None) -> int:
         print(_USAGE, file=sys.stdout if words[:1] in (["-h"], ["--help"]) else sys.stderr)
         return 0 if words[:1] in (["-h"], ["--help"]) else _WRONG_USAGE
     install(is_forced=True)
+    course_packages.add_to_path()
     is_module = words[0] == "-m"
     target, arguments = (words[1], words[2:]) if is_module else (words[0], words[1:])
     return run_program(target, arguments, is_module=is_module)

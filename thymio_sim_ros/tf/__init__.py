@@ -16,7 +16,8 @@ from thymio_sim_ros import course_packages
 from thymio_sim_ros.tf import geometry
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.tf.buffer import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformListener
+    from thymio_sim_ros.tf.broadcasters import StaticTransformBroadcaster, TransformBroadcaster
+    from thymio_sim_ros.tf.buffer import Buffer
     from thymio_sim_ros.tf.errors import (
         ConnectivityException,
         ExtrapolationException,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
         do_transform_pose_stamped,
         do_transform_vector3,
     )
+    from thymio_sim_ros.tf.transform_listener import TransformListener
 else:
     if course_packages.is_installed("tf2_ros"):
         from tf2_ros import (
@@ -49,7 +51,8 @@ else:
             TypeException,
         )
     else:
-        from thymio_sim_ros.tf.buffer import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformListener
+        from thymio_sim_ros.tf.broadcasters import StaticTransformBroadcaster, TransformBroadcaster
+        from thymio_sim_ros.tf.buffer import Buffer
         from thymio_sim_ros.tf.errors import (
             ConnectivityException,
             ExtrapolationException,
@@ -59,6 +62,7 @@ else:
             TransformException,
             TypeException,
         )
+        from thymio_sim_ros.tf.transform_listener import TransformListener
 
         TransformRegistration = None
     if course_packages.is_installed("tf2_geometry_msgs"):

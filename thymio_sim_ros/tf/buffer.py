@@ -1,32 +1,26 @@
-"""The classes of `tf2_ros`: a buffer of transforms, its listener, and broadcasters."""
+"""The buffer of `tf2_ros`: transforms over time for the nodes of a process."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from builtin_interfaces.msg import Time as TimeMessage
 from geometry_msgs.msg import TransformStamped
-from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.clock import Clock, ClockChange, JumpThreshold, TimeJump
+from rclpy.clock import Clock
 from rclpy.duration import Duration
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 from rclpy.time import Time
 
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.ros.compat import tf2_messages
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.tf.buffer_core import CACHE_NS, BufferCore, RigidTransform, StampedTransform
 from thymio_sim_ros.tf.buffer_interface import NO_WAIT, BufferInterface
 from thymio_sim_ros.tf.errors import TransformException
 
-__all__ = ["Buffer", "StaticTransformBroadcaster", "TransformBroadcaster", "TransformListener"]
-
-DYNAMIC = QoSProfile(depth=100)
-STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+__all__ = ["Buffer", "placed_of"]
 
 
 class Buffer(BufferInterface):
@@ -38,20 +32,27 @@ class Buffer(BufferInterface):
     """
 
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
-        """`node` provides the clock for time-outs; wall time is used without it."""
+        """`node` provides the clock for time-outs; wall time is used without it.
+
+        Where tf2_msgs is installed, the node gets the service `tf2_frames`, which returns the tree of frames.
+        """
         super().__init__()
         self._core = BufferCore(CACHE_NS if cache_time is None else cache_time.nanoseconds)
         self._clock = Clock() if node is None else node.get_clock()
         self._changed = threading.Condition()
         self._waiting: dict[Future[bool], Callable[[], bool]] = {}
+        if node is not None and course_packages.is_installed("tf2_msgs"):
+            from tf2_msgs.srv import FrameGraph
+
+            self.srv = node.create_service(FrameGraph, "tf2_frames", self._on_frames)
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
         """Store a transform. Raises TransformException if it is invalid or too old."""
-        self._store([_placed(transform)], authority, is_static=False)
+        self._store([placed_of(transform)], authority, is_static=False)
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
         """Store a transform that is valid at any time. Raises TransformException if it is invalid."""
-        self._store([_placed(transform)], authority, is_static=True)
+        self._store([placed_of(transform)], authority, is_static=True)
 
     def clear(self) -> None:
         """Drop all transforms except static ones."""
@@ -233,6 +234,10 @@ class Buffer(BufferInterface):
         with self._changed:
             return self._core.as_yaml()
 
+    def _on_frames(self, _request: object, response: Any) -> Any:
+        response.frame_yaml = self.all_frames_as_yaml()
+        return response
+
     def _store(self, transforms: Iterable[StampedTransform], authority: str, *, is_static: bool) -> None:
         """Store all valid transforms, complete the futures that waited for them, and then raise the first error."""
         first_error = None
@@ -294,139 +299,8 @@ POLL_S = 0.05
 """Wall time between two readings of the clock, which may be simulated."""
 
 
-class TransformListener:
-    """Fills a buffer with the transforms on `/tf` and `/tf_static`; clears it when the node's time jumps backwards.
-
-    With `spin_thread`, a thread with its own node receives messages, also while callbacks of `node` are waiting.
-    """
-
-    def __init__(
-        self,
-        buffer: Buffer,
-        node: Node,
-        *,
-        spin_thread: bool = False,
-        qos: QoSProfile | None = None,
-        static_qos: QoSProfile | None = None,
-        tf_topic: str = "/tf",
-        tf_static_topic: str = "/tf_static",
-    ) -> None:
-        self.buffer, self.node = buffer, node
-        self._warn = ThrottledLog(node)
-        self._spin_node: Node | None = None
-        if spin_thread:
-            self._spin_node = Node(
-                f"{node.get_name()}_tf_listener",
-                context=node.context,
-                namespace=node.get_namespace(),
-                enable_rosout=False,
-                start_parameter_services=False,
-            )
-        endpoint_node, group = self._spin_node or node, ReentrantCallbackGroup()
-        kind = tf2_messages.TFMessage
-        self.tf_sub = endpoint_node.create_subscription(
-            kind, tf_topic, self.callback, qos or DYNAMIC, callback_group=group, raw=True
-        )
-        self.tf_static_sub = endpoint_node.create_subscription(
-            kind, tf_static_topic, self.static_callback, static_qos or STATIC, callback_group=group, raw=True
-        )
-        self._jumps = node.get_clock().create_jump_callback(
-            JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True),
-            post_callback=self._on_jump,
-        )
-        if self._spin_node is not None:
-            self.executor = SingleThreadedExecutor(context=node.context)
-            self.executor.add_node(self._spin_node)
-            self.dedicated_listener_thread = threading.Thread(target=self._spin, name="tf_listener", daemon=True)
-            self.dedicated_listener_thread.start()
-
-    def callback(self, data: bytes) -> None:
-        """Store the transforms of a serialized message of `/tf`."""
-        self._on_transforms(data, is_static=False)
-
-    def static_callback(self, data: bytes) -> None:
-        """Store the transforms of a serialized message of `/tf_static`."""
-        self._on_transforms(data, is_static=True)
-
-    def unregister(self) -> None:
-        """Destroy the subscriptions, and the thread if there is one."""
-        self._jumps.unregister()
-        if self._spin_node is None:
-            self.node.destroy_subscription(self.tf_sub)
-            self.node.destroy_subscription(self.tf_static_sub)
-            return
-        self.executor.shutdown(timeout_sec=1.0)
-        self.dedicated_listener_thread.join(timeout=1.0)
-        self._spin_node.destroy_node()
-
-    def _spin(self) -> None:
-        try:
-            self.executor.spin()
-        except ExternalShutdownException:
-            return
-
-    def _on_transforms(self, data: bytes, *, is_static: bool) -> None:
-        try:
-            transforms = [
-                StampedTransform(
-                    message.stamp_ns,
-                    message.frame,
-                    message.child,
-                    RigidTransform(message.translation, message.rotation),
-                )
-                for message in tf2_messages.decode(data)
-            ]
-            self.buffer._store(transforms, "default_authority", is_static=is_static)
-        except (tf2_messages.TransformDataError, TransformException) as error:
-            self._warn("tf:", f"{error}; does the node use the simulator's time (use_sim_time:=true)?")
-
-    def _on_jump(self, jump: TimeJump) -> None:
-        if jump.delta.nanoseconds < 0 or jump.clock_change not in (
-            ClockChange.ROS_TIME_NO_CHANGE,
-            ClockChange.SYSTEM_TIME_NO_CHANGE,
-        ):
-            self.buffer.clear()
-
-
-class TransformBroadcaster:
-    """Publishes transforms on `/tf`."""
-
-    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf", qos or DYNAMIC)
-
-    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
-        """Publish one transform, or several in one message."""
-        self.pub_tf.publish(_encoded(_several(transform)))
-
-
-class StaticTransformBroadcaster:
-    """Publishes static transforms on `/tf_static`, transient local: late subscribers receive all of them."""
-
-    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf_static", qos or TRANSIENT_LOCAL)
-        self._sent: dict[str, TransformStamped] = {}
-
-    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
-        """Publish one transform or several; they replace earlier ones of the same child frame."""
-        self._sent |= {stamped.child_frame_id: stamped for stamped in _several(transform)}
-        self.pub_tf.publish(_encoded(self._sent.values()))
-
-
-def _several(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
-    return list(transform) if isinstance(transform, Iterable) else [transform]
-
-
-def _encoded(transforms: Iterable[TransformStamped]) -> bytes:
-    placed = map(_placed, transforms)
-    return tf2_messages.encode(
-        tf2_messages.Transform(
-            stamped.stamp_ns, stamped.frame, stamped.child, stamped.motion.translation, stamped.motion.rotation
-        )
-        for stamped in placed
-    )
-
-
-def _placed(transform: TransformStamped) -> StampedTransform:
+def placed_of(transform: TransformStamped) -> StampedTransform:
+    """The transform of a message."""
     message = tf2_messages.from_message(transform)
     return StampedTransform(
         message.stamp_ns, message.frame, message.child, RigidTransform(message.translation, message.rotation)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from typing import NoReturn
+from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 
-from thymio_sim_ros.tf.buffer import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformListener
+from thymio_sim_ros.tf.broadcasters import StaticTransformBroadcaster, TransformBroadcaster
+from thymio_sim_ros.tf.buffer import Buffer
 from thymio_sim_ros.tf.buffer import Buffer as BufferCore
 from thymio_sim_ros.tf.buffer_interface import (
     BufferInterface,
@@ -26,6 +27,7 @@ from thymio_sim_ros.tf.errors import (
     TransformException,
     TypeException,
 )
+from thymio_sim_ros.tf.transform_listener import TransformListener
 
 __all__ = [
     "Buffer",
@@ -49,11 +51,9 @@ __all__ = [
     "convert",
 ]
 
-_ACTIONS = {"BufferClient": "buffer_client", "BufferServer": "buffer_server"}
 
-
-def __getattr__(name: str) -> NoReturn:
-    """Raise the ImportError of what needs an action."""
-    if name in _ACTIONS:
-        getattr(importlib.import_module(f"{__name__}.{_ACTIONS[name]}"), name)
+def __getattr__(name: str) -> Any:
+    """The class BufferClient, which not every ROS can have. Raises ImportError without its action."""
+    if name == "BufferClient":
+        return importlib.import_module(f"{__name__}.buffer_client").BufferClient
     raise AttributeError(f"module 'tf2_ros' has no attribute {name!r}")

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.tf.buffer import StaticTransformBroadcaster
+from thymio_sim_ros.tf.broadcasters import StaticTransformBroadcaster
 
 __all__ = ["StaticTransformBroadcaster"]

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.tf.buffer import TransformBroadcaster
+from thymio_sim_ros.tf.broadcasters import TransformBroadcaster
 
 __all__ = ["TransformBroadcaster"]

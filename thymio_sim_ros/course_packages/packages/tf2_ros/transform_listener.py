@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.tf.buffer import TransformListener
+from thymio_sim_ros.tf.transform_listener import TransformListener
 
 __all__ = ["TransformListener"]
