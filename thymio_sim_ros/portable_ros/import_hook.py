@@ -1,4 +1,4 @@
-"""Serves the room under the names that programs import: `rclpy`, `std_msgs` and the others.
+"""Serves the room under the names that programs import: `rclpy`, `std_msgs` and the others, and messages of users.
 
 The hook never serves a part of what is installed: it serves all names, or, where there is an rclpy, none unless it is
 asked to. An installation with packages of messages but without rclpy is refused, because a program would mix both.
@@ -11,7 +11,7 @@ import importlib.util
 import sys
 from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
 
 from thymio_sim_ros.errors import ThymioSimError
@@ -19,7 +19,7 @@ from thymio_sim_ros.errors import ThymioSimError
 __all__ = ["APIS", "MODULES", "MixedInstallationError", "install", "is_served"]
 
 _ROOM = __package__
-APIS = ("rclpy", "rosidl_parser")
+APIS = ("rclpy", "rosidl_parser", "ament_index_python")
 MODULES = ("test_msgs.message_fixtures",)
 """What packages of messages have beside their messages."""
 
@@ -71,13 +71,36 @@ class _Finder(MetaPathFinder):
             own = importlib.util.find_spec(f"{_ROOM}.{fullname}")
             if own is None:
                 return None
-            is_package = own.submodule_search_locations is not None
-            return ModuleSpec(fullname, _RoomLoader(fullname), origin=own.origin, is_package=is_package)
-        from thymio_sim_ros.portable_ros.messages.interface_files import FORMS, PACKAGES
+            has_modules = own.submodule_search_locations is not None
+            return ModuleSpec(fullname, _RoomLoader(fullname), origin=own.origin, is_package=has_modules)
+        from thymio_sim_ros.portable_ros.messages.interface_files import FORMS, PACKAGES, is_package
 
-        if top not in PACKAGES or rest not in ("", *FORMS):
-            return None
-        return ModuleSpec(fullname, _MessagesLoader(), origin=__file__, is_package=not rest)
+        if top in PACKAGES and rest in ("", *FORMS):
+            return _messages_spec(fullname)
+        if rest in FORMS and is_package(top) and not _is_regular(PathFinder.find_spec(fullname, path)):
+            return _messages_spec(fullname)
+        return None
+
+
+class _LastFinder(MetaPathFinder):
+    """Finds packages of messages of users, if nothing else has their names."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The spec of a package, None for others."""
+        from thymio_sim_ros.portable_ros.messages.interface_files import is_package
+
+        return _messages_spec(fullname) if path is None and is_package(fullname) else None
+
+
+def _messages_spec(fullname: str) -> ModuleSpec:
+    return ModuleSpec(fullname, _MessagesLoader(), origin=__file__, is_package="." not in fullname)
+
+
+def _is_regular(spec: ModuleSpec | None) -> bool:
+    """Whether a module has a file; a folder without `__init__.py` is importable, too."""
+    return spec is not None and spec.origin is not None
 
 
 def install(*, is_forced: bool = False) -> bool:
@@ -104,6 +127,7 @@ def install(*, is_forced: bool = False) -> bool:
             " `python -m thymio_sim_ros.portable_ros` to ignore it"
         )
     sys.meta_path.insert(0, _Finder())
+    sys.meta_path.append(_LastFinder())
     return True
 
 

@@ -1,4 +1,7 @@
-"""Stubs with which mypy checks programs against the room: `python -m thymio_sim_ros.portable_ros.type_stubs FOLDER`.
+"""Stubs with which mypy checks programs against the room.
+
+`python -m thymio_sim_ros.portable_ros.type_stubs FOLDER [PACKAGE …]` writes them; the packages are those of the user
+that are found from the current folder.
 
 The stubs of `rclpy`, `rosidl_parser` and samples of messages import the modules of the room, so that mypy reads each
 class once. Those of the packages of messages are written from the definitions, since their classes are made at run
@@ -8,7 +11,7 @@ time.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from thymio_sim_ros.portable_ros.import_hook import APIS, MODULES
@@ -21,6 +24,7 @@ from thymio_sim_ros.portable_ros.messages.interface_files import (
     PACKAGES,
     SERVICE_PARTS,
     is_action,
+    is_package,
     messages,
     names,
     services,
@@ -43,17 +47,20 @@ from {__package__}.messages.primitives import Float
 """
 
 
-def write(folder: Path) -> None:
-    """Write all stubs into a folder; a file that is right already keeps its time."""
-    for name, text in stubs().items():
+def write(folder: Path, own: Sequence[str] = ()) -> None:
+    """Write all stubs into a folder, also of own packages; a file that is right already keeps its time.
+
+    Raises DefinitionError for a wrong definition, KeyError for a package that is not found.
+    """
+    for name, text in stubs(own).items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
 
 
-def stubs() -> dict[str, str]:
-    """The texts of all stubs by their paths, such as `std_msgs/msg.pyi`."""
+def stubs(own: Sequence[str] = ()) -> dict[str, str]:
+    """The texts of all stubs by their paths, such as `std_msgs/msg.pyi`, also of own packages."""
     found = {}
     sources = [source for api in APIS for source in (_ROOM / api).rglob("*.py")]
     sources += [_ROOM / f"{module.replace('.', '/')}.py" for module in MODULES]
@@ -61,7 +68,7 @@ def stubs() -> dict[str, str]:
         path = source.relative_to(_ROOM).with_suffix(".pyi")
         module = ".".join((__package__, *path.with_suffix("").parts)).removesuffix(".__init__")
         found[path.as_posix()] = f"from {module} import *\n"
-    for package in PACKAGES:
+    for package in (*PACKAGES, *own):
         found[f"{package}/__init__.pyi"] = ""
         for form in FORMS:
             if shorts := list(names(package, form)):
@@ -155,4 +162,8 @@ def _assigned(of: FieldType) -> str:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Writes stubs of rclpy and of the packages of messages for mypy.")
     parser.add_argument("folder", type=Path, help="a folder of the search path of mypy (mypy_path)")
-    write(parser.parse_args().folder)
+    parser.add_argument("packages", nargs="*", help="packages of messages of your own", metavar="PACKAGE")
+    arguments = parser.parse_args()
+    if unknown := [package for package in arguments.packages if not is_package(package)]:
+        parser.error(f"found no package {unknown[0]} with definitions here or in a folder above, expected one")
+    write(arguments.folder, arguments.packages)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import ast
 import functools
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum
-from typing import Any
 
+from thymio_sim_ros.portable_ros.messages.definition_text import Constant, Field, FieldType, Section, Shape, parsed
 from thymio_sim_ros.portable_ros.messages.interface_files import (
     ACTION_PARTS,
     ACTION_SERVICES,
@@ -19,60 +16,9 @@ from thymio_sim_ros.portable_ros.messages.interface_files import (
     is_service,
     sections,
     snake_case,
-    text_of,
 )
-from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 
 __all__ = ["Constant", "Definition", "Field", "FieldType", "Shape", "definition", "structure"]
-
-_TYPE = re.compile(
-    r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<text_bound>\d+))?(?P<array>\[(?:(?P<bounded><=)?(?P<size>\d+))?\])?"
-)
-_CONSTANT = re.compile(r"(?P<type>\S+)\s+(?P<name>[A-Z][A-Z0-9_]*)\s*=\s*(?P<value>.*)")
-
-
-class Shape(Enum):
-    """How many values a field has."""
-
-    SCALAR = "scalar"
-    ARRAY = "array"
-    SEQUENCE = "sequence"
-
-
-@dataclass(frozen=True, slots=True)
-class FieldType:
-    """The type of a field: a primitive or the full name of a message.
-
-    `size` is the length of an array or the limit of a sequence, `text_bound` that of a text; 0 stands for no limit.
-    """
-
-    base: str
-    shape: Shape = Shape.SCALAR
-    size: int = 0
-    text_bound: int = 0
-
-    @property
-    def is_primitive(self) -> bool:
-        """Whether the values are numbers, booleans, octets or texts."""
-        return self.base in PRIMITIVES
-
-
-@dataclass(frozen=True, slots=True)
-class Field:
-    """A field; `default` is the value in the definition, None without one."""
-
-    name: str
-    type: FieldType
-    default: Any = None
-
-
-@dataclass(frozen=True, slots=True)
-class Constant:
-    """A constant of a message."""
-
-    name: str
-    base: str
-    value: Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,15 +28,16 @@ class Definition:
     name: str
     fields: tuple[Field, ...]
     constants: tuple[Constant, ...] = ()
-    text: str = ""
-    """The text, empty for a message that rosidl adds to a service or an action."""
 
 
 @functools.cache
 def definition(name: str) -> Definition:
-    """The definition of a message by its full name. Raises KeyError if there is none."""
-    if name.split("/")[1:2] == ["msg"]:
-        return _parsed(name, text_of(name))
+    """The definition of a message by its full name.
+
+    Raises KeyError if there is none, DefinitionError if it is wrong.
+    """
+    if "" in sections(name):
+        return _parsed(name, sections(name)[""])
     owner, _, part = name.rpartition("_")
     if part in sections(owner):
         return _parsed(name, sections(owner)[part])
@@ -133,55 +80,6 @@ def _composed(name: str, fields: Mapping[str, str]) -> Definition:
     return Definition(name, tuple(Field(field, FieldType(base)) for field, base in fields.items()))
 
 
-def _parsed(name: str, text: str) -> Definition:
-    package = name.partition("/")[0]
-    fields, constants = [], []
-    for line in filter(None, map(str.strip, text.splitlines())):
-        if found := _CONSTANT.fullmatch(line):
-            base = found["type"]
-            constants.append(Constant(found["name"], base, _value(base, found["value"])))
-        else:
-            fields.append(_field(package, line))
-    return Definition(name, tuple(fields), tuple(constants), text)
-
-
-def _field(package: str, line: str) -> Field:
-    kind, name, *default = line.split(maxsplit=2)
-    found = _TYPE.fullmatch(kind)
-    if found is None:
-        raise ValueError(f"{package}: found {line!r}, expected a field")
-    base = found["base"]
-    shape = Shape.SCALAR
-    if found["array"]:
-        shape = Shape.ARRAY if found["size"] and not found["bounded"] else Shape.SEQUENCE
-    of = FieldType(_full(package, base), shape, int(found["size"] or 0), int(found["text_bound"] or 0))
-    if not default:
-        return Field(name, of)
-    return Field(name, of, _value(base, default[0]) if shape is Shape.SCALAR else _values(base, default[0]))
-
-
-def _full(package: str, base: str) -> str:
-    """The full name of a type of a field, as it is written in a definition of the package."""
-    if base in PRIMITIVES:
-        return base
-    owner, _, name = base.rpartition("/")
-    if base == "Header":
-        owner = "std_msgs"
-    return f"{owner or package}/msg/{name}"
-
-
-def _values(base: str, text: str) -> tuple[Any, ...]:
-    """The default of an array or a sequence, such as `[1, 2]`."""
-    return tuple(_value(base, one) for one in re.findall(r"\"[^\"]*\"|'[^']*'|[^\[\],\s]+", text))
-
-
-def _value(base: str, text: str) -> Any:
-    """A constant or a default, as the value that the Python class has."""
-    if base in ("string", "wstring"):
-        return ast.literal_eval(text) if text[:1] in ("'", '"') else text
-    if base == "bool":
-        return text.lower() in ("true", "1")
-    value = ast.literal_eval(text)
-    if base == "byte":
-        return bytes([value])
-    return float(value) if base.startswith("float") else value
+def _parsed(name: str, section: Section) -> Definition:
+    fields, constants = parsed(section, name.partition("/")[0], lambda base: base != name and "" in sections(base))
+    return Definition(name, tuple(fields), tuple(constants))

@@ -11,19 +11,25 @@ import re
 from collections.abc import Iterator, Mapping
 from importlib import resources
 
+from thymio_sim_ros.portable_ros.messages.definition_text import DefinitionError, Section
+from thymio_sim_ros.portable_ros.messages.own_packages import FORMS, own_folder, read
+
 __all__ = [
     "ACTION_PARTS",
     "ACTION_SERVICES",
     "FEEDBACK_MESSAGE",
     "FORMS",
     "PACKAGES",
+    "SEPARATOR",
     "SERVICE_PARTS",
     "interfaces",
     "is_action",
+    "is_package",
     "is_service",
     "messages",
     "module_of",
     "names",
+    "place_of",
     "sections",
     "services",
     "snake_case",
@@ -35,7 +41,6 @@ _SUFFIX = ".txt"
 PACKAGES = frozenset(file.name.removesuffix(_SUFFIX) for file in _FOLDER.iterdir() if file.name.endswith(_SUFFIX))
 """The packages that have definitions."""
 
-FORMS = ("msg", "srv", "action")
 SERVICE_PARTS = ("Request", "Response", "Event")
 """The messages of a service; a file has the first two."""
 ACTION_PARTS = ("Goal", "Result", "Feedback")
@@ -46,12 +51,27 @@ FEEDBACK_MESSAGE = "FeedbackMessage"
 """The message of an action that is published: its feedback with the id of the goal."""
 
 _ADDED_TO_NAMES = {"srv": SERVICE_PARTS, "action": (*SERVICE_PARTS, *ACTION_SERVICES, *ACTION_PARTS, FEEDBACK_MESSAGE)}
-_PARTS = {"srv": SERVICE_PARTS[:2], "action": ACTION_PARTS}
+_PARTS = {"msg": ("",), "srv": SERVICE_PARTS[:2], "action": ACTION_PARTS}
+SEPARATOR = "---"
+"""The line between the parts of a service or an action."""
+
+
+def is_package(name: str) -> bool:
+    """Whether there are interfaces of a package: here, or in a folder of the user."""
+    return name in PACKAGES or own_folder(name) is not None
 
 
 @functools.cache
 def interfaces(package: str) -> Mapping[str, str]:
-    """The texts of a package by `msg/Name`, `srv/Name` or `action/Name`."""
+    """The texts of a package by `msg/Name`, `srv/Name` or `action/Name`. Raises KeyError if there is no such package.
+
+    Those of a folder of the user are read once. Raises DefinitionError for a file that is no text or has a wrong name.
+    """
+    if package not in PACKAGES:
+        folder = own_folder(package)
+        if folder is None:
+            raise KeyError(package)
+        return read(folder)
     content = _FOLDER.joinpath(f"{package}{_SUFFIX}").read_text(encoding="utf-8")
     _, *parts = re.split(r"^=== (.+)$", content, flags=re.MULTILINE)
     return {name: text.lstrip("\n") for name, text in zip(parts[::2], parts[1::2], strict=True)}
@@ -68,19 +88,39 @@ def names(package: str, form: str) -> Iterator[str]:
 def text_of(name: str) -> str:
     """The text of an interface by its full name. Raises KeyError if there is none."""
     package, _, rest = name.partition("/")
-    if not _exists(name):
-        raise KeyError(name)
     return interfaces(package)[rest]
 
 
 @functools.cache
-def sections(name: str) -> Mapping[str, str]:
-    """The texts of a service or an action by part, such as `Request`; empty for any other name."""
-    _, form, *_ = name.split("/") if _exists(name) else ("", "")
-    if form not in _PARTS:
+def sections(name: str) -> Mapping[str, Section]:
+    """The texts of an interface by part, such as `Request`; that of a message has no name. Empty for any other name.
+
+    Raises DefinitionError if the text has another number of parts.
+    """
+    try:
+        text = text_of(name)
+    except KeyError:
         return {}
-    texts = re.split(r"^---$", text_of(name), flags=re.MULTILINE)
-    return {part: text.removeprefix("\n") for part, text in zip(_PARTS[form], texts, strict=True)}
+    form = name.split("/")[1]
+    parts, place = _PARTS[form], place_of(name)
+    lines = text.splitlines()
+    ends = [number for number, line in enumerate(lines) if line == SEPARATOR and form != "msg"]
+    if len(ends) != len(parts) - 1:
+        raise DefinitionError(
+            f"{place}: found {len(ends)} lines {SEPARATOR!r}, expected {len(parts) - 1}: between {' and '.join(parts)}"
+        )
+    starts = [0, *(end + 1 for end in ends)]
+    return {
+        part: Section("".join(f"{line}\n" for line in lines[start:end]), place, start + 1)
+        for part, start, end in zip(parts, starts, [*ends, len(lines)], strict=True)
+    }
+
+
+def place_of(name: str) -> str:
+    """Where the text of an interface is: its full name, or a file of the user."""
+    package, form, short = name.split("/")
+    folder = None if package in PACKAGES else own_folder(package)
+    return name if folder is None else str(folder / form / f"{short}.{form}")
 
 
 def is_action(name: str) -> bool:
@@ -121,8 +161,3 @@ def snake_case(name: str) -> str:
     """A name such as `SendGoal` in lower case, such as `send_goal`."""
     words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
-
-
-def _exists(name: str) -> bool:
-    package, _, rest = name.partition("/")
-    return package in PACKAGES and rest in interfaces(package)
