@@ -113,7 +113,7 @@ def pytest_addoption(parser):
 
 
 ROOT = Path(__file__).parent
-ROS_FOLDERS = [ROOT / name for name in ("ros", "portable_ros/real", "testing/ros", "tf")]
+ROS_FOLDERS = [ROOT / name for name in ("bags", "ros", "portable_ros/real", "testing/ros", "tf")]
 ROS_FIXTURES = {"ros", "ros_domain", "_shared"}
 PAGE = "page"
 """All files of tests of the page, for the scheduler."""

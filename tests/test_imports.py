@@ -93,6 +93,7 @@ RULES = {
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.ros.foxglove.rosbridge.values": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS | {"cbor2", "numpy"}),
+    f"{OURS}.bags": Rule(_names("bags", "ros.foxglove.schemas", "ros.foxglove.types"), ROS | {"rosbags"}),
     f"{OURS}.tf": Rule(
         _names("course_packages", "tf", "ros.compat.tf2_messages", "ros.rclpy_ext.throttled_log"),
         ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},
@@ -138,6 +139,7 @@ RULES = {
     OURS: Rule(ALL_OF_OURS),
 }
 STARTERS = {
+    f"{OURS}.bags",
     f"{OURS}.cli",
     f"{OURS}.course_packages",
     f"{OURS}.testing.ros",
@@ -250,6 +252,7 @@ def test_the_picture_of_the_rooms_is_true() -> None:
 @pytest.mark.process
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
     with_ros = (
+        f"{OURS}.bags",
         f"{OURS}.course_packages.packages",
         f"{OURS}.ros",
         f"{OURS}.testing.ros",
