@@ -113,7 +113,7 @@ def test_there_is_a_stub_for_each_class() -> None:
 
 
 def test_a_folder_gets_the_stubs_of_all_packages(tmp_path: Path) -> None:
-    write(tmp_path)
+    write(tmp_path, stubs())
     found = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*.pyi")}
     assert found == stubs().keys()
     expected = {"rclpy/node.pyi", "rclpy/__init__.pyi", "std_msgs/msg.pyi", "std_srvs/srv.pyi"}
@@ -123,7 +123,7 @@ def test_a_folder_gets_the_stubs_of_all_packages(tmp_path: Path) -> None:
 @pytest.mark.process
 def test_mypy_finds_wrong_messages(tmp_path: Path) -> None:
     pytest.importorskip("mypy", reason="mypy is installed by `make lint`")
-    write(tmp_path / "typings")
+    write(tmp_path / "typings", stubs())
     (tmp_path / "program.py").write_text(PROGRAM, encoding="utf-8")
     words = [
         "--strict",

@@ -1,4 +1,4 @@
-"""The command `thymio-sim env`: environment variables for other ROS processes on this computer."""
+"""The command `thymio-sim env`: variables for other ROS processes on this computer, and stubs for editors."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 
 from aseba_vm.cli.output import standard_output
 from thymio_sim_ros import course_packages
+from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.ros_graph import check_ros
 from thymio_sim_ros.course_packages import field_checks
 
@@ -27,11 +28,19 @@ times a second, so that they find it at once. Where ROS comes from Python wheels
 its packages. Nodes in Python report a value of the wrong type, such as `linear.x = 1`. `tf2_ros`, `tf2_msgs`,
 `tf2_geometry_msgs` and `tf_transformations` can be imported, also where they are not installed. Variables that are set
 already are not printed; PYTHONPATH keeps its folders and gets one more.
+
+In the folder of your nodes, for completion and checks of types in an editor, also without ROS:
+  thymio-sim env --stubs
 """
+
+_WRITTEN = """\
+The stubs are in {folder}. VS Code and pyright find them in the folder typings of a workspace; select the Python of
+thymio-sim as interpreter. For another folder, set "python.analysis.stubPath" or "stubPath". For mypy, set
+mypy_path = {folder}"""
 
 
 def run(argv: Sequence[str]) -> int:
-    """Print the commands that set the variables; return the exit code. Raises UsageError without ROS."""
+    """Print the commands that set the variables, or write stubs; return the exit code. Raises UsageError."""
     parser = argparse.ArgumentParser(
         prog="thymio-sim env",
         description="Print shell commands that prepare a terminal for nodes beside the simulator.",
@@ -39,11 +48,45 @@ def run(argv: Sequence[str]) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    parser.parse_args(argv)
+    parser.add_argument(
+        "--stubs",
+        nargs="?",
+        type=Path,
+        const=Path("typings"),
+        metavar="FOLDER",
+        help="write stubs of rclpy, messages and tf2 into a folder (typings), where VS Code and pyright find them",
+    )
+    parser.add_argument(
+        "--package", action="append", default=[], help="with --stubs: a package of messages of your own; repeatable"
+    )
+    options = parser.parse_args(argv)
+    if options.stubs is not None:
+        _write_stubs(options.stubs, options.package)
+        return 0
+    if options.package:
+        raise UsageError("--package: found no --stubs, expected it too")
     check_ros()
     with standard_output():
         sys.stdout.write("".join(f"export {name}={shlex.quote(value)}\n" for name, value in _variables().items()))
     return 0
+
+
+def _write_stubs(folder: Path, packages: Sequence[str]) -> None:
+    """Write the stubs and say how they are used. Raises UsageError."""
+    from thymio_sim_ros.course_packages import stubs as course_stubs
+    from thymio_sim_ros.portable_ros import type_stubs
+    from thymio_sim_ros.portable_ros.messages.definition_text import DefinitionError
+    from thymio_sim_ros.portable_ros.messages.interface_files import is_package
+
+    sys.path.insert(0, str(Path.cwd()))  # packages of users are found from here
+    if unknown := [package for package in packages if not is_package(package)]:
+        raise UsageError(f"--package: found no {unknown[0]} with definitions here or in a folder above, expected one")
+    try:
+        type_stubs.write(folder, {**type_stubs.stubs(packages), **course_stubs.stubs()})
+    except (DefinitionError, OSError) as error:
+        raise UsageError(f"--stubs: {error}") from error
+    with standard_output():
+        print(_WRITTEN.format(folder=folder))
 
 
 def _variables() -> Mapping[str, str]:

@@ -11,7 +11,7 @@ time.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from thymio_sim_ros.portable_ros.import_hook import APIS, MODULES
@@ -47,12 +47,9 @@ from {__package__}.messages.primitives import Float
 """
 
 
-def write(folder: Path, own: Sequence[str] = ()) -> None:
-    """Write all stubs into a folder, also of own packages; a file that is right already keeps its time.
-
-    Raises DefinitionError for a wrong definition, KeyError for a package that is not found.
-    """
-    for name, text in stubs(own).items():
+def write(folder: Path, texts: Mapping[str, str]) -> None:
+    """Write stubs by their paths into a folder; a file that is right already keeps its time."""
+    for name, text in texts.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
@@ -60,7 +57,10 @@ def write(folder: Path, own: Sequence[str] = ()) -> None:
 
 
 def stubs(own: Sequence[str] = ()) -> dict[str, str]:
-    """The texts of all stubs by their paths, such as `std_msgs/msg.pyi`, also of own packages."""
+    """The texts of all stubs by their paths, such as `std_msgs/msg.pyi`, also of own packages.
+
+    Raises DefinitionError for a wrong definition, KeyError for a package that is not found.
+    """
     found = {}
     sources = [source for api in APIS for source in (_ROOM / api).rglob("*.py")]
     sources += [_ROOM / f"{module.replace('.', '/')}.py" for module in MODULES]
@@ -166,4 +166,4 @@ if __name__ == "__main__":
     arguments = parser.parse_args()
     if unknown := [package for package in arguments.packages if not is_package(package)]:
         parser.error(f"found no package {unknown[0]} with definitions here or in a folder above, expected one")
-    write(arguments.folder, arguments.packages)
+    write(arguments.folder, stubs(arguments.packages))
