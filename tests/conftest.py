@@ -21,7 +21,6 @@ from tests import ros_graph
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.end_signals import END_SIGNALS
 from thymio_sim_ros.files import resources
-from thymio_sim_ros.portable_ros.graph import graph
 from thymio_sim_ros.sim.formats import svg_worker
 
 with contextlib.suppress(ImportError):
@@ -50,13 +49,6 @@ def _signal_handlers() -> Iterator[None]:
     for number, handler in zip(numbers, before, strict=True):
         if signal.getsignal(number) is not handler:
             signal.signal(number, handler)
-
-
-@pytest.fixture
-def ros_domain(ros_domain: int) -> Iterator[int]:
-    """The fixture of the package; a later test in this domain finds no node that this one has not destroyed."""
-    yield ros_domain
-    graph._graphs.pop(ros_domain, None)
 
 
 @pytest.fixture
@@ -110,6 +102,10 @@ def pytest_addoption(parser):
     parser.addoption("--vectors", metavar="DIR", type=Path, default=None, help=about)
     about = "keep the pictures of the page as they are now, in tests/data/web/snapshots"
     parser.addoption("--update-snapshots", action="store_true", help=about)
+
+
+def pytest_configure(config):
+    config.option.ros = not ros_graph.IS_EMBEDDED  # the graph is chosen already
 
 
 ROOT = Path(__file__).parent

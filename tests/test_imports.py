@@ -126,7 +126,7 @@ RULES = {
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
     f"{OURS}.testing": Rule(_names("device", "engine", "files", "sim", "testing"), frozenset({"pytest"})),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
-    f"{OURS}.lockstep": Rule(_names("course_packages", "errors", "lockstep", "names.type_names"), ROS),
+    f"{OURS}.lockstep": Rule(_names("course_packages", "errors", "lockstep", "names.type_names", "portable_ros"), ROS),
     f"{OURS}.grading": Rule(
         _names("aseba_vm", "batch_runs", "files.block_files", "files.test_files", "grading"), frozenset({"pytest"})
     ),

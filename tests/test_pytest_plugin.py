@@ -9,12 +9,13 @@ from pathlib import Path
 import pytest
 
 from tests.patience import PROGRAM_S
+from thymio_sim_ros.portable_ros import import_hook
 
 pytestmark = pytest.mark.process
 
 ROOT = Path(__file__).parents[1]
 PLUGIN = "thymio_sim_ros.pytest_plugin"
-HAS_ROS = importlib.util.find_spec("rclpy") is not None
+HAS_ROS = importlib.util.find_spec("rclpy") is not None and not import_hook.is_served("rclpy")
 NO_ROS = "import sys\nsys.modules.update(dict.fromkeys(['rclpy', 'std_msgs', 'geometry_msgs']))\n"
 
 Run = Callable[..., pytest.RunResult]
@@ -73,7 +74,7 @@ def test_a_name_of_the_project_s_own_wins(pytester: pytest.Pytester, run: Run) -
     run().assert_outcomes(passed=1)
 
 
-def test_without_ros_its_tests_are_skipped_with_a_reason_and_the_others_run(
+def test_an_installed_ros_that_is_wanted_and_missing_skips_tests_of_nodes_with_a_reason(
     pytester: pytest.Pytester, run: Run
 ) -> None:
     pytester.makeconftest(NO_ROS)
@@ -89,9 +90,31 @@ def test_without_ros_its_tests_are_skipped_with_a_reason_and_the_others_run(
         def test_a_program(runtime): pass
         """
     )
-    result = run("-rs")
+    result = run("-rs", "--ros")
     result.assert_outcomes(passed=1, skipped=3)
-    result.stdout.fnmatch_lines(["*ROS is not here: rclpy cannot be imported. Source a ROS 2 Jazzy installation*"])
+    result.stdout.fnmatch_lines(["*--ros: rclpy cannot be imported. Source a ROS 2 Jazzy installation*"])
+
+
+GRAPH = """
+    import rclpy
+
+    def test_it({fixtures}):
+        assert (rclpy.get_rmw_implementation_identifier() == "portable_ros") is {is_embedded}
+"""
+
+
+def test_a_file_of_tests_of_nodes_gets_the_embedded_graph(pytester: pytest.Pytester, run: Run) -> None:
+    pytester.makepyfile(GRAPH.format(fixtures="ros", is_embedded=True))
+    run().assert_outcomes(passed=1)
+
+
+@pytest.mark.skipif(not HAS_ROS, reason="needs an installed ROS 2")
+@pytest.mark.parametrize(("fixtures", "options"), [("ros", ["--ros"]), ("", [])])
+def test_an_installed_ros_stays_if_it_is_wanted_or_no_test_of_nodes_is_there(
+    pytester: pytest.Pytester, run: Run, fixtures: str, options: list[str]
+) -> None:
+    pytester.makepyfile(GRAPH.format(fixtures=fixtures, is_embedded=False))
+    run(*options).assert_outcomes(passed=1)
 
 
 INVALID_MARKS = [
@@ -171,7 +194,6 @@ def test_files_are_looked_for_beside_the_test(pytester: pytest.Pytester, run: Ru
     run().assert_outcomes(passed=1)
 
 
-@pytest.mark.skipif(not HAS_ROS, reason="needs ROS")
 def test_a_project_with_ros_runs_in_parallel_without_crosstalk(pytester: pytest.Pytester, run: Run) -> None:
     pytest.importorskip("xdist")
     pytester.makepyfile(
@@ -193,14 +215,12 @@ def test_a_project_with_ros_runs_in_parallel_without_crosstalk(pytester: pytest.
     run("-n", "2", "-W", "error").assert_outcomes(passed=8)
 
 
-@pytest.mark.skipif(not HAS_ROS, reason="needs ROS")
 @pytest.mark.parametrize("capture", ["sys", *(pytest.param(one, marks=pytest.mark.slow) for one in ("tee-sys", "no"))])
 def test_output_may_be_captured_in_every_way(pytester: pytest.Pytester, run: Run, capture: str) -> None:
     pytester.makepyfile("def test_it(ros): assert ros.context.ok()")
     run(f"--capture={capture}").assert_outcomes(passed=1)
 
 
-@pytest.mark.skipif(not HAS_ROS, reason="needs ROS")
 def test_the_world_and_program_of_a_mark_are_those_of_the_nodes(pytester: pytest.Pytester, run: Run) -> None:
     pytester.makepyfile(
         """

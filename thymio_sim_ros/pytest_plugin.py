@@ -6,8 +6,11 @@ it needs. Fixtures that need ROS skip the test if ROS is not installed.
 
 from __future__ import annotations
 
+import ast
+import contextlib
 import importlib.util
 import os
+import sys
 import threading
 import warnings
 from collections.abc import Callable, Generator, Iterator
@@ -18,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from thymio_sim_ros.course_packages import field_checks
+from thymio_sim_ros.portable_ros import import_hook
 
 if TYPE_CHECKING:
     from thymio_sim_ros.ros.aseba.node import AsebaRuntime
@@ -27,9 +31,11 @@ if TYPE_CHECKING:
 MARK = "thymio"
 KEYWORDS = ("playground", "program", "programs", "seed", "noise")
 NO_ROS = (
-    "ROS is not here: rclpy cannot be imported. Source a ROS 2 Jazzy installation,"
-    " or on Linux x86-64: pip install 'thymio_sim_ros[ros]'"
+    "--ros: rclpy cannot be imported. Source a ROS 2 Jazzy installation, or on Linux x86-64:"
+    " pip install 'thymio_sim_ros[ros]'; without --ros, tests have the embedded graph"
 )
+ROS_FIXTURES = frozenset(("ros", "ros_node", "spin_until"))
+"""Fixtures by which a file of tests shows that it needs a ROS graph: no test of nodes does without one of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,15 +57,45 @@ class Graded:
 GRADED = pytest.StashKey[Graded]()
 
 
-def pytest_load_initial_conftests() -> None:
-    """Let messages check the types of their fields; files of tests import them later."""
+def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
+    """Prepare what files of tests import later: checks of fields, and the embedded graph where no ROS is installed."""
     field_checks.switch_on()
+    if importlib.util.find_spec("rclpy") is None:
+        _choose_graph(is_ros_wanted=early_config.known_args_namespace.ros)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option for run logs."""
+    """Add the options for run logs and for the ROS graph."""
+    group = parser.getgroup("thymio")
     about = "write the run log of the world of each test into this folder (thymio-sim replay)"
-    parser.getgroup("thymio").addoption("--run-logs", metavar="DIR", type=Path, default=None, help=about)
+    group.addoption("--run-logs", metavar="DIR", type=Path, default=None, help=about)
+    about = "tests of ROS nodes use an installed ROS 2 (default: the embedded graph)"
+    group.addoption("--ros", action="store_true", help=about)
+
+
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> None:
+    """Choose the ROS graph before the first file of tests for ROS is imported; others keep an installed ROS."""
+    if _has_ros_fixture(module_path):
+        _choose_graph(is_ros_wanted=parent.config.option.ros)
+
+
+def _has_ros_fixture(path: Path) -> bool:
+    """Whether a function of a file has a parameter that is a fixture for ROS."""
+    source = path.read_bytes()
+    if b"ros" not in source and b"spin_until" not in source:
+        return False
+    try:
+        nodes = ast.walk(ast.parse(source))
+    except (SyntaxError, ValueError):  # pytest reports it
+        return False
+    return any(isinstance(node, ast.arg) and node.arg in ROS_FIXTURES for node in nodes)
+
+
+def _choose_graph(*, is_ros_wanted: bool) -> None:
+    """Serve the embedded graph from now on, unless an installed ROS is wanted or in use."""
+    if not is_ros_wanted and not ("rclpy" in sys.modules or import_hook.is_served("rclpy")):
+        with contextlib.suppress(import_hook.MixedInstallationError):  # packages of messages are in use
+            import_hook.install(is_forced=True)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -167,6 +203,7 @@ def ros_domain(request: pytest.FixtureRequest) -> Iterator[int]:
 @pytest.fixture
 def ros(request: pytest.FixtureRequest) -> Iterator[Ros]:
     """A private context and executor in a private domain. The test fails if threads are still running at its end."""
+    _choose_graph(is_ros_wanted=request.config.option.ros)
     if importlib.util.find_spec("rclpy") is None:
         pytest.skip(NO_ROS)
     domain = request.getfixturevalue("ros_domain")

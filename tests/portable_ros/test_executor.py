@@ -12,6 +12,7 @@ from tests.patience import PATIENCE_S
 from thymio_sim_ros.portable_ros.rclpy.context import Context
 from thymio_sim_ros.portable_ros.rclpy.exceptions import ROSInterruptException
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor, TimeoutException
+from thymio_sim_ros.portable_ros.rclpy.experimental.events_executor import EventsExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.task import Future
 
@@ -36,6 +37,18 @@ def round_of(executor: SingleThreadedExecutor) -> list[Any]:
             return entities
         entities.append(entity)
         task()
+
+
+def test_an_events_executor_runs_a_task_after_what_was_ready_before(node: Node) -> None:
+    called: list[str] = []
+    guard = node.create_guard_condition(lambda: called.append("guard"))
+    executor = EventsExecutor(context=node.context)
+    executor.add_node(node)
+    guard.trigger()
+    executor.create_task(called.append, "task")
+    for _ in range(2):
+        executor.spin_once(timeout_sec=0)
+    assert called == ["guard", "task"]
 
 
 def test_a_round_has_what_was_ready_at_its_start_each_entity_once(node: Node) -> None:

@@ -91,7 +91,12 @@ def _install_selectors(turns: Turns) -> None:
                 turns.poll()
                 return super().select(0)
             deadline_ns = None if timeout is None else turns.now_ns + round(timeout * SECOND_NS)
-            turns.wait(lambda: bool(super(SimulatedSelector, self).select(0)), deadline_ns, "a file or socket")
+            turns.wait(
+                lambda: bool(super(SimulatedSelector, self).select(0)),
+                deadline_ns,
+                "a file or socket",
+                is_watching=True,
+            )
             return super().select(0)
 
     def select_in_turns(
@@ -108,7 +113,7 @@ def _install_selectors(turns: Turns) -> None:
             turns.poll()
         else:
             deadline_ns = None if timeout is None else turns.now_ns + round(timeout * SECOND_NS)
-            turns.wait(lambda: any(ready()), deadline_ns, "a file or socket")
+            turns.wait(lambda: any(ready()), deadline_ns, "a file or socket", is_watching=True)
         return ready()
 
     for module in (select, selectors):

@@ -25,7 +25,7 @@ from thymio_sim_ros.lockstep.channel import Channel, ClosedError
 from thymio_sim_ros.lockstep.turns import Turns
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.lockstep.ros_graph import Graph
+    from thymio_sim_ros.lockstep.program_graph import ProgramGraph
 
 STACKS_SIGNAL = signal.SIGXCPU
 """On this signal the process writes the stacks of all threads to a file."""
@@ -52,6 +52,8 @@ class Options:
     folder: str
     """First place for imports."""
     arguments: list[str]
+    is_embedded: bool = True
+    """Whether its nodes are on the embedded graph, not on that of an installed ROS 2."""
     seed: int = 0
 
 
@@ -64,13 +66,21 @@ class Session:
         threads.install(self.turns)
         clocks.install(self.turns)
         self._keyboard = keyboard.install(self.turns)
-        from thymio_sim_ros.lockstep import ros_graph, ros_waits
-
-        ros_waits.install(self.turns)
-        self._graph: Graph = ros_graph.Graph(options.name, self.settle, self.turns.poll)
-        self._graph.install()
+        self._graph: ProgramGraph = self._made_graph(options)
         self._is_forked = False
         os.register_at_fork(after_in_child=self._leave_test)
+
+    def _made_graph(self, options: Options) -> ProgramGraph:
+        """The graph of the program; imported now, since it is made of what has been replaced."""
+        if options.is_embedded:
+            from thymio_sim_ros.lockstep.program_graph import EmbeddedGraph
+
+            return EmbeddedGraph(self.turns)
+        from thymio_sim_ros.lockstep.installed_ros import waits
+        from thymio_sim_ros.lockstep.installed_ros.graph import InstalledGraph
+
+        waits.install(self.turns)
+        return InstalledGraph(options.name, self.settle, self.turns.poll)
 
     def begin(self) -> None:
         """Get the first turn."""
@@ -106,12 +116,12 @@ class Session:
         """In a process that the program forked: real time passes, and the connection is that of the program only."""
         self._is_forked = True
         self._channel.close()
+        self._graph.leave_test()
         self.turns.keep_only_running()
 
     def _send(self, event: str, **values: Any) -> None:
-        changed = {"endpoints": self._graph.endpoints()} if self._graph.has_changed or event == "settle" else {}
         try:
-            self._channel.send({"event": event, "marks": self._graph.marks(), **changed, **values})
+            self._channel.send({"event": event, **self._graph.outgoing(event), **values})
         except ClosedError:
             os._exit(1)
 
@@ -125,7 +135,7 @@ class Session:
         while "match" in (message := self._receive()):
             self._graph.match(message["match"])
             self._channel.send({"event": "matched"})
-        self._graph.wait_for(message["marks"])
+        self._graph.receive(message)
         for at_ns, line in message["lines"]:
             self._keyboard.type(at_ns, line)
         self._keyboard.is_closed_after = message["is_closed_after"]

@@ -15,10 +15,13 @@ from rclpy.subscription import Subscription
 
 from thymio_sim_ros.names.type_names import type_name
 
-__all__ = ["EVERYWHERE", "all_matched", "endpoints", "fit", "is_complete", "is_matched"]
+__all__ = ["EVERYWHERE", "TURNS", "all_matched", "endpoints", "fit", "is_complete", "is_matched"]
 
 EVERYWHERE = ("/clock", "/parameter_events", "/rosout")
 """Topics of every node."""
+
+TURNS = "/_thymio_sim/turns"
+"""Topic of the marks between the processes of a test on an installed ROS."""
 
 
 def all_matched(nodes: Sequence[Node]) -> bool:

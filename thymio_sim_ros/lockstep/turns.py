@@ -41,6 +41,8 @@ class WaitingThread:
         self.is_ready: Callable[[], bool] = _always
         self.deadline_ns: int | None = None
         self.waits_for = ""
+        self.is_watching = False
+        """Whether it waits for something outside of the simulation, which needs a look in each turn."""
         self.is_done = False
         self.is_interrupted = False
         self.polls = 0
@@ -66,6 +68,8 @@ class Turns:
         self.main.ident = _thread.get_ident()
         self.running = self.main
         self.threads = [self.main]
+        self._waits_outside = 0
+        """Number of waits on threads that have no turns."""
 
     # --- time ---
 
@@ -81,16 +85,26 @@ class Turns:
 
     @property
     def next_ns(self) -> int | None:
-        """The next time that a thread waits for; None if they wait for something else."""
+        """The next time at which a thread needs a turn, 0 for each turn; None if only a message can end all waits."""
+        if self._waits_outside or any(thread.is_watching for thread in self.threads):
+            return 0
         deadlines = [thread.deadline_ns for thread in self.threads if thread.deadline_ns is not None]
         return min(deadlines, default=None)
 
     # --- waits ---
 
-    def wait(self, is_ready: Callable[[], bool], deadline_ns: int | None = None, what: str = "") -> bool:
+    def wait(
+        self,
+        is_ready: Callable[[], bool],
+        deadline_ns: int | None = None,
+        what: str = "",
+        *,
+        is_watching: bool = False,
+    ) -> bool:
         """Wait until `is_ready()` or until simulated time reaches the deadline; return whether it is ready.
 
-        `is_ready` must not wait. Raises KeyboardInterrupt in the main thread if the program is interrupted.
+        `is_ready` must not wait; `is_watching`: it depends on something outside of the simulation. Raises
+        KeyboardInterrupt in the main thread if the program is interrupted.
         """
         if is_ready():
             return True
@@ -98,9 +112,9 @@ class Turns:
         # A thread without the turn was not started by `threading`, such as a thread of a C library.
         if own.ident != _thread.get_ident():
             return self._wait_outside(is_ready, deadline_ns)
-        own.is_ready, own.deadline_ns, own.waits_for = is_ready, deadline_ns, what
+        own.is_ready, own.deadline_ns, own.waits_for, own.is_watching = is_ready, deadline_ns, what, is_watching
         self._pass_on(own)
-        own.is_ready, own.deadline_ns, own.waits_for = _always, None, ""
+        own.is_ready, own.deadline_ns, own.waits_for, own.is_watching = _always, None, "", False
         if own.is_interrupted:
             own.is_interrupted = False
             raise KeyboardInterrupt
@@ -124,8 +138,10 @@ class Turns:
 
     def _wait_outside(self, is_ready: Callable[[], bool], deadline_ns: int | None) -> bool:
         """Wait on a thread that has no turns, since something other than `threading` started it."""
+        self._waits_outside += 1
         while not is_ready() and (deadline_ns is None or self.now_ns < deadline_ns):
             real_time.sleep(FOREIGN_S)
+        self._waits_outside -= 1
         return is_ready()
 
     # --- threads ---

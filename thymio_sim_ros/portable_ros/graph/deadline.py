@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+from thymio_sim_ros.portable_ros.graph.time_base import steady_ns
 
 __all__ = ["Deadline"]
 
@@ -12,12 +12,16 @@ class Deadline:
 
     def __init__(self, timeout_s: float | None) -> None:
         """`timeout_s`: in s of the monotonic clock; None and negative numbers stand for a wait without end."""
-        self._end_s = None if timeout_s is None or timeout_s < 0 else time.monotonic() + timeout_s
+        self._end_s = None if timeout_s is None or timeout_s < 0 else _steady_s() + timeout_s
 
     def left_s(self) -> float | None:
         """The seconds that are left, at least 0; None without an end."""
-        return None if self._end_s is None else max(0.0, self._end_s - time.monotonic())
+        return None if self._end_s is None else max(0.0, self._end_s - _steady_s())
 
     def is_over(self) -> bool:
         """Whether no time is left."""
         return self.left_s() == 0
+
+
+def _steady_s() -> float:
+    return steady_ns() / 1e9

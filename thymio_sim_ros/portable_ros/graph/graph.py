@@ -20,7 +20,7 @@ from thymio_sim_ros.portable_ros.graph.transport import Transport
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.qos import incompatibilities
 
-__all__ = ["Graph", "graph_of"]
+__all__ = ["Graph", "forget_graph", "graph_of"]
 
 
 class _Topic:
@@ -215,3 +215,9 @@ def graph_of(domain_id: int) -> Graph:
     """The graph of a domain; one for all contexts of the process."""
     with _lock:
         return _graphs.setdefault(domain_id, Graph(domain_id))
+
+
+def forget_graph(domain_id: int) -> None:
+    """Let the next context of a domain have a new graph, without the nodes that are left in the present one."""
+    with _lock:
+        _graphs.pop(domain_id, None)

@@ -9,6 +9,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
+from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.messages import cdr
 from thymio_sim_ros.portable_ros.messages.message_class import SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
@@ -53,6 +54,7 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
 
     def send(self, request: SrvRequestT, convert: Callable[[SrvResponseT], T]) -> Future[T]:
         """Call; the future gets what `convert` makes of the response. Raises TypeError for a wrong request."""
+        note_query()
         with self._handle:
             if not isinstance(request, self.srv_type.Request):
                 raise TypeError
@@ -81,6 +83,10 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
 
     def service_is_ready(self) -> bool:
         """Whether there is a service. Raises RCLError after a shutdown of the context."""
+        note_query()
+        return self._has_service()
+
+    def _has_service(self) -> bool:
         with self._handle:
             if not self.context.ok():
                 raise RCLError("failed to check service availability: rcl node's context is invalid")
@@ -88,8 +94,8 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait for a service; return whether there is one."""
-        self.context.wait_for(self.service_is_ready, timeout_sec)
-        return self.service_is_ready()
+        self.context.wait_for(self._has_service, timeout_sec)
+        return self._has_service()
 
     def receive(self, sequence: int, response: bytes) -> None:
         """Queue a serialized response."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import threading
-import time as wall
 import weakref
 from collections.abc import Callable
 from enum import IntEnum
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from thymio_sim_ros.portable_ros.graph import time_base
 from thymio_sim_ros.portable_ros.rclpy.clock_type import ClockType
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
@@ -141,8 +141,12 @@ class Clock:
 
     def now(self) -> Time:
         """The present time."""
-        is_steady = self._clock_type == ClockType.STEADY_TIME
-        return Time(nanoseconds=wall.monotonic_ns() if is_steady else wall.time_ns(), clock_type=self._clock_type)
+        time_base.note_query()
+        return Time(nanoseconds=self._now_ns(), clock_type=self._clock_type)
+
+    def _now_ns(self) -> int:
+        """The present time in ns, for the room itself."""
+        return time_base.steady_ns() if self._clock_type == ClockType.STEADY_TIME else time_base.system_ns()
 
     def notice(self, timer: TimerEnd) -> None:
         """Register a timer whose executor waits for this clock; only simulated time needs it."""
@@ -176,10 +180,10 @@ class Clock:
         tick = Duration(nanoseconds=1)
         threshold = JumpThreshold(min_forward=tick, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
         with self.create_jump_callback(threshold, post_callback=jumped):
-            while context.ok() and not is_changed and self.now() < until:
-                woken.wait(None if self.is_simulated else (until - self.now()).nanoseconds / S_TO_NS)
+            while context.ok() and not is_changed and (left_ns := until.nanoseconds - self._now_ns()) > 0:
+                woken.wait(None if self.is_simulated else left_ns / S_TO_NS)
                 woken.clear()
-        return context.ok() and not is_changed and self.now() >= until
+        return context.ok() and not is_changed and self._now_ns() >= until.nanoseconds
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
         """Wait for a duration; return whether it is over."""
@@ -216,14 +220,15 @@ class ROSClock(Clock):
 
     @property
     def is_simulated(self) -> bool:
-        """Whether the time is simulated."""
-        return self._is_simulated
+        """Whether the time passes only when it is set."""
+        return self._is_simulated and time_base.simulated_ns() is None
 
-    def now(self) -> Time:
-        """The present time."""
-        if self._is_simulated:
-            return Time(nanoseconds=self._override_ns, clock_type=ClockType.ROS_TIME)
-        return super().now()
+    def _now_ns(self) -> int:
+        """The present time in ns, for the room itself."""
+        if not self._is_simulated:
+            return super()._now_ns()
+        owned_ns = time_base.simulated_ns()
+        return self._override_ns if owned_ns is None else owned_ns
 
     def notice(self, timer: TimerEnd) -> None:
         """Wake the executor of a timer whenever the time is set."""
@@ -247,8 +252,10 @@ class ROSClock(Clock):
         if enabled == self._is_simulated:
             return
         change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
-        before_ns = self.now().nanoseconds
-        after_ns = self._override_ns if enabled else wall.time_ns()
+        before_ns = self._now_ns()
+        owned_ns = time_base.simulated_ns()
+        simulated_ns = self._override_ns if owned_ns is None else owned_ns
+        after_ns = simulated_ns if enabled else time_base.system_ns()
 
         def switch() -> None:
             self._is_simulated = enabled

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from thymio_sim_ros.portable_ros.graph.deadline import Deadline
 from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.graph.ready_queue import ReadyQueue
+from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError, WaitSet
 from thymio_sim_ros.portable_ros.rclpy.task import Future, Task
 from thymio_sim_ros.portable_ros.rclpy.utilities import get_default_context, timeout_sec_to_nsec
@@ -73,9 +74,12 @@ class Executor:
         task = Task(callback, args, kwargs, executor=self)
         task.belong_to(self._reference)
         with self._changed:
-            self._queue.add_created(task)
+            self._add_created(task)
             self._changed.notify_all()
         return task
+
+    def _add_created(self, task: Task) -> None:
+        self._queue.add_created(task)
 
     def resume(self, task: Task) -> None:
         """Run a task again. Thread-safe."""
@@ -164,8 +168,12 @@ class Executor:
         self._spin_once(timeout_sec, lambda: not future._pending())
 
     def _spin_once(self, timeout_sec: float | None, condition: Callable[[], bool]) -> None:
-        with suppress(TimeoutException, ConditionReachedException, ShutdownException):
-            self._execute(self._next(timeout_sec, condition)[0])
+        with suppress(ConditionReachedException, ShutdownException):
+            try:
+                self._execute(self._next(timeout_sec, condition)[0])
+            except TimeoutException:
+                if timeout_sec == 0:
+                    note_query()
 
     def can_execute(self, entity: Entity) -> bool:
         """Whether a callback of an entity may start now."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.graph import names_and_types
 from thymio_sim_ros.portable_ros.graph.names import expanded
+from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.messages.type_descriptions import HASH_PREFIX, type_hash
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration, Infinite
@@ -51,6 +52,7 @@ class NodeGraph(NodeBase):
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
         """All topics."""
+        note_query()
         with self._handle, self._graph.lock:
             topics = self._graph.topics.items()
             published = ((name, end.msg_type) for name, one in topics for end in one.publishers)
@@ -84,10 +86,12 @@ class NodeGraph(NodeBase):
 
     def count_publishers(self, topic_name: str) -> int:
         """The number of publishers of a topic."""
+        note_query()
         return len(self._ends(topic_name, "publishers"))
 
     def count_subscribers(self, topic_name: str) -> int:
         """The number of subscriptions of a topic."""
+        note_query()
         return len(self._ends(topic_name, "subscriptions"))
 
     def count_services(self, service_name: str) -> int:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections import deque
 from typing import TYPE_CHECKING, Generic
 
+from thymio_sim_ros.portable_ros.graph import time_base
 from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
 from thymio_sim_ros.portable_ros.graph.entity import Handle
 from thymio_sim_ros.portable_ros.graph.protocols import Sample
@@ -70,6 +70,7 @@ class Publisher(Generic[MsgT]):
 
     def publish(self, msg: MsgT | bytes) -> None:
         """Send a message, or the bytes of a serialized one. Raises TypeError for a message of another type."""
+        time_base.note_query()
         with self._handle:
             if isinstance(msg, bytes):
                 data: bytes | None = msg
@@ -131,7 +132,7 @@ class Publisher(Generic[MsgT]):
             self._count += 1
             if data is None:
                 return
-            sample = Sample(data, time.time_ns(), self._count)
+            sample = Sample(data, time_base.system_ns(), self._count)
             if self._retained is not None:
                 self._retained.append(sample)
             if self.context.graph.carry(self, sample):

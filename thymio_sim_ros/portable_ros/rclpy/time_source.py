@@ -6,6 +6,7 @@ import weakref
 from typing import TYPE_CHECKING
 
 from thymio_sim_ros.portable_ros import ros_types
+from thymio_sim_ros.portable_ros.graph.time_base import simulated_ns
 from thymio_sim_ros.portable_ros.rclpy.clock import ROSClock
 from thymio_sim_ros.portable_ros.rclpy.clock_type import ClockType
 from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
@@ -88,7 +89,7 @@ class TimeSource:
 
     def _subscribe(self) -> None:
         node = self._get_node()
-        if self._clock_sub is None and node is not None:
+        if self._clock_sub is None and node is not None and simulated_ns() is None:
             profile = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             self._clock_sub = node.create_subscription(ros_types.Clock, CLOCK_TOPIC, self.clock_callback, profile)
 

@@ -38,7 +38,7 @@ class Timer(Entity):
         self.callback = callback
         self._clock = clock
         self._period_ns = int(timer_period_ns)
-        self._last_ns = clock.now().nanoseconds
+        self._last_ns = clock._now_ns()
         self._next_ns = self._last_ns + self._period_ns
         self._is_canceled = not autostart
         self._is_announced = False
@@ -62,7 +62,7 @@ class Timer(Entity):
     def is_ready(self) -> bool:
         """Whether a call is due."""
         with self._handle:
-            return not self._is_canceled and self._next_ns <= self._clock.now().nanoseconds
+            return not self._is_canceled and self._next_ns <= self._clock._now_ns()
 
     def is_canceled(self) -> bool:
         """Whether there are no more calls."""
@@ -77,19 +77,19 @@ class Timer(Entity):
     def reset(self) -> None:
         """Start a period now, also after `cancel`."""
         with self._handle:
-            self._next_ns = self._clock.now().nanoseconds + self._period_ns
+            self._next_ns = self._clock._now_ns() + self._period_ns
             self._is_canceled = False
         self._wake()
 
     def time_since_last_call(self) -> int:
         """Nanoseconds."""
         with self._handle:
-            return self._clock.now().nanoseconds - self._last_ns
+            return self._clock._now_ns() - self._last_ns
 
     def time_until_next_call(self) -> int | None:
         """Nanoseconds, negative when a call is late; None for a canceled timer."""
         with self._handle:
-            return None if self._is_canceled else self._next_ns - self._clock.now().nanoseconds
+            return None if self._is_canceled else self._next_ns - self._clock._now_ns()
 
     def pending(self) -> int:
         """0: executors ask for due timers by `announce_if_due`."""
@@ -99,7 +99,7 @@ class Timer(Entity):
         """Return whether a call is due that was not announced to the executor, and mark it as announced."""
         if self._is_announced or self._is_canceled or self.is_destroyed:
             return False
-        self._is_announced = self._next_ns <= self._clock.now().nanoseconds
+        self._is_announced = self._next_ns <= self._clock._now_ns()
         return self._is_announced
 
     def forget_announcement(self) -> None:
@@ -110,12 +110,12 @@ class Timer(Entity):
         """Seconds of wall time until a call is due; None if it is not known."""
         if self._is_announced or self._is_canceled or self.is_destroyed or self._clock.is_simulated:
             return None
-        return max(0.0, (self._next_ns - self._clock.now().nanoseconds) / 1e9)
+        return max(0.0, (self._next_ns - self._clock._now_ns()) / 1e9)
 
     def take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         """Take the call that is due, and plan the next one."""
         self._is_announced = False
-        now_ns = self._clock.now().nanoseconds
+        now_ns = self._clock._now_ns()
         if self._is_canceled or now_ns < self._next_ns or self.callback is None:
             return None
         self._last_ns = now_ns
@@ -127,7 +127,7 @@ class Timer(Entity):
 
     def time_was_set(self) -> None:
         """Plan the next call after a jump of simulated time, and wake the executor."""
-        now_ns = self._clock.now().nanoseconds
+        now_ns = self._clock._now_ns()
         if now_ns < self._last_ns:
             self._last_ns, self._next_ns = now_ns, now_ns + self._period_ns
         self._wake()

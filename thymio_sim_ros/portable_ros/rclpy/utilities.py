@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from thymio_sim_ros.portable_ros.graph.arguments import without_ros_arguments
+from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
 def ok(*, context: Context | None = None) -> bool:
     """Whether the context is initialized and not shut down."""
+    note_query()
     return (context or get_default_context()).ok()
 
 

@@ -9,8 +9,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from thymio_sim_ros.lockstep.barrier import TOPIC
-from thymio_sim_ros.lockstep.matching import EVERYWHERE, fit
+from thymio_sim_ros.lockstep.matching import EVERYWHERE, TURNS, fit
 from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros.rclpy_ext.connections import SUBSCRIBER, wrong_qos
 from thymio_sim_ros.testing.failure_messages import pluralized
@@ -54,7 +53,7 @@ def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:
     """
     lines, others = [], 0
     for topic, kinds in node.get_topic_names_and_types():
-        if topic == TOPIC:
+        if topic == TURNS:
             continue
         publishers = node.get_publishers_info_by_topic(topic)
         subscribers = node.get_subscriptions_info_by_topic(topic)

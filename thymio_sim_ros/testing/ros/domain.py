@@ -9,6 +9,8 @@ import socket
 from collections.abc import Iterator
 
 from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.portable_ros.graph.graph import forget_graph
+from thymio_sim_ros.portable_ros.import_hook import is_served
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.compat.shm_cleanup import remove_abandoned
 
@@ -44,9 +46,16 @@ class NoDomainError(ThymioSimError):
 def reserved(*, shared_memory: bool = True) -> Iterator[int]:
     """Reserve a domain, another one each time. Child processes inherit it, and messages stay on this machine.
 
-    Without `shared_memory`, they go by UDP only. The domain of the user's own environment is not used. Raises
-    NoDomainError if all domains are in use.
+    On the embedded graph, a domain is one of this process, and empty. With an installed ROS, messages go by UDP only
+    without `shared_memory`, and the domain of the user's own environment is not used. Raises NoDomainError if all
+    domains are in use.
     """
+    if is_served("rclpy"):
+        domain = DOMAINS[next(_turns) % len(DOMAINS)]
+        forget_graph(domain)
+        with _environment(ROS_DOMAIN_ID=str(domain)):
+            yield domain
+        return
     own = os.environ.get("ROS_DOMAIN_ID", "0")
     free = [domain for domain in DOMAINS if str(domain) != own]
     begin = next(_turns)

@@ -21,6 +21,7 @@ from thymio_sim_ros.lockstep.main import Options
 from thymio_sim_ros.lockstep.real_time import LAST_RESORT_S
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.testing.record import SECOND_NS
+from thymio_sim_ros.testing.ros.connections import Connection
 from thymio_sim_ros.testing.ros.cpu_limit import START_CPU_S
 from thymio_sim_ros.testing.ros.process_watch import BLOCKED_S, ProcessWatch
 
@@ -51,8 +52,6 @@ class Program:
         self.title = title
         self.exit_code: int | None = None
         """None while it runs; negative if a signal ended it."""
-        self.marks: dict[str, int] = {}
-        self.endpoints: dict[str, dict[str, int]] = {}
         self._check = check
         self._cpu_limit, self._output_limit = cpu_limit, output_limit
         self._until = until
@@ -60,6 +59,8 @@ class Program:
         self._lines: list[tuple[int, str]] = []
         self._is_typing_over = False
         self._waits: Sequence[str] = ()
+        self._next_ns: int | None = 0
+        """Simulated time at which it needs a turn if nothing comes before."""
         self._turns = 0
         self._is_waiting = False
         """Whether it has ended its turn by waiting, not by its end."""
@@ -109,10 +110,15 @@ class Program:
     # --- for `Programs` ---
 
     def start(
-        self, options: Mapping[str, Any], *, stdin: str | Sequence[tuple[float, str]] | None, now_ns: int
+        self,
+        options: Mapping[str, Any],
+        connection: Connection,
+        *,
+        stdin: str | Sequence[tuple[float, str]] | None,
+        now_ns: int,
     ) -> None:
         """Start the process: `options` are those of `Options` that are not its files."""
-        self._now_ns = now_ns
+        self._connection, self._now_ns = connection, now_ns
         if stdin is not None:
             timed = [(0.0, line) for line in stdin.splitlines()] if isinstance(stdin, str) else list(stdin)
             self._lines = [(now_ns + round(at * SECOND_NS), line + "\n") for at, line in timed]
@@ -139,32 +145,29 @@ class Program:
         self._channel = Channel(read_fd, write_fd)
         self._watch = ProcessWatch(self._process, self._stacks)
 
-    def take_turn(
-        self,
-        until_ns: int,
-        marks: Mapping[str, int],
-        settle: Callable[[], Mapping[str, Any]],
-        *,
-        interrupt: bool = False,
-    ) -> None:
-        """Run the program until it waits for `until_ns` or longer.
-
-        `settle()` is called when it has new endpoints; it returns the endpoints of all processes.
-        """
+    def take_turn(self, until_ns: int, *, interrupt: bool = False) -> None:
+        """Run the program until it waits for `until_ns` or longer; nothing runs if it waits already."""
         __tracebackhide__ = True
-        self._watch.begin()
-        self._is_waiting = False
-        typed, self._lines = self._lines, []
-        message = {
-            "marks": marks, "now_ns": self._now_ns, "until_ns": until_ns, "lines": typed,
-            "is_closed_after": self._is_typing_over, "is_interrupted": interrupt,
-        }  # fmt: skip
-        with contextlib.suppress(ClosedError):
-            self._run(message, settle)
-        self._check_end()
+        if interrupt or self._is_due(until_ns):
+            self._watch.begin()
+            self._is_waiting = False
+            typed, self._lines = self._lines, []
+            message = {
+                "now_ns": self._now_ns, "until_ns": until_ns, "lines": typed,
+                "is_closed_after": self._is_typing_over, "is_interrupted": interrupt,
+            }  # fmt: skip
+            message |= self._connection.begin_turn()
+            with contextlib.suppress(ClosedError):
+                self._run(message)
+            self._check_end()
+            self._connection.end_turn()
         self._now_ns = max(self._now_ns, until_ns)
 
-    def _run(self, message: dict[str, Any], settle: Callable[[], Mapping[str, Any]]) -> None:
+    def _is_due(self, until_ns: int) -> bool:
+        is_late = self._next_ns is not None and self._next_ns < until_ns
+        return is_late or bool(self._lines) or self._connection.has_news
+
+    def _run(self, message: dict[str, Any]) -> None:
         __tracebackhide__ = True
         if not self._turns:
             self._receive()
@@ -172,15 +175,15 @@ class Program:
         self._channel.send(message)
         while (event := self._receive())["event"] != "done":
             if event["event"] == "settle":
-                self._channel.send({"match": settle()})
-        self._waits, self._is_waiting = event["waits"], True
+                self._channel.send(self._connection.answer())
+        self._waits, self._next_ns, self._is_waiting = event["waits"], event["next_ns"], True
 
-    def match(self, expected: Mapping[str, Any]) -> None:
-        """Wait until its endpoints are matched with all others."""
+    def ask(self, message: dict[str, Any], until: str) -> None:
+        """Send a message between turns, and wait for an event."""
         self._is_waiting = False
         with contextlib.suppress(ClosedError):
-            self._channel.send({"match": expected})
-            while self._receive()["event"] != "matched":
+            self._channel.send(message)
+            while self._receive()["event"] != until:
                 pass
             self._is_waiting = True
         self._check_end()
@@ -190,7 +193,7 @@ class Program:
         if self.exit_code is None:
             self._process.kill()
             self.exit_code = self._process.wait()
-            self._channel.close()
+            self._end()
 
     def close(self) -> None:
         """Print its output, which belongs to the report of the test, and close the files."""
@@ -213,10 +216,13 @@ class Program:
             if self._watch.is_blocked():
                 self._fail(f"waits for something outside the simulation since {BLOCKED_S:g} s of real time")
         event = self._channel.receive()
-        if event["event"] != "settle":  # a mark of an endpoint that is not matched yet does not arrive
-            self.marks.update(event.get("marks", {}))
-        self.endpoints = event.get("endpoints", self.endpoints)
+        self._connection.receive(event)
         return event
+
+    def _end(self) -> None:
+        """Release what connects it with the test."""
+        self._channel.close()
+        self._connection.close()
 
     def _fail(self, text: str) -> None:
         __tracebackhide__ = True
@@ -231,8 +237,7 @@ class Program:
         if self._is_waiting:
             return
         self.exit_code = self._process.wait(LAST_RESORT_S)
-        self._channel.close()
-        self.endpoints = {}
+        self._end()
         self._check_output()
         if self._check and self.exit_code:
             self._has_shown_errors = True

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import inspect
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from thymio_sim_ros.portable_ros.graph import log_levels
+from thymio_sim_ros.portable_ros.graph.time_base import system_ns
 from thymio_sim_ros.portable_ros.rclpy.impl.log_filters import LogFilter, check_options, filters_of
 from thymio_sim_ros.portable_ros.rclpy.impl.logging_severity import LoggingSeverity
 
@@ -82,7 +82,7 @@ class RcutilsLogger:
         name = kwargs.pop("name", self.name)
         if not self._has_passed((place, frame.f_lasti), level, name, kwargs):
             return False
-        now_ns = time.time_ns()
+        now_ns = system_ns()
         log_levels.print_line(name, level, str(message), now_ns, place)
         sink = next((_sinks[one] for one in _above(name) if one in _sinks), None)
         if sink is not None:

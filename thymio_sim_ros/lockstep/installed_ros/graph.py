@@ -1,4 +1,4 @@
-"""Graph: the nodes of a program, which are matched with all others before a message could be lost."""
+"""InstalledGraph: the nodes of a program, which are matched with all others before a message could be lost."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 
 from thymio_sim_ros.lockstep import real_time
-from thymio_sim_ros.lockstep.barrier import Barrier
+from thymio_sim_ros.lockstep.installed_ros.barrier import Barrier
 from thymio_sim_ros.lockstep.matching import EVERYWHERE, endpoints, is_complete
 
-__all__ = ["Graph"]
+__all__ = ["InstalledGraph"]
 
 CREATING = ("create_publisher", "create_subscription", "create_client", "create_service")
 DESTROYING = ("destroy_publisher", "destroy_subscription", "destroy_client", "destroy_service", "destroy_node")
 
 
-class Graph:
+class InstalledGraph:
     """The nodes and participants of this process."""
 
     def __init__(self, name: str, settle: Callable[[], None], poll: Callable[[], None]) -> None:
@@ -41,7 +41,9 @@ class Graph:
         self.has_changed = False
         """Whether endpoints were created or destroyed since `endpoints` was called."""
 
-    def install(self) -> None:
+        self._follow()
+
+    def _follow(self) -> None:
         """Follow all nodes that the program creates."""
         self._follow_contexts()
         self._follow_nodes()
@@ -58,10 +60,18 @@ class Graph:
                 barrier.mark()
         return {**self._ended, **{barrier.source: barrier.sent for barrier in self._barriers}}
 
-    def wait_for(self, marks: Mapping[str, int]) -> None:
-        """Wait until all messages before these marks of other processes have arrived."""
+    def outgoing(self, event: str) -> dict[str, Any]:
+        """What a message to the test has: marks, and the endpoints if they have changed."""
+        changed = {"endpoints": self.endpoints()} if self.has_changed or event == "settle" else {}
+        return {"marks": self.marks(), **changed}
+
+    def receive(self, message: Mapping[str, Any]) -> None:
+        """Begin a turn: wait until all messages before the marks of other processes have arrived."""
         for barrier in self._barriers:
-            barrier.wait(marks)
+            barrier.wait(message["marks"])
+
+    def leave_test(self) -> None:
+        """Need nothing in a process that the program forked."""
 
     def endpoints(self) -> dict[str, dict[str, int]]:
         """The numbers of endpoints by kind and name."""

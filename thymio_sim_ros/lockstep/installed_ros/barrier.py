@@ -17,10 +17,10 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import String
 
 from thymio_sim_ros.lockstep import real_time
+from thymio_sim_ros.lockstep.matching import TURNS
 
 __all__ = ["Barrier"]
 
-TOPIC = "/_thymio_sim/turns"
 _QOS = QoSProfile(depth=1000)
 
 
@@ -42,8 +42,8 @@ class Barrier:
             start_parameter_services=False,
             parameter_overrides=[Parameter("start_type_description_service", value=False)],
         )
-        self._publisher = self.node.create_publisher(String, TOPIC, _QOS)
-        self._subscription = self.node.create_subscription(String, TOPIC, self._ignore, _QOS)
+        self._publisher = self.node.create_publisher(String, TURNS, _QOS)
+        self._subscription = self.node.create_subscription(String, TURNS, self._ignore, _QOS)
 
     def mark(self) -> None:
         """Publish a mark: messages that are published before it arrive before it."""
@@ -60,7 +60,7 @@ class Barrier:
 
     def _missing(self, wanted: Mapping[str, int]) -> str:
         marks = ", ".join(f"{self._received.get(source, 0)} of {mark} from {source}" for source, mark in wanted.items())
-        known, matched = self.node.count_publishers(TOPIC), self._subscription.get_publisher_count()
+        known, matched = self.node.count_publishers(TURNS), self._subscription.get_publisher_count()
         return f"{self.source} has received marks {marks}, and is matched with {matched} of {known} publishers"
 
     def _has(self, wanted: Mapping[str, int]) -> bool:

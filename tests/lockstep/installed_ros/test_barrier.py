@@ -7,7 +7,7 @@ import re
 import pytest
 
 from thymio_sim_ros.lockstep import real_time
-from thymio_sim_ros.lockstep.barrier import Barrier
+from thymio_sim_ros.lockstep.installed_ros.barrier import Barrier
 from thymio_sim_ros.testing.ros import Ros
 
 
