@@ -132,7 +132,8 @@ RULES = {
     ),
     f"{OURS}.grading.gradescope": Rule(frozenset(), frozenset({"yaml"})),
     f"{OURS}.grading.test_process": Rule(
-        _names("files.test_files", "grading", "pytest_plugin", "testing"), frozenset({"pytest"})
+        _names("files.test_files", "grading", "portable_ros.import_hook", "pytest_plugin", "testing"),
+        frozenset({"pytest"}),
     ),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("rclpy")
-
 from tests.grading.test_attacks import playground
 from tests.grading.test_grade import level
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.grading.sandbox.levels import LEVELS, why_unavailable
 from thymio_sim_ros.grading.sandbox.readable import PACKAGE_FOLDER
+from thymio_sim_ros.portable_ros import import_hook
 
 __all__ = ["level"]
 
@@ -66,7 +65,7 @@ with open("full", "wb") as file:
 """
 
 
-def grade(folder: Path, submissions: dict[str, str], level: str) -> Path:
+def grade(folder: Path, submissions: dict[str, str], level: str, *options: str) -> Path:
     """Grade these programs; return the folder of the reports."""
     (folder / "assignment.toml").write_text(ASSIGNMENT)
     (folder / "test_driver.py").write_text(TEST)
@@ -75,7 +74,7 @@ def grade(folder: Path, submissions: dict[str, str], level: str) -> Path:
         (folder / "class" / name).mkdir(parents=True)
         (folder / "class" / name / "driver.py").write_text(text)
     words = ["grade", folder / "class", "--assignment", folder / "assignment.toml", "-o", folder / "grades"]
-    assert main.main([*map(str, words), "--workers", "2", "--isolation", level]) == 0
+    assert main.main([*map(str, words), "--workers", "2", "--isolation", level, *options]) == 0
     return folder / "grades"
 
 
@@ -107,3 +106,12 @@ def test_every_level_gives_the_same_marks(tmp_path: Path, name: str) -> None:
         "Good": "2",
         "Stands": "0",
     }
+
+
+@pytest.mark.skipif(import_hook.is_served("rclpy"), reason="needs an installed ROS 2")
+def test_an_installed_ros_gives_the_same_marks(tmp_path: Path) -> None:
+    programs = {"Good": GOOD, "Stands": GOOD.replace("= 0.1", "= 0.0"), "Crashes": GOOD + "1 / 0"}
+    for graph, options in (("embedded", ()), ("installed", ("--ros",))):
+        (tmp_path / graph).mkdir()
+        output = grade(tmp_path / graph, programs, "limits", *options)
+        assert points(output) == {"Good": "2", "Stands": "0", "Crashes": "2"}

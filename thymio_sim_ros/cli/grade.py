@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import closing
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from thymio_sim_ros.batch_runs.errors import EngineError
 from thymio_sim_ros.batch_runs.failure import Failure
 from thymio_sim_ros.cli.batch import CLUSTER, Progress, add_cluster_options, check_dask
 from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.cli.ros_graph import check_ros
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.grading import assignment as assignments
 from thymio_sim_ros.grading import grader, submissions
@@ -60,8 +62,10 @@ def run(argv: Sequence[str]) -> int:
     if not sys.platform.startswith("linux"):
         raise UsageError(_NO_SANDBOX)
     check_dask("grade")
+    if options.ros:
+        check_ros()
     try:
-        assignment = assignments.load(options.assignment)
+        assignment = replace(assignments.load(options.assignment), has_installed_ros=options.ros)
         handed_in = submissions.find(options.submissions)
         prepared = [submissions.prepared(submission, assignment.expected) for submission in handed_in]
         level = _level(options.isolation)
@@ -235,6 +239,9 @@ def _parser() -> argparse.ArgumentParser:
         choices=["auto", *LEVELS],
         default="auto",
         help=f"auto: the strongest that this machine gives, but never `limits`. {levels}",
+    )
+    parser.add_argument(
+        "--ros", action="store_true", help="test ROS nodes on an installed ROS 2 (default: on the embedded graph)"
     )
     parser.add_argument("--again", action="store_true", help="grade everything, also what was graded before")
     add_cluster_options(parser)

@@ -68,6 +68,8 @@ class Assignment:
     limits: Limits = Limits()
     solution: Path | None = None
     """A submission that must get all points."""
+    has_installed_ros: bool = False
+    """Whether nodes are tested on an installed ROS 2, not on the embedded graph."""
 
     def is_hidden(self, test: str) -> bool:
         """Whether a test, given by its pytest node ID, is one of a hidden file."""

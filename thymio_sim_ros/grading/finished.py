@@ -18,12 +18,12 @@ __all__ = ["FinishedReports"]
 
 
 class FinishedReports:
-    """Finds the report of the same files, tests, limits and version. Invariant: each file of the folder is complete."""
+    """Finds the report of the same files, tests, limits, graph and version. Invariant: each file is complete."""
 
     def __init__(self, folder: Path, assignment: Assignment) -> None:
         self._folder = folder
         limits = json.dumps(asdict(assignment.limits)).encode()
-        tests = json.dumps(assignment.tests).encode()
+        tests = json.dumps([assignment.tests, assignment.has_installed_ros]).encode()
         self._assignment = _digest(__version__.encode(), tests, limits, *_parts(assignment.content))
 
     def find(self, submission: Submission) -> Report | None:

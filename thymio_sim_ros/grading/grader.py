@@ -28,7 +28,15 @@ _DESTROYED = "the tests were ended from outside, perhaps by the program: remove 
 
 def collect(assignment: Assignment, level: str) -> tuple[GradedTest, ...]:
     """Return the tests of an assignment. Raises GradingError if they cannot be collected without a submission."""
-    job = Job(level, assignment.tests, assignment.content, {}, None, assignment.limits)
+    job = Job(
+        level,
+        assignment.tests,
+        assignment.content,
+        {},
+        None,
+        assignment.limits,
+        has_installed_ros=assignment.has_installed_ros,
+    )
     report = run_job(job)
     if not report.collected or report.notes:
         reason = ": ".join(filter(None, [report.remark, "; ".join(report.notes)])) or "no tests found"
@@ -73,7 +81,16 @@ def run_submission(submission: Submission, *, assignment: Assignment, tests: tup
     outcomes: dict[str, Outcome] = {}
     for part in assignment.parts():
         selected = tuple(test for test in tests if test.partition("::")[0] in part.tests)
-        job = Job(level, part.tests, part.content, submission.files, selected, part.limits, assignment.expected)
+        job = Job(
+            level,
+            part.tests,
+            part.content,
+            submission.files,
+            selected,
+            part.limits,
+            assignment.expected,
+            part.has_installed_ros,
+        )
         try:
             report = run_job(job)
         except DestroyedError as error:

@@ -25,6 +25,7 @@ from thymio_sim_ros.files.test_files import trace_path
 from thymio_sim_ros.grading.integrity import TestFunctions
 from thymio_sim_ros.grading.points import points_of
 from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.portable_ros import import_hook
 from thymio_sim_ros.pytest_plugin import GRADED, Graded
 
 __all__ = ["GradingPlugin", "main"]
@@ -52,9 +53,11 @@ def main(argv: Sequence[str]) -> None:
     plugin = GradingPlugin(
         Path(folder), _Reporter(int(report), task["secret"]).send, commands.readline, task["selected"], graded
     )
+    if not task["has_installed_ros"]:
+        import_hook.install(is_forced=True)
     options = ["-p", "thymio_sim_ros.pytest_plugin", "-p", "no:cacheprovider", "-p", "no:faulthandler", "-s"]
     options += ["-c", os.devnull, "--rootdir", os.getcwd(), "--confcutdir", os.getcwd(), "--run-logs", folder]
-    options += ["--tb=short"]
+    options += ["--tb=short", *(["--ros"] if task["has_installed_ros"] else [])]
     pytest.main([*options, *tests], plugins=[plugin])
     plugin.finish()
     os._exit(0)  # threads of the submission may still run

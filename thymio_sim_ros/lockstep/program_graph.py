@@ -10,7 +10,7 @@ from thymio_sim_ros.lockstep.clocks import EPOCH_NS, UPTIME_NS
 from thymio_sim_ros.lockstep.graph_link import GraphLink, LinkHub
 from thymio_sim_ros.lockstep.turns import Turns
 from thymio_sim_ros.portable_ros import import_hook
-from thymio_sim_ros.portable_ros.graph import time_base
+from thymio_sim_ros.portable_ros.graph import time_base, waits
 from thymio_sim_ros.portable_ros.graph.graph import graph_of
 
 __all__ = ["EmbeddedGraph", "ProgramGraph"]
@@ -43,6 +43,7 @@ class EmbeddedGraph:
     def __init__(self, turns: Turns) -> None:
         import_hook.install(is_forced=True)
         time_base.give_to(_TurnTime(turns))
+        waits.watch(_NamedWaits(turns))
         self._link = GraphLink(LinkHub(graph_of(int(os.environ.get("ROS_DOMAIN_ID") or 0))))
 
     def outgoing(self, event: str) -> dict[str, Any]:
@@ -59,6 +60,21 @@ class EmbeddedGraph:
     def leave_test(self) -> None:
         """Exchange nothing more."""
         self._link.cut()
+
+
+class _NamedWaits:
+    """Names the waits of threads, for reports on the program."""
+
+    def __init__(self, turns: Turns) -> None:
+        self._turns = turns
+
+    def begin(self, wait: waits.Wait) -> None:
+        """Name a wait."""
+        self._turns.name_wait(str(wait))
+
+    def end(self, _wait: waits.Wait) -> None:
+        """Name no more waits."""
+        self._turns.name_wait("")
 
 
 class _TurnTime:

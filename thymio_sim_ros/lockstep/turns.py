@@ -43,6 +43,8 @@ class WaitingThread:
         self.waits_for = ""
         self.is_watching = False
         """Whether it waits for something outside of the simulation, which needs a look in each turn."""
+        self.named = ""
+        """What it waits for, in the words of the graph, while it is in a wait of the graph."""
         self.is_done = False
         self.is_interrupted = False
         self.polls = 0
@@ -112,13 +114,19 @@ class Turns:
         # A thread without the turn was not started by `threading`, such as a thread of a C library.
         if own.ident != _thread.get_ident():
             return self._wait_outside(is_ready, deadline_ns)
-        own.is_ready, own.deadline_ns, own.waits_for, own.is_watching = is_ready, deadline_ns, what, is_watching
+        own.is_ready, own.deadline_ns, own.is_watching = is_ready, deadline_ns, is_watching
+        own.waits_for = own.named or what
         self._pass_on(own)
         own.is_ready, own.deadline_ns, own.waits_for, own.is_watching = _always, None, "", False
         if own.is_interrupted:
             own.is_interrupted = False
             raise KeyboardInterrupt
         return is_ready()
+
+    def name_wait(self, what: str) -> None:
+        """Name the next waits of the thread that calls this; "" ends that."""
+        if self.running.ident == _thread.get_ident():
+            self.running.named = what
 
     def sleep(self, duration_ns: int) -> None:
         """Wait for this much simulated time."""

@@ -1,9 +1,6 @@
 """Lesson 5: the courier measures its floor, obeys topics, and reports on a topic that it has arrived."""
 
 import pytest
-
-pytest.importorskip("rclpy")  # without ROS this file is skipped
-
 from std_msgs.msg import Bool, Int16MultiArray
 
 from thymio_sim_ros.testing import no_contact

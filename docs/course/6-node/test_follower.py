@@ -1,9 +1,6 @@
 """Lesson 6: a ROS node follows the line, at the speed of its parameter, and stops in front of things."""
 
 import pytest
-
-pytest.importorskip("rclpy")  # without ROS this file is skipped
-
 from geometry_msgs.msg import Twist
 
 from thymio_sim_ros.sim.commands import SetGround, SetProximity

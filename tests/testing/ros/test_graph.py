@@ -19,7 +19,7 @@ from std_srvs.srv import Empty, Trigger
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 from thymio_sim_ros.testing.ros import Ros, Simulation
 from thymio_sim_ros.testing.ros.domain import reserved
-from thymio_sim_ros.testing.ros.student import StudentError
+from thymio_sim_ros.testing.ros.student_errors import StudentError
 
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 

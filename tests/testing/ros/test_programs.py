@@ -11,12 +11,13 @@ from geometry_msgs.msg import Twist
 from rclpy.qos import QoSProfile
 
 from tests.patience import PATIENCE_S
+from tests.ros_graph import IS_EMBEDDED
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 from thymio_sim_ros.testing.ros import Ros, Simulation
 from thymio_sim_ros.testing.ros.domain import reserved
 from thymio_sim_ros.testing.ros.program import Program
 from thymio_sim_ros.testing.ros.program_files import find
-from thymio_sim_ros.testing.ros.student import StudentError
+from thymio_sim_ros.testing.ros.student_errors import StudentError
 
 pytestmark = pytest.mark.process
 
@@ -178,6 +179,23 @@ SCRIPTS = {
 
         threading.Thread(target=time.sleep, args=(1e6,)).start()
     """,
+    "deadlock": """
+        import rclpy
+        from rclpy.node import Node
+        from std_srvs.srv import Trigger
+
+        class Calling(Node):
+            def __init__(self):
+                super().__init__("calling")
+                self.client = self.create_client(Trigger, "simulator/reset")
+                self.create_timer(0.1, self.tick)
+
+            def tick(self):
+                self.client.call(Trigger.Request())
+
+        rclpy.init()
+        rclpy.spin(Calling())
+    """,
     "busy": """
         import time
 
@@ -292,6 +310,13 @@ def test_a_program_whose_thread_sleeps_for_ever_ends_when_it_is_interrupted(sim:
     assert program.exit_code is None
     sim.ros.programs.stop(program, sim.world.now_ns)
     assert program.exit_code == 130
+
+
+@pytest.mark.skipif(not IS_EMBEDDED, reason="the graph of an installed ROS does not name its waits")
+def test_the_report_names_a_deadlock_and_what_the_program_waits_for(sim: Simulation) -> None:
+    program = sim.ros.run("deadlock.py")
+    sim.step(0.3)
+    assert "waits for the response of /simulator/reset (deadlock: a callback waits here" in program.lines()[0]
 
 
 def test_a_busy_loop_and_an_exception_are_named_and_do_not_harm_each_other(sim: Simulation) -> None:

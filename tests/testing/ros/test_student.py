@@ -9,7 +9,8 @@ import pytest
 import rclpy
 from rclpy.node import Node
 
-from thymio_sim_ros.testing.ros.student import StudentError, load_class
+from thymio_sim_ros.testing.ros.student import load_class
+from thymio_sim_ros.testing.ros.student_errors import StudentError
 
 HEAD = "import rclpy\nimport rclpy.executors\nfrom rclpy.node import Node\n"
 GREETER = HEAD + 'class Greeter(Node):\n    def __init__(self):\n        super().__init__("greeter")\n'

@@ -28,6 +28,8 @@ class Job:
     limits: Limits
     handed_in: tuple[str, ...] = ()
     """Files that the submission must contain."""
+    has_installed_ros: bool = False
+    """Whether nodes are tested on an installed ROS 2, not on the embedded graph."""
 
 
 @dataclass(frozen=True, slots=True)

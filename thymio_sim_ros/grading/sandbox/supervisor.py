@@ -98,6 +98,7 @@ class _Supervisor:
             "assignment": str(self._place.folder / "assignment"),
         }
         task |= {"handed_in": self._job.handed_in, "output_bytes": int(self._job.limits.output_mb * 1e6)}
+        task["has_installed_ros"] = self._job.has_installed_ros
         process.send(json.dumps(task))
         try:
             return self._follow(process, protocol, work)

@@ -95,6 +95,12 @@ class Entity(ABC):
         if executor is not None:
             executor.enqueue(self, count)
 
+    def is_blocked(self) -> bool:
+        """Whether the callback that the calling thread runs keeps the executor from executing this."""
+        node = self._node()
+        executor = None if node is None else node.executor
+        return executor is not None and executor.is_blocked_here(self)
+
     @abstractmethod
     def pending(self) -> int:
         """The number of events that have not been taken."""

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from thymio_sim_ros.portable_ros.graph import time_base, waits
 from thymio_sim_ros.portable_ros.graph.deadline import Deadline
 from thymio_sim_ros.portable_ros.graph.protocols import (
     ClientEnd,
@@ -59,11 +60,11 @@ class Graph:
         """Send a message by the transport; return whether it delivers the message to all subscriptions."""
         return self._transport is not None and self._transport.publish(publisher, sample)
 
-    def wait_for(self, condition: Callable[[], bool], timeout_s: float | None) -> bool:
-        """Wait until a condition of the graph is true; return whether it is."""
+    def wait_for(self, condition: Callable[[], bool], timeout_s: float | None, what: str) -> bool:
+        """Wait until a condition of the graph is true; return whether it is. `what` names what is waited for."""
         deadline = Deadline(timeout_s)
-        with self._changed:
-            return self._changed.wait_for(condition, deadline.left_s())
+        with waits.named(what, timeout_s), self._changed:
+            return self._changed.wait_for(lambda: time_base.own_query(condition), deadline.left_s())
 
     def notify(self) -> None:
         """Wake all waits, since something has changed."""

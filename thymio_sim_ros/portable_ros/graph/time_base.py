@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Protocol
 
-__all__ = ["TimeOwner", "give_to", "note_query", "simulated_ns", "steady_ns", "system_ns"]
+__all__ = ["TimeOwner", "give_to", "note_query", "own_query", "simulated_ns", "steady_ns", "system_ns"]
 
 
 class TimeOwner(Protocol):
@@ -25,6 +26,7 @@ class TimeOwner(Protocol):
 
 
 _owner: TimeOwner | None = None
+_is_own_query = False
 
 
 def give_to(owner: TimeOwner) -> None:
@@ -50,5 +52,15 @@ def simulated_ns() -> int | None:
 
 def note_query() -> None:
     """Note that the program asks for the time or for a state."""
-    if _owner is not None:
+    if _owner is not None and not _is_own_query:
         _owner.note_query()
+
+
+def own_query(query: Callable[[], bool]) -> bool:
+    """The answer to a query of the graph itself, which is not one of the program: it may hold locks."""
+    global _is_own_query
+    _is_own_query = True
+    try:
+        return query()
+    finally:
+        _is_own_query = False

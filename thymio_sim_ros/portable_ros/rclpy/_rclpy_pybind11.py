@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 
+from thymio_sim_ros.portable_ros.graph import waits
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
 
 __all__ = [
@@ -56,4 +57,5 @@ class WaitSet:
     def wait(self, timeout_nsec: int) -> None:
         """Wait for an event or a timer, or until the time is over; -1 for no limit. `changed` must be held."""
         limits = [_LONGEST_WAIT_S if timeout_nsec < 0 else timeout_nsec / S_TO_NS]
-        self.changed.wait(min(limits if self.due_s is None else [*limits, self.due_s]))
+        with waits.named("messages or timers", timeout_nsec / S_TO_NS):
+            self.changed.wait(min(limits if self.due_s is None else [*limits, self.due_s]))

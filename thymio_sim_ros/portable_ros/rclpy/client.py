@@ -5,9 +5,11 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from thymio_sim_ros.portable_ros import ros_types
+from thymio_sim_ros.portable_ros.graph import waits
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.messages import cdr
@@ -44,9 +46,14 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
         answered = threading.Event()
         future = self.call_async(request)
         future.add_done_callback(lambda _: answered.set())
-        if not answered.wait(None if timeout_sec is None or timeout_sec < 0 else timeout_sec):
-            self.remove_pending_request(future)
+        with self.named_wait(timeout_sec):
+            if not answered.wait(None if timeout_sec is None or timeout_sec < 0 else timeout_sec):
+                self.remove_pending_request(future)
         return future.result()
+
+    def named_wait(self, timeout_s: float | None = None) -> AbstractContextManager[None]:
+        """Name the wait inside the block, which is one for a response."""
+        return waits.named(f"the response of {self._full_name}", timeout_s, is_deadlock=self.is_blocked())
 
     def call_async(self, request: SrvRequestT) -> Future[SrvResponseT]:
         """Call; the future gets the response. Raises TypeError for a request of another type."""
@@ -84,9 +91,6 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
     def service_is_ready(self) -> bool:
         """Whether there is a service. Raises RCLError after a shutdown of the context."""
         note_query()
-        return self._has_service()
-
-    def _has_service(self) -> bool:
         with self._handle:
             if not self.context.ok():
                 raise RCLError("failed to check service availability: rcl node's context is invalid")
@@ -94,8 +98,8 @@ class Client(ServiceEntity[SrvRequestT, SrvResponseT]):
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait for a service; return whether there is one."""
-        self.context.wait_for(self._has_service, timeout_sec)
-        return self._has_service()
+        self.context.wait_for(self.service_is_ready, timeout_sec, f"service {self.service_name}")
+        return self.service_is_ready()
 
     def receive(self, sequence: int, response: bytes) -> None:
         """Queue a serialized response."""

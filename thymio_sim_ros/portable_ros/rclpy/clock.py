@@ -9,7 +9,7 @@ from enum import IntEnum
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from thymio_sim_ros.portable_ros.graph import time_base
+from thymio_sim_ros.portable_ros.graph import time_base, waits
 from thymio_sim_ros.portable_ros.rclpy.clock_type import ClockType
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
@@ -179,7 +179,9 @@ class Clock:
 
         tick = Duration(nanoseconds=1)
         threshold = JumpThreshold(min_forward=tick, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        with self.create_jump_callback(threshold, post_callback=jumped):
+        left_s = None if self.is_simulated else max(0.0, (until.nanoseconds - self._now_ns()) / S_TO_NS)
+        named = waits.named("simulated time" if left_s is None else "time", left_s)
+        with named, self.create_jump_callback(threshold, post_callback=jumped):
             while context.ok() and not is_changed and (left_ns := until.nanoseconds - self._now_ns()) > 0:
                 woken.wait(None if self.is_simulated else left_ns / S_TO_NS)
                 woken.clear()

@@ -99,13 +99,13 @@ class Context:
                 return
         callback()
 
-    def wait_for(self, condition: Callable[[], bool], timeout_s: float | None) -> None:
+    def wait_for(self, condition: Callable[[], bool], timeout_s: float | None, what: str) -> None:
         """Wait until a condition of the graph is true, for a shutdown, or until the time is over.
 
-        None and negative times stand for a wait without end.
+        None and negative times stand for a wait without end; `what` names what is waited for.
         """
         self.on_shutdown(self.graph.notify)
-        self.graph.wait_for(lambda: not self._is_ok or condition(), timeout_s)
+        self.graph.wait_for(lambda: not self._is_ok or condition(), timeout_s, what)
 
     def get_domain_id(self) -> int:
         """The ROS domain. Raises RuntimeError before `init`."""

@@ -175,6 +175,19 @@ class Executor:
                 if timeout_sec == 0:
                     note_query()
 
+    def is_blocked_here(self, entity: Entity) -> bool:
+        """Whether the callback that the calling thread runs keeps the one of an entity from being run.
+
+        It does if it has the only thread, or the group of both, which is mutually exclusive.
+        """
+        here = [one for one in self._running if isinstance(one, Task) and one.runs_here()]
+        groups = [running.callback_group for one in here if (running := self._resumable.get(one)) is not None]
+        group = entity.callback_group
+        is_held = group is not None and any(one is group for one in groups) and not group.can_execute(entity)
+        return bool(here) and (self._has_one_thread or is_held)
+
+    _has_one_thread = True
+
     def can_execute(self, entity: Entity) -> bool:
         """Whether a callback of an entity may start now."""
         return entity.callback_group is None or entity.callback_group.can_execute(entity)

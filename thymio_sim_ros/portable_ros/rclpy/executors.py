@@ -43,6 +43,8 @@ class SingleThreadedExecutor(Executor):
 class MultiThreadedExecutor(Executor):
     """Executes callbacks on several threads."""
 
+    _has_one_thread = False
+
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         """`num_threads`: by default, the number of processors that the process may use."""
         super().__init__(context=context)

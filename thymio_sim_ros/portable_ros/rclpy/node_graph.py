@@ -123,7 +123,7 @@ class NodeGraph(NodeBase):
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait for a node; return whether there is one."""
         wanted = f"/{fully_qualified_node_name.lstrip('/')}"
-        return self._graph.wait_for(lambda: wanted in self.get_fully_qualified_node_names(), timeout)
+        return self._graph.wait_for(lambda: wanted in self.get_fully_qualified_node_names(), timeout, f"node {wanted}")
 
     def _of_nodes(
         self, name: str, namespace: str, listed: Callable[[GraphNode], Iterable[tuple[str, Any]]]

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.portable_ros.graph import waits
 from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import InvalidHandle, RCLError
 from thymio_sim_ros.portable_ros.rclpy.exceptions import ROSInterruptException
@@ -168,7 +169,8 @@ class Rate:
         if self._timer.is_destroyed:
             self.destroy()
             raise InvalidHandle("Rate cannot sleep because the timer has been destroyed")
-        with self._sleepers:
+        named = waits.named("the next period of a rate", None, is_deadlock=self._timer.is_blocked())
+        with named, self._sleepers:
             self._sleeping += 1
             try:
                 self._sleepers.wait_for(lambda: self._is_over)

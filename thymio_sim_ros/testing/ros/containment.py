@@ -25,8 +25,9 @@ import pytest
 
 from thymio_sim_ros.grading.sandbox.usage import is_sleeping, is_working
 from thymio_sim_ros.testing.ros.cpu_limit import limited
+from thymio_sim_ros.testing.ros.forbidden_waits import WAIT_LIMIT_S, waiting_forbidden
 from thymio_sim_ros.testing.ros.interruption import insist, place
-from thymio_sim_ros.testing.ros.student import INSTEAD, WAIT_LIMIT_S, StudentError, waiting_forbidden
+from thymio_sim_ros.testing.ros.student_errors import INSTEAD, StudentError
 
 __all__ = ["Containment"]
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from thymio_sim_ros.testing.ros.student import StudentError
+from thymio_sim_ros.testing.ros.student_errors import StudentError
 from thymio_sim_ros.testing.sources import beside
 
 __all__ = ["Target", "find"]

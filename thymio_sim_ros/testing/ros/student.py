@@ -6,66 +6,38 @@ parameters, remappings and namespace: a class inserted between it and `Node` in 
 
 from __future__ import annotations
 
-import builtins
 import contextlib
-import functools
 import importlib
 import importlib.util
-import inspect
 import json
-import os
 import sys
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import rclpy
 from rclpy._rclpy_pybind11 import RCLError
-from rclpy.client import Client
-from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.timer import Rate
 
-from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros.rclpy_ext.connections import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Side, wrong_type
-from thymio_sim_ros.testing.record import SECOND_NS
-from thymio_sim_ros.testing.ros import interruption
+from thymio_sim_ros.testing.ros.student_errors import StudentError, never_ends
 
 __all__ = [
-    "INSTEAD",
-    "WAIT_LIMIT_S",
     "StudentError",
     "load_class",
     "place",
     "remap_arguments",
     "start",
     "types_explained",
-    "waiting_forbidden",
 ]
 
-WAIT_LIMIT_S = 4.0
-"""Longest wait in a constructor or callback, in s."""
-
-INSTEAD = (
-    "expected: a timer, add_done_callback, or await in a callback; a program with a multi-threaded executor or with"
-    " threads, whose callbacks may wait, is tested with ros.run"
-)
-
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
-_rclpy: Any = rclpy_implementation
-_signature = functools.lru_cache(maxsize=16)(inspect.signature)
 _TURNS = (*_SPINS, "spin_once_until_future_complete")
-
-
-class StudentError(ThymioSimError):
-    """A file, module or class has no node that can be started; the text says what is missing."""
 
 
 def load_class(source: str | Path, class_name: str = "") -> type[Node]:
@@ -255,7 +227,7 @@ def _spinning_disabled() -> Iterator[None]:
 
     def spin(node: Node, *_args: Any, **_kwargs: Any) -> None:
         if not loading:  # `from rclpy import spin` keeps this function after loading
-            raise _waits_for_ever("rclpy.spin()")
+            raise never_ends("rclpy.spin()")
         node.destroy_node()
 
     def turn(executor: Executor, *_args: Any, **_kwargs: Any) -> None:
@@ -279,82 +251,6 @@ def _spinning_disabled() -> Iterator[None]:
         loading = False
         for owner, name, value in before:
             setattr(owner, name, value)
-
-
-@contextlib.contextmanager
-def waiting_forbidden() -> Iterator[None]:
-    """Raise StudentError if this thread begins a wait of rclpy that cannot end, or `input()`.
-
-    Messages come and simulated time passes only when the callback has returned. Waits of the middleware and of clocks
-    ignore signals, so that they must not begin; the others are those that students use most. `os._exit` raises
-    SystemExit in this thread: it would end pytest without a trace.
-    """
-    here, process = threading.get_ident(), os.getpid()
-
-    def checked(name: str, wait: Callable[..., Any], is_endless: Callable[[Mapping[str, Any]], bool]) -> Any:
-        signature = _signature(wait)
-
-        def call(*args: Any, **kwargs: Any) -> Any:
-            if threading.get_ident() == here:
-                bound = signature.bind(*args, **kwargs)
-                bound.apply_defaults()
-                if is_endless(bound.arguments):
-                    raise _waits_for_ever(name)
-            return wait(*args, **kwargs)
-
-        return call
-
-    def wait(wait_set: Any, timeout_nsec: int) -> None:
-        if threading.get_ident() == here and not 0 <= timeout_nsec <= WAIT_LIMIT_S * SECOND_NS:
-            raise _waits_for_ever("a wait for messages")
-        real_wait(wait_set, timeout_nsec)
-
-    def leave(status: int) -> None:
-        if threading.get_ident() == here and os.getpid() == process:  # children that were forked leave this way
-            raise SystemExit(status)
-        real_exit(status)
-
-    real_exit = os._exit
-    real_wait = _rclpy.WaitSet.wait
-    replaced: list[tuple[Any, str, Any]] = [
-        *((rclpy, name, checked(f"rclpy.{name}()", getattr(rclpy, name), _has_no_limit)) for name in _SPINS),
-        (Rate, "sleep", checked("Rate.sleep()", Rate.sleep, lambda _arguments: True)),
-        (Client, "call", checked("Client.call()", Client.call, _has_no_limit)),
-        (Clock, "sleep_until", checked("Clock.sleep_until()", Clock.sleep_until, _sleeps_long)),
-        (_rclpy.WaitSet, "wait", wait),
-        (builtins, "input", checked("input()", builtins.input, lambda _arguments: True)),
-        (os, "_exit", leave),
-    ]
-    before = [(owner, name, getattr(owner, name)) for owner, name, _ in replaced]
-    for owner, name, value in replaced:
-        setattr(owner, name, value)
-    try:
-        yield
-    finally:
-        for owner, name, value in before:
-            setattr(owner, name, value)
-
-
-def _waits_for_ever(wait: str) -> StudentError:
-    where = interruption.place(sys._getframe(1))
-    return StudentError(
-        f"{wait} in a constructor or callback waits for ever, since only the test lets messages come and time"
-        f" pass{where}\n  {INSTEAD}"
-    )
-
-
-def _has_no_limit(arguments: Mapping[str, Any]) -> bool:
-    return arguments.get("timeout_sec") is None
-
-
-def _sleeps_long(arguments: Mapping[str, Any]) -> bool:
-    """Whether `Clock.sleep_until` waits for simulated time, or longer than `WAIT_LIMIT_S`."""
-    clock, until = arguments["self"], arguments["until"]
-    if until.clock_type != clock.clock_type:
-        return False  # rclpy reports it
-    rest_ns = until.nanoseconds - clock.now().nanoseconds
-    limit_s = 0.0 if getattr(clock, "ros_time_is_active", False) else WAIT_LIMIT_S
-    return bool(rest_ns > limit_s * SECOND_NS)
 
 
 def _nothing(*_args: Any, **_kwargs: Any) -> contextlib.AbstractContextManager[None]:

@@ -80,6 +80,7 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
         """The goals whose state is not final, as long as the program has them."""
         self._feedback_callbacks: dict[bytes, Callable[[Any], object]] = {}
         group = callback_group or node.default_callback_group
+        self._name = action_name
         self._parts = parts = ActionParts(node, self, action_type, action_name, group, "client")
         try:
             impl: Any = action_type.Impl
@@ -118,7 +119,7 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
 
         Arguments and errors are those of `send_goal_async`.
         """
-        handle = _wait_for(self.send_goal_async(goal, **kwargs))
+        handle = _wait_for(self.send_goal_async(goal, **kwargs), self._goals)
         return self._get_result(handle)
 
     def send_goal_async(
@@ -165,7 +166,8 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Wait for a server; return whether there is one. None stands for a wait without end."""
-        self._node.context.wait_for(self.server_is_ready, None if timeout_sec is None else max(0.0, timeout_sec))
+        timeout_s = None if timeout_sec is None else max(0.0, timeout_sec)
+        self._node.context.wait_for(self.server_is_ready, timeout_s, f"the server of action {self._name}")
         return self.server_is_ready()
 
     def destroy(self) -> None:
@@ -173,7 +175,7 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
         self._parts.destroy()
 
     def _cancel_goal(self, goal_handle: ClientGoalHandle[GoalT, ResultT, FeedbackT]) -> ros_types.CancelGoal.Response:
-        return _wait_for(self._cancel_goal_async(goal_handle))
+        return _wait_for(self._cancel_goal_async(goal_handle), self._cancellations)
 
     def _cancel_goal_async(
         self, goal_handle: ClientGoalHandle[GoalT, ResultT, FeedbackT]
@@ -184,7 +186,7 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
         return self._cancellations.call_async(request)
 
     def _get_result(self, goal_handle: ClientGoalHandle[GoalT, ResultT, FeedbackT]) -> Any:
-        return _wait_for(self._get_result_async(goal_handle))
+        return _wait_for(self._get_result_async(goal_handle), self._results)
 
     def _get_result_async(self, goal_handle: ClientGoalHandle[GoalT, ResultT, FeedbackT]) -> Future[Any]:
         _require_handle(goal_handle)
@@ -211,11 +213,12 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
                     self._goal_handles.pop(key, None)
 
 
-def _wait_for(future: Future[T]) -> T:
-    """The result of a future that another thread sets. Raises its exception."""
+def _wait_for(future: Future[T], client: Client[Any, Any]) -> T:
+    """The result of a future that another thread sets, with a response of a client. Raises its exception."""
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())
-    done.wait()
+    with client.named_wait():
+        done.wait()
     result: Any = future.result()
     return result  # type: ignore[no-any-return]  # there is a result
 
