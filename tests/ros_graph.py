@@ -20,6 +20,7 @@ _ROOT = Path(__file__).parent
 _REAL = (
     "cli/test_env.py",
     "examples/test_executables.py",
+    "grading/test_grade_programs.py",
     "lockstep/installed_ros",
     "portable_ros/real",
     "ros/aseba/outside/test_real_robot.py",
@@ -32,11 +33,15 @@ _REAL = (
     "ros/test_processes.py",
     "ros/test_student_node.py",
     "ros/test_suite_process.py",
+    "test_course.py",
     "test_course_packages.py",
     "test_entry_points.py",
     "test_errors.py",
+    "test_example_nodes.py",
+    "test_line_follower_page.py",
     "test_pytest_plugin.py",
     "test_readme.py",
+    "test_tutorials.py",
     "tf/test_buffer_interface.py",
     "testing/ros/test_domain.py",
 )

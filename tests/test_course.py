@@ -7,6 +7,8 @@ import json
 import os
 import re
 import shutil
+import subprocess
+import sys
 import tomllib
 import xml.etree.ElementTree as ElementTree
 from fractions import Fraction
@@ -15,6 +17,7 @@ from pathlib import Path
 import pytest
 
 from tests import pages, terminals
+from tests.patience import PROGRAM_S
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.points import points_of
 from thymio_sim_ros.grading.sandbox.levels import best_level
@@ -85,18 +88,45 @@ def graded_programs() -> list[object]:
     ]
 
 
+def handed_in(lesson: str, program: str, folder: Path) -> Path:
+    """The test of a lesson in a folder with a program."""
+    assignment = assignment_of(lesson)
+    (expected,), (test,) = assignment["files"], assignment["tests"]
+    for name in (test, *assignment["data"]):
+        shutil.copy(COURSE / lesson / name, folder)
+    shutil.copy(COURSE / lesson / "programs" / f"{program}{Path(expected).suffix}", folder / expected)
+    return folder / test
+
+
 @pytest.mark.process
 @pytest.mark.parametrize(("lesson", "program"), graded_programs())
 def test_a_program_gets_its_mark(tmp_path: Path, lesson: str, program: str) -> None:
-    assignment = assignment_of(lesson)
-    (expected,), (test,) = assignment["files"], assignment["tests"]
-    if "rclpy" in (COURSE / lesson / test).read_text(encoding="utf-8") and importlib.util.find_spec("rclpy") is None:
-        pytest.skip("needs ROS")
-    for name in (test, *assignment["data"]):
-        shutil.copy(COURSE / lesson / name, tmp_path)
-    shutil.copy(COURSE / lesson / "programs" / f"{program}{Path(expected).suffix}", tmp_path / expected)
-    tally = tally_of(tmp_path / test)
+    tally = tally_of(handed_in(lesson, program, tmp_path))
     assert tally.mark() == (MARKS[lesson][program], 10), sorted(tally.lost)
+
+
+WITH_ROS = ("5-topics", "6-node")
+ELSEWHERE = (
+    "import sys; from pathlib import Path; from tests.test_course import tally_of; tally = tally_of(Path(sys.argv[1]))"
+)
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("lesson", WITH_ROS)
+@pytest.mark.parametrize("program", [pytest.param("start", marks=pytest.mark.slow), "mistake", "solution"])
+def test_a_program_for_ros_has_the_same_mark_on_the_embedded_graph(tmp_path: Path, lesson: str, program: str) -> None:
+    """This process may have an installed ROS, which the test above uses then; another process has none."""
+    test = handed_in(lesson, program, tmp_path)
+    check = f"{ELSEWHERE}; assert 'portable_ros' in sys.modules['rclpy'].__name__; print(*tally.mark())"
+    done = subprocess.run(
+        [sys.executable, "-c", check, str(test)],
+        cwd=pages.ROOT,
+        capture_output=True,
+        text=True,
+        timeout=PROGRAM_S,
+        check=False,
+    )
+    assert done.stdout.splitlines()[-1:] == [f"{MARKS[lesson][program]} 10"], done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("path", sorted(COURSE.glob("*/*.json")), ids=lambda path: path.stem)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.grading import ros_class
 from tests.grading.test_attacks import playground
 from tests.grading.test_grade import level
 from thymio_sim_ros.cli import main
@@ -108,10 +109,28 @@ def test_every_level_gives_the_same_marks(tmp_path: Path, name: str) -> None:
     }
 
 
+def test_a_class_of_nodes_gets_its_points(tmp_path: Path) -> None:
+    assert points(graded_class(tmp_path)) == EXPECTED
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(import_hook.is_served("rclpy"), reason="needs an installed ROS 2")
-def test_an_installed_ros_gives_the_same_marks(tmp_path: Path) -> None:
-    programs = {"Good": GOOD, "Stands": GOOD.replace("= 0.1", "= 0.0"), "Crashes": GOOD + "1 / 0"}
-    for graph, options in (("embedded", ()), ("installed", ("--ros",))):
-        (tmp_path / graph).mkdir()
-        output = grade(tmp_path / graph, programs, "limits", *options)
-        assert points(output) == {"Good": "2", "Stands": "0", "Crashes": "2"}
+def test_a_class_gets_the_same_marks_each_time_and_on_both_graphs(tmp_path: Path) -> None:
+    tables = [(graded_class(tmp_path / name, *options) / "marks.csv").read_bytes() for name, options in RUNS.items()]
+    assert tables == [tables[0]] * len(RUNS)
+
+
+EXPECTED = {name: str(points) for name, (_, points) in ros_class.CLASS.items()}
+RUNS = {"first": (), "second": (), "installed": ("--ros",)}
+
+
+def graded_class(folder: Path, *options: str) -> Path:
+    """Grade the class of nodes; return the folder of the reports."""
+    for name, (text, _) in ros_class.CLASS.items():
+        (folder / "class" / name).mkdir(parents=True)
+        (folder / "class" / name / "node.py").write_text(text)
+    (folder / "assignment.toml").write_text(ros_class.ASSIGNMENT)
+    (folder / "test_node.py").write_text(ros_class.TEST)
+    words = ["grade", folder / "class", "--assignment", folder / "assignment.toml", "-o", folder / "grades"]
+    assert main.main([*map(str, words), "--workers", "2", "--isolation", "limits", *options]) == 0
+    return folder / "grades"
