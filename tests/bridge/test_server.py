@@ -19,7 +19,7 @@ from thymio_sim_ros.bridge.handshake import WRONG_TOKEN
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.protocol.wire import encode_client
-from thymio_sim_ros.bridge.server import REFUSED_FACTOR
+from thymio_sim_ros.bridge.settings import REFUSED_FACTOR
 from thymio_sim_ros.bridge.switchboard import events as ev
 
 pytestmark = pytest.mark.process

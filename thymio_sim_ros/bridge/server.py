@@ -11,18 +11,15 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
-import ssl
 import time
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
 from socket import socket
-from typing import Protocol, cast
+from typing import cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 
-from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, SendFunction
 from thymio_sim_ros.bridge.fair_lock import FairLock
 from thymio_sim_ros.bridge.framing import framed
@@ -40,6 +37,7 @@ from thymio_sim_ros.bridge.protocol.messages import (
 )
 from thymio_sim_ros.bridge.protocol.wire import decode_client, encode_server
 from thymio_sim_ros.bridge.rosbridge import frames
+from thymio_sim_ros.bridge.settings import REFUSED_FACTOR, EventSink, ServerSettings
 from thymio_sim_ros.bridge.switchboard.events import (
     Command,
     Data,
@@ -55,10 +53,7 @@ from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.bridge.transport import SLICE_S, ConnectionMaker, SharedConnection
 
-__all__ = ["REFUSED_FACTOR", "BridgeServer", "EventSink", "ServerSettings"]
-
-REFUSED_FACTOR = 4
-"""Longest frame that is answered, in `max_message_size`: it has to be buffered."""
+__all__ = ["BACKLOG", "BridgeServer"]
 
 _FLUSH_PERIOD_S = 0.01
 """Time between attempts to send kept data frames."""
@@ -73,37 +68,6 @@ _ACCEPTED_AT_ONCE = 4
 _NO_SENDERS: tuple[Routes, tuple[SendFunction, ...]] = ((), ())
 _TIME_SLOT = -1
 """Key of the newest time in a send queue; no subscription has this ID."""
-
-
-class EventSink(Protocol):
-    """Receiver of events; called in the event loop, must not block."""
-
-    def is_full(self, client: int) -> bool:
-        """Whether too many events of this client are pending; the server then stops reading from it."""
-
-    def post(self, event: Event) -> None:
-        """Accept an event."""
-
-
-@dataclass(frozen=True, slots=True)
-class ServerSettings:
-    """Limits and options of a server."""
-
-    allowed_origins: tuple[str, ...] = ()
-    """Additional origins of web pages (see `origin_policy`); `*` allows all."""
-    buffer_limit: int = 1 << 20
-    """Bytes that may be buffered for a client before data frames are dropped."""
-    max_message_size: int = 4 << 20
-    """Size of the longest frame accepted from a client, bytes. One of up to `REFUSED_FACTOR` times that is answered
-    with the reason, a longer one ends the connection."""
-    max_clients: int = 128
-    """Maximum number of clients. The same number of connections may be in their handshake."""
-    ping_interval_s: float = 10.0
-    ping_timeout_s: float = 20.0
-    tls: ssl.SSLContext | None = None
-    tokens: Tokens = field(default_factory=Tokens)
-    is_read_only_service: Callable[[str], bool] = lambda service: False
-    """Whether a read-only client may call a service, by name."""
 
 
 class BridgeServer:

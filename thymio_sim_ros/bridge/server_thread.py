@@ -9,7 +9,8 @@ import threading
 from collections.abc import Callable, Sequence
 
 from thymio_sim_ros.bridge.protocol.messages import ServerInfo
-from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer, EventSink, ServerSettings
+from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer
+from thymio_sim_ros.bridge.settings import EventSink, ServerSettings
 from thymio_sim_ros.bridge.switchboard.events import Command
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 

@@ -6,6 +6,7 @@ import sys
 
 import pytest
 from rclpy.task import Future
+from std_srvs.srv import Trigger
 
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 
@@ -149,3 +150,15 @@ def test_a_callback_that_raises_is_logged_and_others_follow(node, calls):
     node.services["/s"].answer()
     assert answers == [2]
     assert "ZeroDivisionError" in node.errors[0]
+
+
+def test_a_service_that_is_gone_is_forgotten_when_its_calls_have_ended(ros):
+    calls, answers = ServiceCalls(ros.node, timeout_s=0.0), []
+    calls.call(Trigger, "/never", Trigger.Request(), lambda response, reason: answers.append(reason))
+    calls.forget_gone({})
+    assert not answers
+    ros.until(lambda: not calls.poll())
+    calls.forget_gone({"/never": []})
+    assert any(client.srv_name == "/never" for client in ros.node.clients)
+    calls.forget_gone({})
+    assert not any(client.srv_name == "/never" for client in ros.node.clients)

@@ -299,6 +299,7 @@ class FoxgloveBridge:
         with self._discovery.work():
             topics = dict(self.node.get_topic_names_and_types())
             services = services_with_servers(self.node)
+        self._calls.forget_gone(services)
         if (topics, services) == self._seen:
             return
         self._seen = (topics, services)

@@ -12,7 +12,7 @@ import itertools
 import time
 import traceback
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -135,6 +135,12 @@ class ServiceCalls:
                 self._finish(call, None, f"service {name} no longer exists")
             self._node.destroy_client(queue.client)
         self._finish_all()
+
+    def forget_gone(self, names: Container[str]) -> None:
+        """Remove services that are not among `names` and have no open calls."""
+        gone = {queue.name for queue in self._queues.values() if queue.name not in names}
+        for name in gone - {call.queue.name for call in self._open}:
+            self.forget(name)
 
     def _send(self, queue: _Queue) -> None:
         """Send waiting calls within the limits."""

@@ -144,13 +144,13 @@ def test_services_of_rosapi_describe_the_graph(ros, switch, roslib, peer):
     assert ask("services_for_type", type="std_srvs/SetBool") == {"services": ["/switch"]}
     assert "/peer" in ask("nodes")["nodes"]
     assert "/peer/get_parameters" in ask("node_details", node="/peer")["services"]
-    assert ask("node_details", node="/nobody")["services"] == []
+    assert ask("node_details", node="/no_node")["services"] == []
     assert ask("service_node", service="/peer/get_parameters") == {"node": "/peer"}
     assert "/foxglove_bridge" in ask("publishers", topic="/rosout")["publishers"]
     assert ask("get_param", name="/peer:speed") == {"value": "1.5"}
     assert ask("get_param", name="/peer:nothing", default_value="7") == {"value": "7"}
     assert ask("has_param", name="/peer:speed") == {"exists": True}
-    assert ask("has_param", name="/nobody:speed") == {"exists": False}
+    assert ask("has_param", name="/no_node:speed") == {"exists": False}
     assert ask("set_param", name="/peer:count", value="4") == {}
     assert peer.get_parameter("count").value == 4
     assert "/peer:count" in ask("get_param_names")["names"]
@@ -194,3 +194,14 @@ def test_a_page_without_a_token_gets_the_reason(ros):
         status = json.loads(page.recv(timeout=PATIENCE_S))
     assert (status["op"], status["level"], status["id"]) == ("status", "error", "access")
     assert "a token is needed" in status["msg"]
+
+
+def test_a_client_calls_what_another_one_serves_without_its_type(ros, bridge):
+    port = bridge().port
+    with RosClient(port, ros.until) as one, RosClient(port, ros.until) as other:
+        one.send("advertise_service", service="/t", type="std_srvs/Trigger")
+        one.call("/rosapi/nodes")
+        other.send("call_service", service="/t")
+        call = one.next("call_service")
+        one.send("service_response", service="/t", id=call["id"], values={"message": "a"}, result=True)
+        assert other.next("service_response")["values"]["message"] == "a"

@@ -93,19 +93,20 @@ class ClientServices:
     def advertise(self, operation: Operation, place: ClientNode) -> None:
         """Serve a service. Raises RefusedError."""
         name = place.resolve(operation["service"], "advertise_service.service")
-        _, kind = self._host.service_type(name, operation["type"], "advertise_service.type")
+        type_name, kind = self._host.service_type(name, operation["type"], "advertise_service.type")
         key = key_of(operation, "service")
-        if (before := self._served.pop(key, None)) is not None:
-            before.close()
+        if key in self._served:
+            self._end(self._served, key)
         compression = Compression(operation.get("compression", "none"))
         self._served[key] = ServedService(
             self._outbox, place, name, kind, compression, _shown(operation, "service", key), self._numbers
         )
+        self._host.served[name] = type_name
 
     def unadvertise(self, operation: Operation) -> None:
         """End a served service. Raises RefusedError."""
         self._of(self._served, operation, "service")
-        self._served.pop(key_of(operation, "service")).close()
+        self._end(self._served, key_of(operation, "service"))
 
     def respond(self, operation: Operation) -> None:
         """Answer a request. Raises RefusedError or ValueRefusedError."""
@@ -126,15 +127,15 @@ class ClientServices:
         if not hasattr(kind, "Goal"):
             raise RefusedError(f"advertise_action.type: expected an action, found {type_name}")
         key = key_of(operation, "action")
-        if (before := self._actions.pop(key, None)) is not None:
-            before.close()
+        if key in self._actions:
+            self._end(self._actions, key)
         shown = _shown(operation, "action", key) | {"action_type": type_name}
         self._actions[key] = ServedAction(self._outbox, place, action, kind, shown, self._numbers)
 
     def unadvertise_action(self, operation: Operation) -> None:
         """End a served action. Raises RefusedError."""
         self._of(self._actions, operation, "action")
-        self._actions.pop(key_of(operation, "action")).close()
+        self._end(self._actions, key_of(operation, "action"))
 
     def action_of(self, operation: Operation) -> ServedAction:
         """The served action that an operation is about. Raises RefusedError."""
@@ -151,11 +152,17 @@ class ClientServices:
             raise RefusedError(f"{operation['op']}.{name}: expected an advertised one, found {operation[name]:.80}")
         return found
 
+    def _end(self, served: dict[Key, Any], key: Key) -> None:
+        ended = served.pop(key)
+        ended.close()
+        if isinstance(ended, ServedService):
+            self._host.served.pop(ended.service, None)
+
     def close(self, node: str | None = None) -> None:
         """End what a node of the client serves, None: everything, also its goals."""
         for served in (self._served, self._actions):
             for key in [key for key in served if node in (None, key[0])]:
-                served.pop(key).close()
+                self._end(served, key)
         if node is None:
             self.goals.close()
 

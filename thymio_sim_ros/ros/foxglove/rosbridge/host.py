@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rclpy.node import Node
@@ -40,6 +40,7 @@ class Host:
         offered: The capabilities of the server.
         max_size: The longest message of a client.
         depths: The smallest and the largest depth of a subscription.
+        served: Types of the services that clients serve, which DDS may not have discovered yet.
     """
 
     node: Node
@@ -52,6 +53,7 @@ class Host:
     offered: Sequence[Capability]
     max_size: int
     depths: tuple[int, int]
+    served: dict[str, str] = field(default_factory=dict)
     is_topic: Callable[[str], bool] = lambda name: True
     is_client_topic: Callable[[str], bool] = lambda name: True
     is_service: Callable[[str], bool] = lambda name: True
@@ -71,7 +73,7 @@ class Host:
     def _type(self, name: str, given: str | None, kind: str, where: str) -> tuple[str, Any]:
         if not given:
             query = self.node.get_topic_names_and_types if kind == "msg" else self.node.get_service_names_and_types
-            given = next((types[0] for found, types in query() if found == name), None)
+            given = next((types[0] for found, types in query() if found == name), self.served.get(name))
         if given is None:
             raise RefusedError(f"{where}: expected a name in the ROS graph, or a type, found {name}")
         type_name = full_name(given, kind)

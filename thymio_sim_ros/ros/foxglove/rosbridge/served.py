@@ -38,6 +38,7 @@ class ServedService:
     ) -> None:
         """`shown` are the fields by which the client knows the service. Raises RefusedError."""
         self._outbox, self._place, self._kind = outbox, place, kind
+        self.service = service
         self._compression, self._shown = compression, shown
         self._numbers = numbers
         self._waiting: dict[str, Callable[[Message], None]] = {}
