@@ -1,4 +1,4 @@
-"""The Foxglove bridge: frames of clients, which reach the switchboard, and frames of servers."""
+"""The bridge: frames of clients, which reach the switchboard, and frames of servers."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.protocol.errors import FrameError
 from thymio_sim_ros.bridge.protocol.messages import CLIENT_JSON, SERVER_JSON
 from thymio_sim_ros.bridge.protocol.wire import decode_client, decode_server, encode_client, encode_server
+from thymio_sim_ros.bridge.rosbridge import frames
+from thymio_sim_ros.bridge.rosbridge.fragments import Fragments, split
+from thymio_sim_ros.bridge.rosbridge.operations import OPERATIONS, check
 
 _MARK = b"{"
 """A frame that begins with it is text."""
@@ -37,6 +40,17 @@ def _server(data: bytes) -> None:
     assert decode_server(encode_server(message)) == message
 
 
+def _rosbridge(data: bytes) -> None:
+    """Messages of a client of rosbridge; fragments make further ones."""
+    fragments = Fragments(1 << 16)
+    waiting = [_frame(part) for part in data.split(b"\n--\n")]
+    while waiting:
+        operation = check(frames.decode(waiting.pop(0)))
+        if operation["op"] == "fragment":
+            whole = fragments.add(operation)
+            waiting += [] if whole is None else [whole]
+
+
 def _from_client() -> Iterator[bytes]:
     yield b"\n--\n".join((
         b'{"op":"subscribe","subscriptions":[{"id":1,"channelId":10}]}', b'{"op":"unsubscribe","subscriptionIds":[1]}',
@@ -49,6 +63,15 @@ def _from_client() -> Iterator[bytes]:
     yield b'{"op":"getParameters","parameterNames":["/a.b"],"id":"x"}'
     yield b'{"op":"subscribeConnectionGraph"}\n--\n{"op":"fetchAsset","uri":"package://a/b.stl","requestId":3}'
     yield encode_client(ms.ServiceRequest(5, 1, "cdr", b"\0\1\0\0"))  # type: ignore[misc]
+
+
+def _from_ros() -> Iterator[bytes]:
+    yield b'{"op":"subscribe","topic":"/a","throttle_rate":5,"compression":"cbor","qos":{"depth":1},"id":7}'
+    yield b'{"op":"call_service","service":"/a","args":[1],"timeout":0.5}\n--\n{"op":"set_level","level":"none"}'
+    publish = {"op": "publish", "topic": "/a", "msg": {"bytes": b"\0\1\0\0"}, "id": "p"}
+    yield frames.as_cbor(publish)
+    parts = split(frames.as_json({**publish, "msg": {"data": "x" * 200}}), 100, "f")
+    yield b"\n--\n".join(frames.as_json(part).encode() for part in parts)
 
 
 def _from_server() -> Iterator[bytes]:
@@ -67,5 +90,6 @@ def _from_server() -> Iterator[bytes]:
 
 TARGETS = (
     Target("bridge-client", _client, (FrameError,), _from_client, tuple(f'"{shape.op}"' for shape in CLIENT_JSON)),
+    Target("bridge-rosbridge", _rosbridge, (FrameError,), _from_ros, tuple(f'"{name}"' for name in OPERATIONS)),
     Target("bridge-server", _server, (FrameError,), _from_server, tuple(f'"{shape.op}"' for shape in SERVER_JSON)),
 )

@@ -87,9 +87,10 @@ def check(operation: Operation) -> dict[str, Any]:
     for field in kind.needs:
         if field not in given:
             raise FrameError(f"{name}.{field}", _KINDS[field], "nothing")
-    for field, expected in _KINDS.items():
-        if field in given and not _fits(field, given[field], expected):
-            raise FrameError(f"{name}.{field}", _expected(field, expected), f"{given[field]!r:.40}")
+    for field, value in given.items():
+        expected = _KINDS.get(field)
+        if expected is not None and not _fits(field, value, expected):
+            raise FrameError(f"{name}.{field}", _expected(field, expected), f"{value!r:.40}")
     return given
 
 

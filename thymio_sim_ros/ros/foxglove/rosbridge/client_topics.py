@@ -20,7 +20,7 @@ from thymio_sim_ros.ros.foxglove.rosbridge.host import Host, RefusedError
 from thymio_sim_ros.ros.foxglove.rosbridge.outbox import Outbox
 from thymio_sim_ros.ros.foxglove.rosbridge.qos_values import to_profile
 from thymio_sim_ros.ros.foxglove.rosbridge.subscriptions import Request, TopicSubscription
-from thymio_sim_ros.ros.foxglove.rosbridge.values import Compression, to_message
+from thymio_sim_ros.ros.foxglove.rosbridge.values import Compression, cdr_of, to_message
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message
@@ -89,10 +89,12 @@ class ClientTopics:
             known = self._publishers[key_of(operation, "topic")] = self._advertise(operation, place)
         value = operation.get("msg")
         message = to_message(value, known.held.message_type, "publish.msg")
-        self._stamp(message, value)
+        data = cdr_of(value)
+        if data is None:
+            self._stamp(message, value)
         if fault := velocity_fault(message):
             raise RefusedError(f"publish.msg: {operation['topic']}: {fault}")
-        if not known.held.publish(message):
+        if not known.held.publish(message if data is None else data):
             self._host.wake()
 
     def subscribe(self, operation: Operation, place: ClientNode) -> None:
@@ -168,9 +170,9 @@ class ClientTopics:
     def _stamp(self, message: Message, value: object) -> None:
         """Set the stamp of a message to now if the client gave none, as rosbridge_suite does."""
         header = getattr(message, "header", None)
-        if not isinstance(header, Header) or not isinstance(value, dict) or "bytes" in value:
+        if not isinstance(header, Header):
             return
-        given = value.get("header")
+        given = value.get("header") if isinstance(value, dict) else None
         if not isinstance(given, dict) or "stamp" not in given:
             sec, nanosec = divmod(self._host.now_ns(), 1_000_000_000)
             header.stamp = Time(sec=sec, nanosec=nanosec)

@@ -18,7 +18,7 @@ from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message, MsgT
 
-__all__ = ["Compression", "ValueRefusedError", "from_cdr", "from_message", "to_message"]
+__all__ = ["Compression", "ValueRefusedError", "cdr_of", "from_cdr", "from_message", "to_message"]
 
 
 class Compression(StrEnum):
@@ -46,13 +46,20 @@ _TAGS = {
 """Tags of arrays of little-endian numbers (RFC 8746 section 2)."""
 
 
+def cdr_of(value: object) -> bytes | None:
+    """The bytes of a message that a client gives in CDR, None for one that it gives as an object."""
+    data = value.get("bytes") if isinstance(value, dict) and len(value) == 1 else None
+    return data if isinstance(data, bytes) else None
+
+
 def to_message(value: object, message_type: type[MsgT], where: str) -> MsgT:
     """The message that a client gives, as an object or as `{"bytes": <CDR>}`; `where` is its place in the operation.
 
     Raises ValueRefusedError.
     """
-    if isinstance(value, dict) and list(value) == ["bytes"] and isinstance(value["bytes"], bytes):
-        return _from_bytes(value["bytes"], message_type, where)
+    data = cdr_of(value)
+    if data is not None:
+        return _from_bytes(data, message_type, where)
     try:
         return json_messages.from_value({} if value in (None, []) else value, message_type, where)
     except json_messages.JsonMessageError as error:
