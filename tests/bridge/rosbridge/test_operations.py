@@ -45,6 +45,7 @@ def test_an_operation_without_a_needed_field_is_rejected_by_its_name(name: str) 
         ({"op": "subscribe", "topic": "/a", "qos": 1}, "subscribe.qos: expected an object, found 1"),
         ({"op": "subscribe", "topic": "/a", "id": [1]}, "subscribe.id: expected a text or an integer, found [1]"),
         ({"op": "subscribe", "topic": "/a", "id": "i" * 1025}, "subscribe.id: expected a text or an integer"),
+        ({"op": "subscribe", "topic": "/a", "id": "\ud800"}, "subscribe.id: expected a text or an integer"),
         ({"op": "set_level", "level": "loud"}, "set_level.level: expected one of info, warning, error, none"),
         (
             {"op": "advertise", "topic": "/a", "type": "t", "latch": 1},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 
 import pytest
@@ -162,3 +163,14 @@ def test_a_service_that_is_gone_is_forgotten_when_its_calls_have_ended(ros):
     assert any(client.srv_name == "/never" for client in ros.node.clients)
     calls.forget_gone({})
     assert not any(client.srv_name == "/never" for client in ros.node.clients)
+
+
+def test_the_calls_of_a_sender_are_canceled(ros):
+    calls, answers = ServiceCalls(ros.node, timeout_s=math.inf), []
+    for sender in (1, 2):
+        calls.call(Trigger, "/never", Trigger.Request(), lambda _, reason: answers.append(reason), sender=sender)
+    calls.cancel(1)
+    assert answers == ["call of /never canceled"]
+    assert calls.poll()
+    calls.cancel(2)
+    assert not calls.poll()

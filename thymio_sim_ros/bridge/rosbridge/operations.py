@@ -95,7 +95,7 @@ def check(operation: Operation) -> dict[str, Any]:
 
 
 def _fits(field: str, value: object, expected: str) -> bool:
-    if isinstance(value, str) and field in _NAMES and len(value) > _MAX_ID:
+    if isinstance(value, str) and field in _NAMES and (len(value) > _MAX_ID or not _is_utf8(value)):
         return False
     if field in _CHOICES:
         return value in _CHOICES[field]
@@ -105,6 +105,14 @@ def _fits(field: str, value: object, expected: str) -> bool:
         kinds = int if expected is _COUNT else int | float
         return isinstance(value, kinds) and not isinstance(value, bool) and 0 <= value < _TOO_LARGE
     return isinstance(value, {_TEXT: str, _FLAG: bool, _OBJECT: dict}[expected])
+
+
+def _is_utf8(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:  # half of a surrogate pair
+        return False
+    return True
 
 
 def _expected(field: str, expected: str) -> str:

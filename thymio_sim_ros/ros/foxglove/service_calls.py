@@ -136,6 +136,15 @@ class ServiceCalls:
             self._node.destroy_client(queue.client)
         self._finish_all()
 
+    def cancel(self, sender: int) -> None:
+        """End all open calls of a sender, which fail."""
+        for call in [call for call in self._open if call.sender == sender]:
+            future = call.queue.in_flight.get(call)
+            if future is not None:
+                call.queue.client.remove_pending_request(future)
+            self._finish(call, None, f"call of {call.queue.name} canceled")
+        self._finish_all()
+
     def forget_gone(self, names: Container[str]) -> None:
         """Remove services that are not among `names` and have no open calls."""
         gone = {queue.name for queue in self._queues.values() if queue.name not in names}

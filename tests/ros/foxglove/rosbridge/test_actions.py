@@ -8,6 +8,8 @@ from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.task import Future
 from test_msgs.action import Fibonacci
 
+from tests.bridge.ros_client import RosClient
+
 FIBONACCI = "test_msgs/action/Fibonacci"
 
 
@@ -117,3 +119,22 @@ def test_the_parts_of_an_action_can_be_used_one_by_one(server, roslib):
     assert sent["values"]["accepted"] is True
     result = roslib.call("/count/_action/get_result", type=f"{FIBONACCI}_GetResult", args={"goal_id": goal_id})
     assert result["values"] == {"status": GoalStatus.STATUS_SUCCEEDED, "result": {"sequence": [0, 1]}}
+
+
+def test_a_client_may_leave_in_the_middle_of_goals_and_calls(ros, bridge, server):
+    port = bridge().port
+    client = ActionClient(ros.node, Fibonacci, "/walk")
+    with RosClient(port, ros.until) as leaving:
+        leaving.send("advertise_action", action="/walk", type=FIBONACCI)
+        ros.until(client.server_is_ready)
+        sent = client.send_goal_async(Fibonacci.Goal(order=1))
+        leaving.next("send_action_goal")
+        ros.until(sent.done)
+        leaving.send("send_action_goal", **_goal(0, id="g", feedback=True))
+        leaving.next("action_feedback")
+        leaving.send("call_service", service="/never", type="std_srvs/Trigger", timeout=0)
+        leaving.call("/rosapi/get_time")
+    ros.until(lambda: not client.server_is_ready())
+    with RosClient(port, ros.until) as other:
+        assert other.call("/rosapi/nodes")["result"]
+    client.destroy()

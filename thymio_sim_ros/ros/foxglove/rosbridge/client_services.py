@@ -165,6 +165,7 @@ class ClientServices:
                 self._end(served, key)
         if node is None:
             self.goals.close()
+            self._host.calls.cancel(self._client)
 
 
 def _shown(operation: Operation, name: str, key: Key) -> dict[str, Any]:

@@ -99,10 +99,8 @@ class Goals:
         return bool(self._ended) or not all(goal.is_sent for goal in self._goals.values())
 
     def close(self) -> None:
-        """Forget all goals; those that run are canceled."""
+        """Forget all goals. Those that run go on, as when any other action client ends."""
         for goal in [*self._goals.values(), *self._ended]:
-            if goal.handle is not None and goal not in self._ended:
-                goal.handle.cancel_goal_async()
             goal.client.destroy()
         self._goals.clear()
         self._ended.clear()

@@ -61,10 +61,10 @@ class TopicSubscription:
 
     def add(self, key: object, request: Request, profile: QoSProfile | None) -> None:
         """Add a request of the client, or change it. Raises RefusedError."""
-        self._profile = profile or self._profile
         self._requests[key] = request
         self._combine()
         if self._subscription is None:
+            self._profile = profile
             self._subscribe()
 
     def remove(self, key: object) -> bool:
@@ -79,13 +79,15 @@ class TopicSubscription:
     def _combine(self) -> None:
         requests = self._requests.values()
         order = list(Compression)
+        before = self._combined
         self._combined = Request(
             min(item.throttle_s for item in requests),
             max(item.queue_length for item in requests),
             min((item.fragment_size for item in requests if item.fragment_size), default=None),
             max((item.compression for item in requests), key=order.index),
         )
-        self._pace = Pace(self._combined.throttle_s, self._combined.queue_length)
+        if (before.throttle_s, before.queue_length) != (self._combined.throttle_s, self._combined.queue_length):
+            self._pace = Pace(self._combined.throttle_s, self._combined.queue_length)
 
     def refresh(self) -> None:
         """Subscribe again if the publishers now need another QoS."""
@@ -125,6 +127,7 @@ class TopicSubscription:
                 # The graph shows it as a subscription of the client's node; the messages come by the other one.
                 self._shown = own.create_subscription(self._kind, self.topic, lambda _: None, _SHOWN, raw=True)
         except RCLError as error:
+            self._unsubscribe()
             raise RefusedError(f"subscribe.type: {self.topic} has another type: {error}".partition("\n")[0]) from error
 
     def _create(self, node: Node, profile: QoSProfile) -> Subscription:
