@@ -10,6 +10,7 @@ from rclpy.task import Future
 from std_srvs.srv import Trigger
 
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
+from thymio_sim_ros.ros.rclpy_ext.deferred_service import create_deferred_service
 
 
 class Service:
@@ -174,3 +175,12 @@ def test_the_calls_of_a_sender_are_canceled(ros):
     assert calls.poll()
     calls.cancel(2)
     assert not calls.poll()
+
+
+def test_the_results_of_actions_do_not_wait_for_each_other(ros):
+    waiting, calls = [], ServiceCalls(ros.node)
+    name = "/walk/_action/get_result"
+    create_deferred_service(ros.node, Trigger, name, lambda request, respond: waiting.append(respond))
+    for _ in range(8):
+        calls.call(Trigger, name, Trigger.Request(), lambda response, reason: None)
+    ros.until(lambda: calls.poll() and len(waiting) == 8)

@@ -39,6 +39,9 @@ _IN_FLIGHT = 5
 _IN_FLIGHT_EACH = 2
 """Calls of one service at a time by one sender, so that one sender cannot occupy a slow service."""
 
+_RESULTS = "/_action/get_result"
+"""End of the names of services that answer when a goal has ended."""
+
 Request = TypeVar("Request", bound="Message")
 Response = TypeVar("Response", bound="Message")
 
@@ -55,9 +58,15 @@ class _Queue:
     waiting: FairQueue[int, _Call] = field(default_factory=FairQueue)
     in_flight: dict[_Call, Future[Any]] = field(default_factory=dict)
 
+    @property
+    def has_room(self) -> bool:
+        """Whether another call may be sent. Results of actions have no limit: servers take their requests at once."""
+        return len(self.in_flight) < _IN_FLIGHT or self.name.endswith(_RESULTS)
+
     def is_free(self, sender: int) -> bool:
         """Whether a call of this sender may be sent."""
-        return sum(call.sender == sender for call in self.in_flight) < _IN_FLIGHT_EACH
+        in_flight = sum(call.sender == sender for call in self.in_flight)
+        return in_flight < _IN_FLIGHT_EACH or self.name.endswith(_RESULTS)
 
 
 @dataclass(slots=True, eq=False)
@@ -155,7 +164,7 @@ class ServiceCalls:
         """Send waiting calls within the limits."""
         if not queue.waiting or not queue.client.service_is_ready():
             return
-        while queue.waiting and len(queue.in_flight) < _IN_FLIGHT:
+        while queue.waiting and queue.has_room:
             try:
                 call = queue.waiting.pop(queue.is_free)
             except IndexError:
