@@ -10,6 +10,7 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.machinery import PathFinder
 from pathlib import Path
 
 import pytest
@@ -23,13 +24,16 @@ DATA = Path(__file__).parents[1] / "data" / "rosbridge"
 PLACES = (os.environ.get("THYMIO_SIM_NODE_MODULES", ""), str(Path(__file__).parents[2] / "web_ui" / "node_modules"))
 
 
-@pytest.fixture(scope="module", params=["--portable", "--ros"])
-def port(request, tmp_path_factory):
+needs_ros = pytest.mark.skipif(PathFinder.find_spec("rclpy") is None, reason="ROS 2 is not installed")
+
+
+@pytest.fixture(params=["--portable", pytest.param("--ros", marks=needs_ros)])
+def port(request, ros_domain, tmp_path):
     """The port of the bridge of a suite, on each graph; the robot stands in the middle of a large playground."""
     bridge_port = free_port()
     arguments = (request.param, "--port", str(free_port()), "--foxglove-port", str(bridge_port), "--program", "none")
     servers = ("--no-aseba", "--no-tdm", "--no-announcement", "--playground", "borderless")
-    suite = Process(tmp_path_factory.mktemp("suite"), "thymio_sim_ros.cli.main", *arguments, *servers)
+    suite = Process(tmp_path, "thymio_sim_ros.cli.main", *arguments, *servers)
     wait_for_port(bridge_port)
     yield bridge_port
     suite.end()
