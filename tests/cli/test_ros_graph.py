@@ -35,6 +35,8 @@ def test_half_an_installation_is_one_line(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_the_first_line_says_who_sees_the_robots() -> None:
-    assert "no ROS node of another program" in describe_graph({"ROS_DOMAIN_ID": "7"}, is_embedded=True)
+    assert "nodes of other programs see the robots by `thymio-sim node`" in describe_graph(
+        {"ROS_DOMAIN_ID": "7"}, is_embedded=True
+    )
     line = describe_graph({"ROS_DOMAIN_ID": "7"}, is_embedded=False)
     assert line == "ROS       ROS 2, ROS_DOMAIN_ID 7, this network: its nodes see the robots"

@@ -116,7 +116,7 @@ def _banner(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place],
     access = "this computer only" if is_loopback(options.address) else "everyone in your network with a link"
     kept = "kept" if is_kept else "lost at the end: keep them with --folder"
     if options.first_domain is None:
-        graph = "embedded graphs: no ROS node sees the robots; --ros is for nodes of pupils"
+        graph = "embedded graphs: nodes of pupils reach their robots by `thymio-sim node`; --ros is for other ROS nodes"
     else:
         domains = sorted(options.first_domain + place.number for place in (places[0], places[-1]))
         graph = f"ROS_DOMAIN_ID {domains[0]} to {domains[1]}, {describe_range(discovery(os.environ))}"

@@ -13,7 +13,9 @@ from thymio_sim_ros.portable_ros import import_hook
 
 __all__ = ["add_graph_options", "check_ros", "choose_graph", "describe_graph"]
 
-_ONLY_HERE = "no ROS node of another program sees the robots; page, Foxglove and other servers work as always"
+_ONLY_HERE = (
+    "nodes of other programs see the robots by `thymio-sim node`; page, Foxglove and other servers work as always"
+)
 
 _WHERE_INSTALLED = "ROS 2 where it is installed, else the embedded graph"
 
@@ -24,7 +26,8 @@ def add_graph_options(parser: argparse.ArgumentParser, *, default: str = _WHERE_
     graphs.add_argument(
         "--portable",
         action="store_true",
-        help="use the embedded ROS graph also where ROS 2 is installed: only nodes of this program see the robots",
+        help="use the embedded ROS graph also where ROS 2 is installed: only nodes of this program and of "
+        "`thymio-sim node` see the robots",
     )
     graphs.add_argument(
         "--ros",
