@@ -55,8 +55,8 @@ class Program:
 class MemoryServer:
     """Passes on what sessions send. `sent` has all their operations; a foreign server knows no nodes and no CDR."""
 
-    def __init__(self, *, is_foreign: bool = False) -> None:
-        self.is_foreign = is_foreign
+    def __init__(self, *, is_foreign: bool = False, has_rosapi: bool = True) -> None:
+        self.is_foreign, self.has_rosapi = is_foreign, has_rosapi
         self.programs: list[Program] = []
         self.sent: list[Operation] = []
         self._ends: list[tuple[Program, Operation]] = []
@@ -142,7 +142,7 @@ class MemoryServer:
 
     def _call_service(self, program: Program, operation: Operation) -> None:
         name = operation["service"]
-        if self.is_foreign and name.startswith("/rosapi/"):
+        if self.is_foreign and self.has_rosapi and name.startswith("/rosapi/"):
             values = getattr(self, f"_rosapi_{name.rpartition('/')[2]}")(**operation["args"])
             answer = {"op": "service_response", "id": operation["id"], "service": name}
             self.tell(program, {**answer, "values": values, "result": True})

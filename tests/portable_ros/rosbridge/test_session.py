@@ -14,7 +14,7 @@ from thymio_sim_ros.portable_ros.rclpy.event_handler import PublisherEventCallba
 from thymio_sim_ros.portable_ros.rclpy.parameter import Parameter
 from thymio_sim_ros.portable_ros.rclpy.parameter_client import AsyncParameterClient
 from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from thymio_sim_ros.portable_ros.rosbridge.session import FOREIGN
+from thymio_sim_ros.portable_ros.rosbridge.session import FOREIGN, NO_ROSAPI
 
 String, Float64 = message_type("std_msgs/msg/String"), message_type("std_msgs/msg/Float64")
 AddTwoInts = service_type("example_interfaces/srv/AddTwoInts")
@@ -243,6 +243,15 @@ def test_what_a_foreign_server_lacks_is_said_once() -> None:
     server.run()
     assert student.reports == [FOREIGN, "/fibonacci: the server carries no actions"]
     client.destroy()
+
+
+def test_a_foreign_server_without_rosapi_is_asked_once() -> None:
+    server, student = MemoryServer(is_foreign=True, has_rosapi=False), Program()
+    student.node("student")
+    server.connect(student)
+    assert student.reports == [FOREIGN, NO_ROSAPI]
+    assert student.session is not None
+    assert not student.session.needs_polls
 
 
 @pytest.mark.parametrize(

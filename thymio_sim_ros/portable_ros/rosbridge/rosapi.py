@@ -32,6 +32,8 @@ class RosapiPoll:
         self._service_types = service_types
         self._services: set[str] = set()
         self._details: dict[str, dict[str, Any]] = {}
+        self.has_answers = False
+        """Whether a call was successful: there is a rosapi."""
         for name in _LISTS:
             self._call(name)
 
@@ -45,6 +47,7 @@ class RosapiPoll:
         if call_id not in self._open:
             return False
         service, argument = self._open.pop(call_id)
+        self.has_answers |= values is not None
         found = values if isinstance(values, dict) else {}
         if service == "topics":
             self._topic_types = dict(zip(_texts(found, "topics"), _texts(found, "types"), strict=False))

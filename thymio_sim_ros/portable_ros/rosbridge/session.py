@@ -19,11 +19,15 @@ from thymio_sim_ros.portable_ros.rosbridge.remote_graph import RemoteGraph
 from thymio_sim_ros.portable_ros.rosbridge.rosapi import RosapiPoll
 from thymio_sim_ros.portable_ros.rosbridge.service_calls import ServiceCalls
 
-__all__ = ["FOREIGN", "Session"]
+__all__ = ["FOREIGN", "NO_ROSAPI", "Session"]
 
 FOREIGN = (
     "the server knows no nodes: this program appears as a part of the server's node, without parameters in"
     " `ros2 param list`; of QoS only depth and transient local publishers are carried"
+)
+NO_ROSAPI = (
+    "the server has no node `rosapi`, so that its nodes, topics and services are not known and no service is found;"
+    " start rosbridge with its launch file"
 )
 _GRAPH = "graph"
 ACTION_PART = "/_action/"
@@ -67,6 +71,7 @@ class Session:
         self._received = itertools.count(1)
         self._poll: RosapiPoll | None = None
         self._service_types: dict[str, str] = {}
+        self._has_rosapi = True
         self._reported: set[str] = set()
         self._start_poll()
 
@@ -78,7 +83,7 @@ class Session:
     @property
     def needs_polls(self) -> bool:
         """Whether changes of the remote graph are only found by `poll`."""
-        return self.is_ready and not self._payloads.is_serialized
+        return self.is_ready and self._has_rosapi and not self._payloads.is_serialized
 
     def poll(self) -> None:
         """Ask for the remote graph, unless an earlier question is not answered."""
@@ -225,6 +230,9 @@ class Session:
             if self._announcements is None:
                 self._report(FOREIGN)
                 self._begin(is_extended=False)
+                if not poll.has_answers:
+                    self._has_rosapi = False
+                    self._report(NO_ROSAPI)
             if self.needs_polls:
                 self._remote.update(self._without_own(poll.nodes()))
         self._wake()
