@@ -231,6 +231,21 @@ def test_endpoints_that_are_gone_are_withdrawn_after_their_last_message() -> Non
     assert [one["op"] for one in server.sent][-1] == "remove_node"
 
 
+def test_new_publishers_are_not_taken_for_those_that_are_gone() -> None:
+    server, robot, student = _connected()
+    found: list[str] = []
+    robot.node("robot").create_subscription(String, "topic", lambda message: found.append(message.data), 10)
+    node = student.node("student")
+    for number in range(50):  # new objects are where earlier ones were
+        publisher = node.create_publisher(String, "topic", 10)
+        publisher.publish(String(data=f"{number}"))
+        server.run()
+        node.destroy_publisher(publisher)
+        del publisher
+        server.run()
+    assert found == [f"{number}" for number in range(50)]
+
+
 def test_what_a_foreign_server_lacks_is_said_once() -> None:
     server, _, student = _connected(is_foreign=True)
     student.node("student")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import socket
 import threading
 from collections.abc import Iterator
 
@@ -12,6 +14,7 @@ from tests.portable_ros.rosbridge.memory_server import Program
 from tests.portable_ros.rosbridge.socket_server import SocketServer
 from tests.processes import free_port
 from thymio_sim_ros.portable_ros.messages.message_class import message_type
+from thymio_sim_ros.portable_ros.rosbridge import transport
 from thymio_sim_ros.portable_ros.rosbridge.transport import RosbridgeError, RosbridgeTransport
 from thymio_sim_ros.ros.foxglove import json_messages
 
@@ -94,6 +97,20 @@ def test_a_server_that_rejects_the_token_after_its_return_is_said_once(client: _
         "the token is wrong; waiting for another answer",
         "",
     ]
+
+
+def test_the_end_does_not_wait_for_a_server_that_does_not_answer(
+    client: _Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(transport, "connect", functools.partial(transport.connect, open_timeout=None))
+    with SocketServer(_port(client)):
+        client.transport.start()
+    until(lambda: client.reports)
+    with socket.create_server(("127.0.0.1", _port(client))) as silent:
+        connection, _ = silent.accept()
+        with connection:
+            client.transport.close()  # the handshake has not ended yet
+            assert not client.transport._thread.is_alive()
 
 
 def test_what_is_published_last_arrives_before_the_end(client: _Client) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import time
+import weakref
 from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
@@ -66,8 +67,8 @@ class Session:
         self._announcements: Announcements | None = None
         self._is_changed = True
         self._is_removal_due = False
-        self._sent: dict[int, int] = {}
-        """Publisher, by identity → the sequence number of its last message that was sent."""
+        self._sent: weakref.WeakKeyDictionary[Any, int] = weakref.WeakKeyDictionary()
+        """Publisher → the sequence number of its last message that was sent."""
         self._received = itertools.count(1)
         self._poll: RosapiPoll | None = None
         self._service_types: dict[str, str] = {}
@@ -169,9 +170,9 @@ class Session:
 
     def _publication(self, publisher: Any, item: _Publication) -> Operation | None:
         """The operation for a message; None if it has been sent, as one that was retained."""
-        if item.sample.sequence_number <= self._sent.get(id(publisher), 0):
+        if item.sample.sequence_number <= self._sent.get(publisher, 0):
             return None
-        self._sent[id(publisher)] = item.sample.sequence_number
+        self._sent[publisher] = item.sample.sequence_number
         operation: Operation = {"op": "publish", "topic": item.topic}
         if self._announcements is not None and (wire_id := self._announcements.id_of(publisher)) is not None:
             operation["id"] = wire_id

@@ -46,7 +46,8 @@ class RosbridgeTransport:
         self._is_lost = self._is_rejected = False
         self._is_ready = threading.Event()
         self._rejection: RosbridgeError | None = None
-        self._thread = threading.Thread(target=lambda: asyncio.run(self._run()), name="rosbridge", daemon=True)
+        self._thread = threading.Thread(target=self._run_thread, name="rosbridge", daemon=True)
+        self._task: asyncio.Task[None] | None = None
 
     @property
     def is_connected(self) -> bool:
@@ -65,9 +66,12 @@ class RosbridgeTransport:
             raise self._rejection
 
     def close(self) -> None:
-        """Send what is queued, and disconnect."""
+        """Send what is queued, and disconnect; an attempt to connect is given up."""
         self._is_closing = True
         self.wake()
+        if self._session is None and self._loop is not None and self._task is not None:
+            with contextlib.suppress(RuntimeError):  # the loop is closed
+                self._loop.call_soon_threadsafe(self._task.cancel)
         self._thread.join()
         self._graph.attach(None)
 
@@ -88,8 +92,12 @@ class RosbridgeTransport:
             with contextlib.suppress(RuntimeError):  # the loop is closed
                 self._loop.call_soon_threadsafe(self._wake_event.set)
 
+    def _run_thread(self) -> None:
+        with contextlib.suppress(asyncio.CancelledError):
+            asyncio.run(self._run())
+
     async def _run(self) -> None:
-        self._loop = asyncio.get_running_loop()
+        self._loop, self._task = asyncio.get_running_loop(), asyncio.current_task()
         while not self._is_closing:
             try:
                 await self._connect()
@@ -99,12 +107,7 @@ class RosbridgeTransport:
             if self._rejection is not None:
                 return
             if not self._is_closing:
-                with contextlib.suppress(TimeoutError):
-                    await asyncio.wait_for(self._woken_to_close(), _RETRY_S)
-
-    async def _woken_to_close(self) -> None:
-        while not self._is_closing:
-            await self._next_wake()
+                await asyncio.sleep(_RETRY_S)
 
     async def _next_wake(self) -> None:
         await self._wake_event.wait()
