@@ -20,7 +20,6 @@ import socket
 import subprocess  # noqa: F401
 import sys
 import warnings
-from collections.abc import Mapping
 from typing import Any
 
 OURS = ("aseba_vm", "thymio_sim_ros")
@@ -66,17 +65,14 @@ def remove() -> None:
             delattr(module, name)
     genuine = builtins.__import__
 
-    def without_posix(
-        name: str,
-        names: Mapping[str, Any] | None = None,
-        local: Mapping[str, Any] | None = None,
-        wanted: Any = (),
-        level: int = 0,
-    ) -> Any:
-        importer = str((names or {}).get("__name__", ""))
-        if importer.partition(".")[0] in OURS and level == 0 and name.partition(".")[0] in MODULES:
+    def without_posix(name: str, *args: Any, **kwargs: Any) -> Any:
+        """Import as `__import__` does, whose arguments these are: globals, locals, fromlist, level."""
+        called = dict(zip(("globals", "locals", "fromlist", "level"), args, strict=False)) | kwargs
+        importer = str((called.get("globals") or {}).get("__name__", ""))
+        is_ours = importer.partition(".")[0] in OURS and called.get("level", 0) == 0
+        if is_ours and name.partition(".")[0] in MODULES:
             raise ModuleNotFoundError(f"No module named {name!r}, as on another system", name=name)
-        return genuine(name, names, local, wanted, level)
+        return genuine(name, *args, **kwargs)
 
     builtins.__import__ = without_posix  # type: ignore[assignment]
     warnings.filterwarnings("error", category=EncodingWarning, module=rf"({'|'.join(OURS)})\b")

@@ -27,8 +27,8 @@ from thymio_sim_ros.lockstep.turns import Turns
 if TYPE_CHECKING:
     from thymio_sim_ros.lockstep.program_graph import ProgramGraph
 
-STACKS_SIGNAL = signal.SIGXCPU
-"""On this signal the process writes the stacks of all threads to a file."""
+STACKS_SIGNAL = getattr(signal, "SIGXCPU", None)
+"""On this signal the process writes the stacks of all threads to a file. Windows lacks it."""
 
 INTERRUPTED = 130
 
@@ -156,6 +156,7 @@ def main() -> None:
     options = Options(**json.loads(sys.argv[1]))
     for fd in (options.read_fd, options.write_fd, options.stacks_fd):
         os.set_inheritable(fd, False)  # positional only
+    assert STACKS_SIGNAL is not None
     faulthandler.register(STACKS_SIGNAL, file=options.stacks_fd, all_threads=True)
     session = Session(options)
     session.begin()

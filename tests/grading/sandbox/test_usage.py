@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.patience import until
-from thymio_sim_ros.grading.sandbox.usage import is_working
+from thymio_sim_ros.grading.sandbox.thread_states import is_working
 
 pytestmark = pytest.mark.process
 

@@ -23,7 +23,7 @@ from typing import Any
 
 import pytest
 
-from thymio_sim_ros.grading.sandbox.usage import is_sleeping, is_working
+from thymio_sim_ros.grading.sandbox.thread_states import is_sleeping, is_working
 from thymio_sim_ros.testing.ros.cpu_limit import limited
 from thymio_sim_ros.testing.ros.forbidden_waits import WAIT_LIMIT_S, waiting_forbidden
 from thymio_sim_ros.testing.ros.interruption import insist, place

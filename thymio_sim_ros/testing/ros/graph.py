@@ -31,6 +31,7 @@ from thymio_sim_ros.testing.ros.program import OUTPUT_BYTES, Program
 from thymio_sim_ros.testing.ros.program_files import find
 from thymio_sim_ros.testing.ros.programs import Programs
 from thymio_sim_ros.testing.ros.recorder import Recorder
+from thymio_sim_ros.testing.ros.student_errors import StudentError
 from thymio_sim_ros.testing.sources import beside
 
 if TYPE_CHECKING:
@@ -222,10 +223,14 @@ class Ros:
             cpu_limit: Processor time in s that it may use without a wait.
 
         Raises:
-            StudentError: There is no such file, module or executable.
+            StudentError: There is no such file, module or executable, or this is Windows.
             LookupError: The test has no simulation.
         """
         __tracebackhide__ = True
+        if sys.platform == "win32":
+            raise StudentError(
+                "ros.run: found Windows, expected Linux or macOS: test the node with ros.start, or in WSL 2"
+            )
         simulation = self._simulated()
         target = find(source, executable, self._folder)
         values = {"use_sim_time": True, **(parameters or {})}

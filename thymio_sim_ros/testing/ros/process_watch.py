@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-import signal
 import subprocess
 import time
 from collections.abc import Callable
 from typing import BinaryIO
 
-from thymio_sim_ros.grading.sandbox.usage import is_working
+from thymio_sim_ros.grading.sandbox.thread_states import is_working
 from thymio_sim_ros.lockstep.main import STACKS_SIGNAL
 
 __all__ = ["BLOCKED_S", "ProcessWatch"]
@@ -59,9 +58,10 @@ class ProcessWatch:
     def place(self) -> str:
         """File, line and function where the running thread of the program is; empty if that cannot be found."""
         begin = self._stacks.seek(0, os.SEEK_END)
+        assert STACKS_SIGNAL is not None
         self._process.send_signal(STACKS_SIGNAL)
         self._wait_for(lambda: self._stacks.seek(0, os.SEEK_END) > begin)
-        self._process.send_signal(signal.SIGKILL)
+        self._process.kill()
         self._process.wait()
         self._stacks.seek(begin)
         return _place(self._stacks.read().decode(errors="replace"))
